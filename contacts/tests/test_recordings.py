@@ -1,6 +1,7 @@
 """Files as instruments, programs and people write them."""
 
 import io
+import json
 import re
 import zipfile
 
@@ -110,6 +111,22 @@ FILES = {
     "two lines of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4\n80,53.8,36.2,",
     "two lines of times": "t1 (s),t2 (s),t3 (s)\n0.1,0.92,1.5924\n0.2,0.7,1.11",
     "several rebounds in one line": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,67.2,67.3",
+    "trials and their average": "Drop height (cm),Trial 1 (cm),Trial 2 (cm),Average (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724},{h * 0.6724},{h * 0.7}" for h in (50, 75, 100, 125)),
+    "German heights": "Höhe h0 [cm];Rücksprunghöhe [cm]\n100;67,24\n80;53,79\n50;33,62",
+    "French heights": "hauteur de chute (cm);hauteur de rebond (cm)\n100;67.24\n80;53.79\n50;33.62",
+    "Spanish heights": "altura inicial (m),altura rebote (m)\n1,0.6724\n0.8,0.5379\n0.5,0.3362",
+    "Italian heights": "altezza di caduta (m),rimbalzo (m)\n1,0.6724\n0.8,0.5379\n0.5,0.3362",
+    "German speeds": "Einfallsgeschwindigkeit (m/s);Abprallgeschwindigkeit (m/s)\n"
+    + "\n".join(f"{v};{v * 0.82}" for v in SPEEDS),
+    "minutes and seconds": "time (mm:ss)\n"
+    + "\n".join(f"{(t + 58) // 60:.0f}:{(t + 58) % 60:.6f}" for t in TIMES),
+    "hours, with decimal commas": "\n".join(f"00:01:{t + 10:.6f}" for t in TIMES).replace(".", ","),
+    "nanoseconds": "t_ns\n" + column(1e9 * TIMES + 1.7e18, "{:.0f}"),
+    "labels of Audacity with frequencies": "\n".join(
+        f"{t:.6f}\t{t + 0.004:.6f}\tbounce\n\\\t200.0\t3000.0" for t in TIMES
+    ),
+    "JSON": json.dumps({"interval_ms": list(1000 * FLIGHTS)}),
     "coefficients in per cent": "speed (m/s),COR (%)\n" + "\n".join(f"{v},82" for v in SPEEDS),
     "coefficients without unit": "speed (m/s),e (-)\n" + "\n".join(f"{v},0.82" for v in SPEEDS),
 }
@@ -187,7 +204,13 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("", "is empty"),
         ("# title: nothing", "is empty"),
         ("a,b\nx,y", "no line of numbers"),
-        ("a,b\n1,2", "no bounces in a, b"),
+        (
+            "a,b\n1,2",
+            "no bounces in a, b: write headings such as .* drop_height and rebound_height",
+        ),
+        ("Fallhöhe (m),Sprung (m)\n2,1\n1,0.5", "no bounces in Fallhöhe, Sprung: write headings"),
+        ("time\n2024-05-03T14:07:20.45Z\n2024-05-03T14:07:21.17Z", "seconds, mm:ss.s or hh:mm"),
+        ("[0.45, 1.17, 1.75]", "recording.csv is no recording: .* or columns such as {'time"),
         ("h0,h1\n50,33\n75,50", "without a unit"),
         ("h0 [bananas],h1 [m]\n50,33", "bananas"),
         ("interval [s]\n812\n707", "is it in ms"),
@@ -237,8 +260,15 @@ def test_every_published_experiment_names_its_source():
 
 
 def test_what_is_no_file_is_refused():
-    with pytest.raises(Refused, match=r"\[1, 2, 3\] is no recording: give a file"):
+    with pytest.raises(Refused, match=r"\[1, 2, 3\] is no recording: give a file, .* columns such"):
         fit([1, 2, 3])
+
+
+def test_columns_are_read_as_those_of_a_file():
+    heights = np.array([50, 75, 100, 125])
+    found = fit({"drop height (cm)": heights, "rebound height (cm)": [*(0.6724 * heights), None]})
+    assert found.restitution == pytest.approx(0.82, abs=1e-9)
+    assert found.impacts.speed == pytest.approx(np.sqrt(2 * G * heights / 100))
 
 
 @pytest.mark.parametrize(

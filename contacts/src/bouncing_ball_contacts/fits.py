@@ -30,6 +30,7 @@ incompatible, but said to deviate.
 
 import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
@@ -713,7 +714,7 @@ def _of_logs(estimate: Estimate) -> tuple[float, float]:
 
 
 def fit(
-    source: str | Path | Recording,
+    source: str | Path | Mapping[str, Any] | Recording,
     speed: Quantity = None,
     *,
     resolution: Quantity = None,
@@ -727,8 +728,9 @@ def fit(
 
     Parameters
     ----------
-    source : str, Path or Recording
-        A file, a published experiment by its name, or a recording.
+    source : str, Path, mapping or Recording
+        A file, a published experiment by its name, columns with the headings of a file such as
+        ``{"time (s)": [0.45, 1.17, 1.75]}``, or a recording.
     speed : Quantity, optional
         By default the middle of the speeds, the geometric mean.
     resolution : Quantity, optional

@@ -8,12 +8,15 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 
 import contextlib
 import io
+import json
 import re
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
+from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -33,6 +36,19 @@ UNITS = {
     "restitution": "",
     "uncertainty": "",
 }
+# Words of German, French, Spanish and Italian headings.
+_WORDS = {
+    "rebound": "rück(?:sprung|prall)|abprall|rebond|rebote|rimbalzo",
+    "drop": "fall(?=höhe)|chute|ca[ií]da|caduta"
+    "|(?<=hauteur )initiale|(?<=altura )inicial|(?<=altezza )iniziale",
+    "height": "höhe|hauteur|altura|altezza",
+    "impact": "einfall|aufprall|auftreff|impacto|impatto",
+    "speed": "geschwindigkeit|vitesse|velocidad|velocità",
+    "before": r"\bvor\b|avant|antes|\bprima\b",
+    "after": r"\bnach\b|après|después|\bdopo\b",
+    "restitution": "restitu|stoßzahl",
+    "time": r"\bzeit|\btemps\b|tiempo|\btempo\b",
+}
 # What a heading means: the first pattern that is found in it, in lower case and without units.
 _MEANINGS = (
     ("other", r"duration.*(uncert|std|error)"),
@@ -44,8 +60,8 @@ _MEANINGS = (
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
     ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
     ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
-    ("rebound", r"rebound|bounce height|^h ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
-    ("drop", r"drop|release|initial height|start height|^h ?(0|before|in|i)\b"),
+    ("rebound", r"rebound|bounce height|\bh ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
+    ("drop", r"drop|release|initial height|start height|\bh ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
     ("recording", r"recording|^run\b|trial|series|ball\b"),
     ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
@@ -55,8 +71,9 @@ _MEANINGS = (
     ("signal", r"volt|ampl|sound|accel|pressure|^ch ?\d|audio"),
 )
 _UNIT_ROW = re.compile(
-    r"|s|ms|µs|us|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
+    r"|s|ms|µs|us|ns|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
+_TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
 _PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
@@ -101,12 +118,15 @@ def experiments() -> list[str]:
     return sorted(path.name.removesuffix(".csv") for path in folder.iterdir())
 
 
-def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = False) -> Recording:
-    """Return the recording of a file, or of a published experiment by its name.
+def read(
+    source: str | Path | Mapping[str, Any], leave_out: Sequence[int] = (), intervals: bool = False
+) -> Recording:
+    """Return the recording of a file, of a published experiment by its name, or of columns.
 
     Parameters
     ----------
-    source : str or Path
+    source : str, Path or mapping
+        Columns have headings as in a file, ``{"time (s)": [0.45, 1.17, 1.75]}``.
     leave_out : sequence of int
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
     intervals : bool
@@ -118,7 +138,8 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
         If the file has no bounces, or numbers that are no bounces.
     """
     if not isinstance(source, str | Path):
-        raise Refused(f"{source!r} is no recording: give a file, a name, or Recording(…)")
+        lines = _of_columns(f"{source!r:.40}", source).splitlines()
+        return _interpreted("columns", lines, set(leave_out), intervals)
     path = Path(source)
     if str(source) in experiments():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
@@ -127,7 +148,21 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
     data = path.read_bytes()
     name = Path(source).name
     text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
+    with contextlib.suppress(json.JSONDecodeError):
+        text = _of_columns(name, json.loads(text))
     return _interpreted(name, text.splitlines(), set(leave_out), intervals)
+
+
+def _of_columns(name: str, columns: Any) -> str:
+    """Return columns by their headings as lines with tabs."""
+    try:
+        rows = zip_longest(*columns.values(), fillvalue="")
+        return "\n".join("\t".join(map(str, row)) for row in (columns, *rows))
+    except (AttributeError, TypeError):
+        raise Refused(
+            f"{name} is no recording: give a file, the name of an experiment, or columns such as "
+            "{'time (s)': [0.45, 1.17, 1.75]}"
+        ) from None
 
 
 def _decoded(name: str, data: bytes) -> str:
@@ -170,11 +205,12 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     head: dict[str, str] = {}
     body: list[tuple[int, str]] = []
     for number, line in enumerate(lines, 1):
-        found = re.match(r"\s*#\s*([\w ]+?)\s*:\s*(.*?)\s*$", line)
+        found = re.match(r"\s*#\s*([\w ]+?)\s*[:=]\s*(.*?)\s*$", line)
         if found:
-            before = head.get(found[1].lower())
-            head[found[1].lower()] = f"{before} {found[2]}" if before else found[2]
-        elif not line.lstrip().startswith("#"):
+            key = found[1].lower().replace("_", " ")
+            head[key] = f"{head[key]} {found[2]}" if key in head else found[2]
+        # Audacity has the frequencies of a label in a line that begins with a backslash.
+        elif not line.lstrip().startswith(("#", "\\")):
             body.append((number, line))
     full = [each for each in body if each[1].strip()]
     if not full:
@@ -224,16 +260,17 @@ def _table(
     ]
 
     def number(cell: str) -> float:
-        text = cell.replace("−", "-")
+        """Return a number, the seconds of mm:ss.s or hh:mm:ss.s, or NaN."""
+        text = cell.replace("−", "-").replace(",", "." if decimal_comma else ",")
         try:
-            return float(text.replace(",", ".") if decimal_comma else text)
+            return sum(float(part) * 60**i for i, part in enumerate(reversed(text.split(":"))))
         except ValueError:
             return np.nan
 
     numbers = [[number(cell) for cell in row] for row in cells]
     first = next((i for i, row in enumerate(numbers) if np.isfinite(row).any()), None)
     if first is None:
-        raise Refused(f"{name} has no line of numbers")
+        raise Refused(f"{name} has no line of numbers; {_TIMES}")
     # A row of units or headings may contain digits, but rows of numbers begin with one.
     width = max(len(row) for row in numbers[first:])
     lines = np.array([line for line, _ in body[first:]])
@@ -256,22 +293,25 @@ def _table(
 
 
 def _is_decimal(line: str) -> bool:
-    return re.fullmatch(r"\s*-?\d+,\d+\s*", line) is not None
+    return re.fullmatch(r"\s*-?[\d:]+,\d+\s*", line) is not None
 
 
 def _heading(cell: str) -> tuple[str, str]:
     """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
-    units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
+    units = "s|ms|us|µs|ns|m|cm|mm|px|m/s|cm/s|N|V"
     found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell) or re.fullmatch(
         rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell
     )
     if found is None:
         return cell, ""
-    return found[1].strip(), "" if found[2] in ("-", "–", "1") else found[2]
+    # In (mm:ss) the colon says it all.
+    return found[1].strip(), "" if found[2] in ("-", "–", "1") or ":" in found[2] else found[2]
 
 
 def _meaning(name: str, unit: str) -> str | None:
     plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
+    for word, foreign in _WORDS.items():
+        plain = re.sub(foreign, f" {word} ", plain).strip()
     found = next((each for each, pattern in _MEANINGS if plain and re.search(pattern, plain)), None)
     if found == "height" and unit.lower() in _PIXELS:
         return "position"
@@ -291,6 +331,12 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
         values = values.reshape(-1, 1)
         headings = headings[:1]
     meanings = [_meaning(*each) for each in headings]
+    if "drop" in meanings and "rebound" not in meanings:
+        # "Trial 1", "Trial 2", … beside a drop height.
+        meanings = [
+            "rebound" if each in (None, "recording") and re.search(r"\d$", heading) else each
+            for each, (heading, _) in zip(meanings, headings, strict=True)
+        ]
     if {"time", "height"} <= set(meanings):
         place = meanings.index("height")
         steps = np.diff(values[:, place])
@@ -376,14 +422,15 @@ def _measured(
         used = [of]
         if {"time", "interval"} <= have and not intervals:
             notes.append(f"the file has times and intervals: it is read by its {of}s")
-    elif {"height", "drop"} & have:
+    elif "height" in have:
         kind = "heights"
-        used = ["height" if "height" in have else "drop"]
-        chains = _falling(name, _parts(columns, used[0]), "height", "m", _HIGHEST)
+        used = ["height"]
+        chains = _falling(name, _parts(columns, "height"), "height", "m", _HIGHEST)
     else:
         raise Refused(
-            f"{name}: no bounces in {known or 'a table without headings'}: times, intervals, "
-            "heights, speeds or positions are needed"
+            f"{name}: no bounces in {known or 'a table without headings'}: write headings such as "
+            "time, interval, height, drop_height and rebound_height, speed_before and "
+            f"speed_after, speed and COR, or t and y; {_TIMES}"
         )
     if uncertainty is not None:
         uncertainty = uncertainty[np.isfinite(uncertainty)]

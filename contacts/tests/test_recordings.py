@@ -51,8 +51,8 @@ def picture(kind):
     return "\n".join(f"{t:.4f},{shown[kind](position(t)):.5f}" for t in FRAMES)
 
 
-def track(form="{:.4f},{:.5f}"):
-    return "\n".join(form.format(t, position(t)) for t in FRAMES)
+def track(form="{:.4f},{:.5f}", slow=1):
+    return "\n".join(form.format(slow * t, position(t)) for t in FRAMES)
 
 
 SPEEDS = (1.0, 2.0, 3.0, 4.0)
@@ -95,6 +95,7 @@ FILES = {
     "force plate with a row of units": "Time,Fz\ns,N\n"
     + "\n".join(f"{t:.4f},{push(t):.3f}" for t in PULSES),
     "heard, with a contact time": "# contact time: 8 ms\ntime [s]\n" + column(TOUCHES),
+    "heads as columns are written": "# Contact_time = 8 ms\ntime [s]\n" + column(TOUCHES),
     "intervals, with a contact time": "time [s],interval [s],duration [ms]\n"
     + "\n".join(f"{a},{b},8" for a, b in zip(TOUCHES[1:], FLIGHTS + CONTACT, strict=True)),
     "picture, y negative": "t,y\n" + picture("-y"),
@@ -111,6 +112,10 @@ FILES = {
     "two lines of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4\n80,53.8,36.2,",
     "two lines of times": "t1 (s),t2 (s),t3 (s)\n0.1,0.92,1.5924\n0.2,0.7,1.11",
     "several rebounds in one line": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,67.2,67.3",
+    "rebounds and their average": "drop (cm),rebound 1 (cm),rebound 2 (cm),mean rebound (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724},{h * 0.6724},{h * 0.9}" for h in (50, 75, 100, 125)),
+    "average rebounds alone": "drop (cm),average (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724}" for h in (50, 75, 100, 125)),
     "trials and their average": "Drop height (cm),Trial 1 (cm),Trial 2 (cm),Average (cm)\n"
     + "\n".join(f"{h},{h * 0.6724},{h * 0.6724},{h * 0.7}" for h in (50, 75, 100, 125)),
     "German heights": "Höhe h0 [cm];Rücksprunghöhe [cm]\n100;67,24\n80;53,79\n50;33,62",
@@ -227,6 +232,9 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("speed,COR,std (cm)\n1,0.8,0.1", "std.*does not fit"),
         ("speed,COR\n1,1.04\n2,1.041\n3,1.04\n4,1.041", "above 1 by more than its error"),
         ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
+        ("# contact time: 300 ms\ntime [s]\n" + column(TIMES), "300 ms is longer than flights are"),
+        ("# mass: 58 g\n# diameter: 6.7\ntime [s]\n" + column(TIMES), "58 g .* 6.7 m .* density"),
+        ("# mass: 58\n# diameter: 67 mm\ntime [s]\n" + column(TIMES), "is a unit missing"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
         ("v_in,v_out\n400,200\n300,200", "is it in cm/s"),
         ("speed,COR\n1,1.5", "above 1"),
@@ -284,6 +292,14 @@ def test_columns_are_read_as_those_of_a_file():
         (FILES["force plate with a row of units"], "the contact, 7.[789]"),
         # 8 ms move r by 0.0024 here.
         ("time [s]\n" + column(TOUCHES), "lower by 0.0003 for each ms that it lasts"),
+        (
+            "# radius: 33 mm\n# diametre = 67 mm\n# date: 2024-05-03\n" + FILES["times"],
+            "the head has 'radius: 33 mm', 'diametre: 67 mm', but only mass, diameter",
+        ),
+        (
+            "t (s),y (m)\n" + track(slow=8),
+            "gravity is 0.153 m/s² .* the times are 8 times the true ones",
+        ),
         ("speed,COR\n1,1.02\n2,0.98\n3,1.03\n4,0.98", "above 1 within its error"),
     ],
 )
@@ -291,6 +307,12 @@ def test_a_note_says_what_was_done(text, said, tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text(text)
     assert [note for note in fit(path).notes if re.search(said, note)]
+
+
+def test_heights_that_agree_with_gravity_are_not_remarked(tmp_path):
+    path = tmp_path / "track.csv"
+    path.write_text(FILES["track, time and height"])
+    assert not [note for note in fit(path).notes if "true ones" in note]
 
 
 def test_a_track_is_turned_only_if_it_grows_downwards(tmp_path):

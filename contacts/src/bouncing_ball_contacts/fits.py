@@ -65,8 +65,9 @@ _ALIKE = 0.8
 REJECTED = 0.005
 """A law with a smaller probability is rejected."""
 ACCEPTED = 0.05
-# Of air, in kg/m³, and the drag coefficient of a sphere.
+# Of air and osmium, in kg/m³, and the drag coefficient of a sphere.
 _AIR = 1.2
+_DENSEST = 22600.0
 _DRAG = 0.47
 _FEWEST = 3
 
@@ -155,12 +156,13 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
     Raises
     ------
     Refused
-        If a contact would last as long as a flight.
+        If a contact would last longer than half of the flights, or than two touches are apart.
     """
     chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
-    if any((chain <= 0).any() for chain in chains):
+    typical = float(np.mean(durations))
+    if any((chain <= 0).any() or typical > np.median(chain) for chain in chains if len(chain)):
         longest = show(float(durations.max()), "s")
-        raise Refused(f"contact time: {longest} is longer than the time between two impacts")
+        raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
     return replace(recording, chains=chains)
 
 
@@ -758,6 +760,13 @@ def fit(
     kilograms = None if body is None else positive("mass", body, "kg")
     wide = None if across is None else positive("diameter", across, "m")
     drag = 0.0
+    if kilograms is not None and wide is not None:
+        density = 6 * kilograms / (math.pi * wide**3)
+        if not _AIR < density < _DENSEST:
+            raise Refused(
+                f"a ball of {show(kilograms, 'kg')} with a diameter of {show(wide, 'm')} has "
+                f"a density of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
+            )
     if recording.kind in ("flights", "heights", "drops"):
         if kilograms is not None and wide is not None:
             drag = _AIR * _DRAG * math.pi * wide**2 / 8 / kilograms

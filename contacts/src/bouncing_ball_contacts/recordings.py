@@ -9,6 +9,7 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 import contextlib
 import io
 import json
+import math
 import re
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -29,6 +30,7 @@ UNITS = {
     "interval": "s",
     "drop": "m",
     "rebound": "m",
+    "average": "m",
     "height": "m",
     "in": "m/s",
     "out": "m/s",
@@ -47,6 +49,7 @@ _WORDS = {
     "before": r"\bvor\b|avant|antes|\bprima\b",
     "after": r"\bnach\b|après|después|\bdopo\b",
     "restitution": "restitu|stoßzahl",
+    "average": r"mittel(?:wert)?|moyenne|promedio|\bmedia\b",
     "time": r"\bzeit|\btemps\b|tiempo|\btempo\b",
 }
 # What a heading means: the first pattern that is found in it, in lower case and without units.
@@ -60,6 +63,7 @@ _MEANINGS = (
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
     ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
     ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
+    ("average", r"^(average|mean)$|\b(average|mean)\b.*bound|bound.*\b(average|mean)\b"),
     ("rebound", r"rebound|bounce height|\bh ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
     ("drop", r"drop|release|initial height|start height|\bh ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
@@ -74,6 +78,7 @@ _UNIT_ROW = re.compile(
     r"|s|ms|µs|us|ns|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
 _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
+_HEADS = ("mass", "diameter", "contact time", "resolution")
 _PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
@@ -86,6 +91,8 @@ _SILENCE = 0.03
 # A contact that lasts longer, in s, is not one of a ball.
 _LONGEST_CONTACT = 0.03
 _SHORTEST_TRACK = 8
+# Heights that contradict gravity by this factor are said so.
+_OFF = 2.0
 # A height that rises by this part of the range belongs to another flight.
 _RISE = 0.03
 
@@ -226,6 +233,14 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     known = ", ".join(heading for heading, _ in headings if heading)
     recording, used = _measured(name, columns, head, intervals, known)
     # Lines that were left out on purpose are known to be missing.
+    unused = [
+        f"'{key}: {value}'"
+        for key, value in head.items()
+        if not key.startswith(_HEADS) and re.fullmatch(r"[\d.,]+( ?[^\d\s-]\S*)?", value)
+    ]
+    if unused:
+        note = f"the head has {', '.join(unused)}, but only {', '.join(_HEADS)} are used"
+        recording = replace(recording, notes=(*recording.notes, note))
     has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
     gaps = sorted(set(columns["line"][has_gap]) - leave_out)
     if gaps:
@@ -350,14 +365,18 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
+        if meaning == "position" and unit in ("m", "cm", "mm"):
+            columns["metre"] = np.array(in_si(heading, f"1 {unit}", "m"))
         if unit and meaning in UNITS:
             scale = in_si(f"{name}, column {heading!r}", f"1 {unit}", UNITS[meaning])
-        elif meaning in ("drop", "rebound", "height") and np.nanmax(column) > _HIGHEST_WITHOUT_UNIT:
+        elif UNITS.get(meaning) == "m" and np.nanmax(column) > _HIGHEST_WITHOUT_UNIT:
             raise Refused(
                 f"{name}: heights up to {np.nanmax(column):g} without a unit: write it in the "
                 f"heading, as in '{heading} (cm)'"
             )
         found.setdefault(meaning, []).append(column * scale)
+    if "rebound" not in found and "average" in found:
+        found["rebound"] = found["average"]
     is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
     if alike == {""} and (is_label or values.shape[1] == 1):
         # One column, or labels with start and end.
@@ -577,15 +596,23 @@ def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
     notes = [f"{len(meetings)} impacts were found where flights meet; gravity is the scale."]
     if meetings is downwards[0]:
         notes.append("the positions grow downwards, as in a picture: they were turned")
-    at, before, after = np.array(meetings).T
+    at, before, after, scale = np.array(meetings).T
+    if "metre" in columns:
+        ratio = float(np.median(scale) / columns["metre"])
+        if not 1 / _OFF < ratio < _OFF:
+            notes.append(
+                f"gravity is {STANDARD_GRAVITY / ratio:.3g} m/s² by the heights and times: the "
+                f"times are {math.sqrt(ratio):.2g} times the true ones, as in slow motion, and so "
+                "are the speeds, or the heights have another unit"
+            )
     impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
     return _pairs(name, impacts, ("in", "out"), "m/s"), notes
 
 
-def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float]:
-    """Return frame, speeds before and after of each impact, and the misfit of the parabolas.
+def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float, float]], float]:
+    """Return frame, speeds before and after, and scale of each impact, and the parabolas' misfit.
 
-    Two neighbouring flights have one curvature, which is that of gravity and gives the scale.
+    Two neighbouring flights have one curvature, which is that of gravity and gives the scale in m.
     """
     from scipy.signal import find_peaks
 
@@ -612,7 +639,8 @@ def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float
         a, c1, b1, c2, b2 = best
         meet = (c1 - c2) / (b2 - b1)
         scale = STANDARD_GRAVITY / (-2 * a)
-        found.append((impact, -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale))
+        speeds = -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale
+        found.append((impact, *speeds, scale))
     return found, squares / free if free else np.inf
 
 

@@ -131,10 +131,47 @@ FILES = {
     "labels of Audacity with frequencies": "\n".join(
         f"{t:.6f}\t{t + 0.004:.6f}\tbounce\n\\\t200.0\t3000.0" for t in TIMES
     ),
+    "three balls side by side": "time 1 (s),time 2 (s),time 3 (s)\n"
+    + "\n".join(f"{t},{0.9 * t},{0.8 * t}" for t in TIMES),
+    "two balls side by side": "interval 1 (s),interval 2 (s)\n"
+    + "\n".join(f"{t},{1.1 * t}" for t in FLIGHTS),
+    "recordings with names": "ball,time (s)\n"
+    + "\n".join(f"{name},{shift + t}" for name, shift in (("A", 5), ("B", 0)) for t in TIMES),
+    "decimal commas in quotes": "h0 (cm),h1 (cm)\n"
+    + "\n".join(f'"{h:.2f}","{h * 0.6724:.2f}"' for h in (50, 75, 100, 125)).replace(".", ","),
+    "a text with a comma": "note,h0 (cm),h1 (cm)\n"
+    + "\n".join(f'"ball, old",{h},{h * 0.6724}' for h in (50, 75, 100, 125)),
     "JSON": json.dumps({"interval_ms": list(1000 * FLIGHTS)}),
     "coefficients in per cent": "speed (m/s),COR (%)\n" + "\n".join(f"{v},82" for v in SPEEDS),
     "coefficients without unit": "speed (m/s),e (-)\n" + "\n".join(f"{v},0.82" for v in SPEEDS),
 }
+
+
+PAIRS = """
+Height before,Height after | drop,bounce | initial height,final height | dropped,bounced
+height dropped,height bounced
+start height,end height | drop height,max height | h,h' | hi,hf | height,rebound | height,bounce
+dropped from,bounced to | release height,bounce height | height before,bounce | h0,height
+"""
+
+
+@pytest.mark.parametrize("heading", [each.strip() for each in re.split(r"\||\n", PAIRS.strip())])
+def test_two_heights_are_a_drop_and_its_rebound(heading, tmp_path):
+    """They were taken for tops of one ball, of which the other column was dropped."""
+    path = tmp_path / "pairs.csv"
+    for unit, scale in ((" (cm)", 100), ("", 1)):
+        lines = [f"{scale * h},{scale * h * 0.64}" for h in (1.0, 0.8, 0.6)]
+        path.write_text(heading.replace(",", f"{unit},") + f"{unit}\n" + "\n".join(lines))
+        found = fit(path)
+        assert (found.recording.kind, len(found.impacts.speed)) == ("drops", 3)
+        assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.parametrize("heading", ["Vi (m/s),Vf (m/s)", "initial speed,final speed", "v0,vf"])
+def test_two_speeds_are_those_before_and_after(heading, tmp_path):
+    path = tmp_path / "speeds.csv"
+    path.write_text(heading + "\n1,0.8\n2,1.6\n3,2.4")
+    assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", FILES)
@@ -218,7 +255,13 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("[0.45, 1.17, 1.75]", "recording.csv is no recording: .* or columns such as {'time"),
         ("h0,h1\n50,33\n75,50", "without a unit"),
         ("h0 [bananas],h1 [m]\n50,33", "bananas"),
-        ("interval [s]\n812\n707", "is it in ms"),
+        ("time\n812\n1707\n2200", r"is it in ms\? write \(ms\) behind the heading"),
+        ("height A,height B\n1,0.8\n0.64,0.5", "two columns are both taken as height"),
+        ("height 1,height 2\n1,0.8\n0.64,0.5", "each line or each column may be a recording"),
+        ("drop height,time\n1,1.1\n0.8,1\n0.7,0.9", "no bounces in drop height, time: write"),
+        ("drop height (cm),COR\n20,0.8\n30,0.79", "no bounces in drop height, COR: .* COR"),
+        ('h0 (mm),h1 (mm)\n"1,000","640"', "'1,000' may have thousands or decimals"),
+        ("time\n1\n1.7\n2.2\n0.3\n1.2\n1.8", "sort the lines, or leave an empty line where"),
         ("interval [s]\n0.5\n0.7\n0.6", "follows one of"),
         ("interval [s]\n0.5\n-0.4", "not positive"),
         ("height [m]\n0.5\n0.7\n0.6", "follows one of"),

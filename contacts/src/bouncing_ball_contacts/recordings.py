@@ -7,6 +7,7 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 """
 
 import contextlib
+import csv
 import io
 import json
 import math
@@ -61,11 +62,14 @@ _MEANINGS = (
     ("out", r"\b(v|speed|velocity)\b.*\b(out|after|rebound|up|2)\b|^(u|v2|v')$"),
     ("out", r"(rebound|outgoing|rising|exit)\b.*\b(speed|velocity)"),
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
-    ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
+    ("out", r"^v ?f$|final\b.*\b(speed|velocity)"),
+    ("in", r"^v ?[0i]$|(impact|incoming|falling|initial)\b.*\b(speed|velocity)"),
     ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
     ("average", r"^(average|mean)$|\b(average|mean)\b.*bound|bound.*\b(average|mean)\b"),
-    ("rebound", r"rebound|bounce height|\bh ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
-    ("drop", r"drop|release|initial height|start height|\bh ?(0|before|in|i)\b"),
+    ("rebound", r"rebound|bounce height|bounced|\bh ?([1-9]\d*|after|out|r|f)\b|^h ?['′]"),
+    ("rebound", r"height.*\b(after|end|final|reached)|^(after|end|final|max\w*)\b.*height"),
+    ("drop", r"drop|release|^(initial|start)\b.*height|height.*\b(before|initial|start)"),
+    ("drop", r"\bh ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
     ("recording", r"recording|^run\b|trial|series|ball\b"),
     ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
@@ -77,8 +81,13 @@ _MEANINGS = (
 _UNIT_ROW = re.compile(
     r"|s|ms|µs|us|ns|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
+_SUGGESTED = (
+    "write headings such as time, interval, height, drop_height and rebound_height, "
+    "speed_before and speed_after, speed and COR, or t and y"
+)
 _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
 _HEADS = ("mass", "diameter", "contact time", "resolution")
+_LENGTHS = ("m", "cm", "mm")
 _PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
@@ -269,14 +278,19 @@ def _table(
     is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
     if is_column:
         delimiter = "\0"
-    cells = [
-        [cell.strip().strip('"').strip() for cell in line.rstrip("\n").split(delimiter)]
+    rows = (
+        next(csv.reader([line], delimiter=delimiter)) if delimiter and line else line.split()
         for _, line in body
-    ]
+    )
+    cells = [[cell.strip().strip('"').strip() for cell in row] for row in rows]
 
     def number(cell: str) -> float:
         """Return a number, the seconds of mm:ss.s or hh:mm:ss.s, or NaN."""
-        text = cell.replace("−", "-").replace(",", "." if decimal_comma else ",")
+        if delimiter == "," and re.fullmatch(r"[1-9]\d{0,2},\d{3}", cell):
+            raise Refused(
+                f"{name}: {cell!r} may have thousands or decimals: write it without a comma"
+            )
+        text = cell.replace("−", "-").replace(",", ".")
         try:
             return sum(float(part) * 60**i for i, part in enumerate(reversed(text.split(":"))))
         except ValueError:
@@ -304,6 +318,11 @@ def _table(
             headings = [(old[0], unit) for old, unit in zip(headings, units, strict=True)]
         else:
             headings = [_heading(cell) for cell in each]
+    for place, heading in enumerate(headings):
+        if _meaning(*heading) == "recording" and not np.isfinite(values[:, place]).any():
+            # Recordings may have names.
+            recordings = [(row + [""] * width)[place] for row in cells[first:]]
+            values[:, place] = [recordings.index(each) for each in recordings]
     return values, lines, headings
 
 
@@ -339,19 +358,36 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
     alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
     first = _meaning(*headings[0])
     is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
-    if len(headings) > 2 and len(alike) == 1 and is_series:
-        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …
+    if len(headings) > 1 and len(alike) == 1 and is_series:
+        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …, or each column is.
+        later = -values if first in ("interval", "height") else values
+        by_line, by_column = (not (np.diff(later, axis=axis) <= 0).any() for axis in (1, 0))
+        if by_line and by_column and len(values) > 1:
+            raise Refused(
+                f"{name}: each line or each column may be a recording: write one below the other "
+                "with an empty line between"
+            )
+        number = np.zeros_like(values) + np.arange(len(headings))
+        if not by_column or len(values) == 1:
+            number = np.zeros_like(values) + line[:, None]
+        columns["recording"] = number.ravel()
         line = np.repeat(line, len(headings))
-        columns["recording"] = line
         values = values.reshape(-1, 1)
         headings = headings[:1]
     meanings = [_meaning(*each) for each in headings]
+    # "Bounce" is a number of a bounce, or its height.
+    meanings = [
+        "rebound" if each == "count" and (unit in _LENGTHS or np.any(column % 1 > 0)) else each
+        for each, (_, unit), column in zip(meanings, headings, values.T, strict=True)
+    ]
     if "drop" in meanings and "rebound" not in meanings:
         # "Trial 1", "Trial 2", … beside a drop height.
         meanings = [
             "rebound" if each in (None, "recording") and re.search(r"\d$", heading) else each
             for each, (heading, _) in zip(meanings, headings, strict=True)
         ]
+    if meanings.count("height") == 1 and len(of_pair := {"drop", "rebound"} & set(meanings)) == 1:
+        meanings[meanings.index("height")] = ({"drop", "rebound"} - of_pair).pop()
     if {"time", "height"} <= set(meanings):
         place = meanings.index("height")
         steps = np.diff(values[:, place])
@@ -365,7 +401,7 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
-        if meaning == "position" and unit in ("m", "cm", "mm"):
+        if meaning == "position" and unit in _LENGTHS:
             columns["metre"] = np.array(in_si(heading, f"1 {unit}", "m"))
         if unit and meaning in UNITS:
             scale = in_si(f"{name}, column {heading!r}", f"1 {unit}", UNITS[meaning])
@@ -375,6 +411,9 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
                 f"heading, as in '{heading} (cm)'"
             )
         found.setdefault(meaning, []).append(column * scale)
+    for meaning in ("interval", "height", "drop", "in", "out"):
+        if len(found.get(meaning, [])) > 1:
+            raise Refused(f"{name}: two columns are both taken as {meaning}: {_SUGGESTED}")
     if "rebound" not in found and "average" in found:
         found["rebound"] = found["average"]
     is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
@@ -417,6 +456,8 @@ def _measured(
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
         columns[speed] = np.abs(columns[speed])
+    # One half of a pair is no series.
+    alone = {"drop", "rebound", "in", "out"} & have
     pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
     if intervals and not {"time", "interval"} & have:
         raise Refused(f"{name} has no column of intervals")
@@ -435,21 +476,19 @@ def _measured(
         touches, durations = _touches(name, columns, used[1])
         chains = [np.diff(touches)]
         notes.append(f"{len(touches)} impacts were found in the signal")
-    elif {"time", "interval"} & have:
+    elif {"time", "interval"} & have and not alone:
         kind = "flights"
         chains, of = _flights(name, columns, intervals)
         used = [of]
         if {"time", "interval"} <= have and not intervals:
             notes.append(f"the file has times and intervals: it is read by its {of}s")
-    elif "height" in have:
+    elif "height" in have and not alone:
         kind = "heights"
         used = ["height"]
         chains = _falling(name, _parts(columns, "height"), "height", "m", _HIGHEST)
     else:
         raise Refused(
-            f"{name}: no bounces in {known or 'a table without headings'}: write headings such as "
-            "time, interval, height, drop_height and rebound_height, speed_before and "
-            f"speed_after, speed and COR, or t and y; {_TIMES}"
+            f"{name}: no bounces in {known or 'a table without headings'}: {_SUGGESTED}; {_TIMES}"
         )
     if uncertainty is not None:
         uncertainty = uncertainty[np.isfinite(uncertainty)]
@@ -534,7 +573,10 @@ def _flights(name: str, columns: dict[str, Array], intervals: bool) -> tuple[lis
 
 
 def _unsorted(name: str, line: float) -> Refused:
-    return Refused(f"{name}, line {line:.0f}: the time is not after the one before: sort the lines")
+    return Refused(
+        f"{name}, line {line:.0f}: the time is not after the one before: sort the lines, or leave "
+        "an empty line where another recording begins"
+    )
 
 
 def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> list[Array]:
@@ -547,10 +589,7 @@ def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> lis
                 raise Refused(f"{found} is not positive")
             if value > most:
                 small = "ms" if unit == "s" else "cm"
-                raise Refused(
-                    f"{found}: is it in {small}? write the unit in the heading, as in '{what} "
-                    f"({small})'"
-                )
+                raise Refused(f"{found}: is it in {small}? write ({small}) behind the heading")
             if value > _LONGER * last:
                 raise Refused(
                     f"{found} follows one of {last:.4g} {unit}: an impact is missing, or another "

@@ -22,7 +22,6 @@ from bouncing_ball_contacts.fits import (
     LAWS,
     G,
     curves_of,
-    errors_of,
     estimates,
     impacts_of,
     judge,
@@ -257,6 +256,25 @@ KINDS = [
         VISCOELASTIC,
         partial(speeds, v=np.linspace(1, 4, 4), error=0.02, scatter=0),
     ),
+    (
+        "4 impacts heard, 0.1 ms, scatter 0.02",
+        partial(FLAT, 0.7),
+        CONSTANT,
+        partial(flights, impacts=4, error=1e-4, scatter=0.02, start=4.2),
+    ),
+    (
+        "9 impacts filmed, times rounded to 1/120 s, scatter 0.007",
+        partial(SOFT, 0.82),
+        VISCOELASTIC,
+        partial(rounded, impacts=9, digits=1 / 120, scatter=0.007),
+    ),
+    (
+        "9 impacts filmed, times rounded to 1/120 s, scatter 0.007, resolution stated",
+        partial(SOFT, 0.82),
+        VISCOELASTIC,
+        partial(rounded, impacts=9, digits=1 / 120, scatter=0.007),
+        1 / 120 / math.sqrt(12),
+    ),
 ]
 
 
@@ -283,8 +301,8 @@ def study(kind, recordings, seed):
         impacts = impacts_of(recording)
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))
-        curves = curves_of(impacts, errors_of(impacts, known), at)
-        scattering, still = estimates(impacts, curves, known is not None)
+        curves = curves_of(impacts, known, at)
+        scattering, still = estimates(impacts, curves)
         found = scattering if make.keywords["scatter"] or still is None else still
         truth = math.log(float(np.squeeze(r(at))))
         held += found.low <= truth <= found.high
@@ -293,7 +311,7 @@ def study(kind, recordings, seed):
         error = make.keywords.get("error", make.keywords.get("digits", 0.0) / math.sqrt(12))
         best.append(ideal(impacts, error, make.keywords["scatter"], at))
         if law is not None:
-            judged = judge(impacts, curves, at, known is not None)
+            judged = judge(impacts, curves, at)
             rejected += any(each.law == law and each.probability < 0.005 for each in judged)
     e = math.exp(truth)
     spread = np.quantile(missed, 0.95)
@@ -351,8 +369,8 @@ def both(recordings):
         for _ in range(recordings):
             impacts = impacts_of(make(rng, r))
             at = math.exp(float(np.mean(np.log(impacts.speed))))
-            curves = curves_of(impacts, errors_of(impacts, known), at)
-            scattering, still = estimates(impacts, curves, known is not None)
+            curves = curves_of(impacts, known, at)
+            scattering, still = estimates(impacts, curves)
             truth = math.log(float(np.squeeze(r(at))))
             first.append(scattering.low <= truth <= scattering.high)
             if still is not None:

@@ -149,7 +149,8 @@ MISTAKES = {
     f"{MUJOCO} solreff=0.02": "did you mean solref",
     f"{MUJOCO} kn=1": "it has solref, solimp, refsafe",
     f"{PYBULLET} contactStiffness=1e4": "give both",
-    f"{PYBULLET} contactStiffness='1e4 N/m' contactDamping=1": "write a plain number as in '0.8'",
+    f"{PYBULLET} contactStiffness='1e4 kg' contactDamping=1": "write it as in '100 kN/m'",
+    f"{PYBULLET} restitution='0.8 m'": "write a number without a unit as in '0.8'",
     "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
     "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake-hunt-crossley has it",
@@ -167,6 +168,7 @@ MISTAKES = {
     "fit croquet --speed 0": "not positive",
     "fit croquet --leave-out one": "numbers of lines",
     "fit croquet --time-step 1ms": "--time-step needs an engine",
+    "fit croquet --tolerance 0.1": "--tolerance needs an engine",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",

@@ -1,5 +1,6 @@
 """What parameters do, why, and the least change."""
 
+import functools
 import math
 
 import pytest
@@ -8,6 +9,11 @@ from bouncing_ball_contacts import Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM, UNDISTURBED
 
 KILO = dict(mass="1 kg", radius="10 cm")
+
+
+@functools.cache
+def designed(engine):
+    return design(Bounce(**KILO, restitution=0.7), engine)
 
 
 def asked(wanted, engine, parameters, step, **more):
@@ -35,7 +41,7 @@ def asked(wanted, engine, parameters, step, **more):
     ],
 )
 def test_a_design_is_diagnosed_as_it_was_designed(engine):
-    found = design(Bounce(**KILO, restitution=0.7), engine)
+    found = designed(engine)
     again = asked(0.7, engine, found.parameters, found.row.step)
     assert again.outcome == found.row.outcome
     assert again.change is None
@@ -43,7 +49,7 @@ def test_a_design_is_diagnosed_as_it_was_designed(engine):
 
 @pytest.mark.parametrize("engine", ["simscape", "adams"])
 def test_a_solver_with_error_control_needs_no_step(engine):
-    found = design(Bounce(**KILO, restitution=0.7), engine)
+    found = designed(engine)
     again = asked(0.7, engine, found.parameters, None)
     assert again.outcome.restitution[1] == pytest.approx(0.7, abs=0.005)
 
@@ -257,7 +263,7 @@ def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
     ],
 )
 def test_names_are_known_as_the_snippet_writes_them(engine, names):
-    found = design(Bounce(**KILO, restitution=0.7), engine)
+    found = designed(engine)
     assert all(name in found.snippet for name in names)
     typed = dict(zip(names, found.parameters.values(), strict=True))
     step = None if engine in ("simscape", "adams") else found.row.step
@@ -285,6 +291,17 @@ def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
     assert found.outcome.rest == pytest.approx(24.5e-3, abs=1e-4)
     both = asked(None, "pybullet", {"contactStiffness": 100, "contactDamping": 1}, "1/240")
     assert both.outcome.rest == pytest.approx(196e-3, abs=1e-3)
+
+
+def test_parameters_may_have_units():
+    with_units = {
+        "contactStiffness": "20 kN/m",
+        "contactDamping": "10 N s/m",
+        "contactSlop": "1 mm",
+    }
+    plain = {"contactStiffness": 2e4, "contactDamping": 10, "contactSlop": 1e-3}
+    found = asked(None, "pybullet", with_units, "1 ms")
+    assert found.given == pytest.approx(plain)
 
 
 @pytest.mark.parametrize("rule", [SERIES, SUM, MEAN, PRODUCT, PAIR], ids=lambda rule: rule.text)

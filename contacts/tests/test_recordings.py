@@ -268,7 +268,7 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("height [m]\n500\n300\n200", "is it in cm"),
         ("time [s]\n0.1\n0.9\n1.5\n1.2\n2", "line 5: the time is not after .* sort"),
         ("t,y\n" + "\n".join(reversed(track().split("\n"))), "line 3: the time .* sort"),
-        ("interval [s]\n0.5\n0.4\n\n0.45", "line 5: a flight of 0.45 s follows one of 0.4 s"),
+        ("interval [s]\n0.5\n0.4\n#\n0.45", "line 5: a flight of 0.45 s follows one of 0.4 s"),
         ("time,height\n0.1,0.5\n0.2,0.7\n0.3,0.6", "a track of 3 positions is too short"),
         ("height [cm]\n50\n-4", "line 3: a height of -0.04 m is not positive"),
         ("speed,COR\n1,81", "line 2: .* per cent"),
@@ -392,3 +392,18 @@ def test_a_contact_time_is_taken_off_flights(tmp_path):
     found = next(note for note in as_heard.notes if "each ms" in note)
     slope = float(re.search(r"lower by (\S+)", found)[1])
     assert (as_heard.restitution - 0.82) / 8 == pytest.approx(slope, rel=0.2)
+
+
+def test_an_empty_line_divides_a_series(tmp_path):
+    """Flights on both sides of it were compared."""
+    path = tmp_path / "two.csv"
+    path.write_text("time [s]\n\n0.1\n0.9\n1.5\n\n0.2\n1.0\n1.6\n\n")
+    found = read(path)
+    assert [list(chain) for chain in found.chains] == [pytest.approx([0.8, 0.6])] * 2
+    assert found.notes == (
+        "a number is missing in line 6, which is left out and divides the series",
+    )
+    # An empty line after each line is a way to write files.
+    path.write_text("time [s]\n\n0.1\n\n0.9\n\n1.5\n\n1.95\n\n")
+    assert list(read(path).chains[0]) == pytest.approx([0.8, 0.6, 0.45])
+    assert not read(path).notes

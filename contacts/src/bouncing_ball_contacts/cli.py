@@ -53,23 +53,17 @@ _ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps 
 _JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
 
 
-class _Examples(click.Group):
-    """A group whose help shows examples as they are typed."""
-
-    def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        formatter.write(
-            """
+_EXAMPLES = """\b
 Examples:
   bounce design --mass "50 g" --restitution 0.8 --time-step "2 ms" --engine mujoco
   bounce diagnose --engine mujoco solref="0.02 1" --mass "50 g" --time-step "2 ms" --restitution 0.8
   bounce fit croquet --engine pybullet --time-step 1/240
   bounce engines
 """
-        )
 
 
 @click.group(
-    cls=_Examples,
+    epilog=_EXAMPLES,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )

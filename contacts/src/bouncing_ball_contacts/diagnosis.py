@@ -297,7 +297,7 @@ def diagnose(
     law = pair.law(step)
     outcome = problem.outcome(law, step)
     limit = free = outcome.restitution[1]
-    if not _is_number(law):
+    if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
         free = float(_without_gravity(problem).drops(law, short).mean)
@@ -350,10 +350,6 @@ class _Pair:
         return float(self.problem.drops(self.law(step), step).mean)
 
 
-def _is_number(law: Law) -> bool:
-    return isinstance(law, Solved) and law.is_number
-
-
 def _without_gravity(problem: Problem) -> Problem:
     # A second free body so heavy that it does not move.
     bounce = problem.bounce
@@ -369,7 +365,7 @@ def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     if isinstance(law, Impedance):
         k = law.high**2 * law.points * float(law.stiffness)
         c = law.high * law.points * float(law.damping)
-    elif isinstance(law, Linear) or isinstance(law, Solved) and not law.is_number:
+    elif isinstance(law, Linear | Solved) and not law.is_number:
         k = float(law.stiffness)
         c = float(law.damping)
     else:
@@ -478,7 +474,7 @@ def _another(pair: _Pair, step: float) -> str:
     """Return what has r at this step if no damping of the given contact has it."""
     problem = pair.problem
     engine = problem.engine
-    is_number = _is_number(pair.law(step))
+    is_number = pair.law(step).is_number
     what = engine.number if is_number else "damping of this contact"
     text = f"no {what} keeps r within {TOLERANCE:g} at this step"
     if isinstance(engine.scheme, Implicit) and not is_number:
@@ -503,8 +499,11 @@ def _another(pair: _Pair, step: float) -> str:
 def _least_change(pair: _Pair, step: float) -> Change | None:
     """Return the damping with the wanted r, at this step or at the longest shorter one."""
     problem = pair.problem
-    if _is_number(pair.law(step)):
+    law = pair.law(step)
+    if law.is_number:
         return _damping(pair, step, problem.engine.number)
+    if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
+        return None
     for halvings in range(7):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:

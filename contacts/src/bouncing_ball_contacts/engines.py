@@ -26,10 +26,7 @@ from bouncing_ball_contacts.schemes import (
     Implicit,
     Law,
     Linear,
-    OfSolver,
-    Scheme,
     SemiImplicit,
-    Solved,
     Stepped,
 )
 from bouncing_ball_contacts.units import Refused
@@ -174,10 +171,6 @@ class Engine:
                 )
         return values
 
-    def scheme_of(self, law: Law) -> Scheme:
-        """Return the scheme of a law."""
-        return OfSolver() if isinstance(law, Solved) else self.scheme
-
     @property
     def steps(self) -> str:
         """The scheme in a few words."""
@@ -264,17 +257,9 @@ def _solimp(values: Any) -> tuple[float, ...]:
     given = [float(value) for value in np.atleast_1d(values)]
     low, high, width, middle, power = given + [0.9, 0.95, 0.001, 0.5, 2.0][len(given) :]
 
-    def within_bounds(share: float) -> float:
-        # MuJoCo keeps impedances and the middle within these bounds.
-        return min(max(share, LEAST_IMPEDANCE), 1 - LEAST_IMPEDANCE)
-
-    return (
-        within_bounds(low),
-        within_bounds(high),
-        max(width, 1e-15),
-        within_bounds(middle),
-        max(power, 1.0),
-    )
+    # MuJoCo keeps impedances and the middle within these bounds.
+    low, high, middle = np.clip([low, high, middle], LEAST_IMPEDANCE, 1 - LEAST_IMPEDANCE)
+    return float(low), float(high), max(width, 1e-15), float(middle), max(power, 1.0)
 
 
 def _read_mujoco(p: Parameters, at: Setting) -> Law:

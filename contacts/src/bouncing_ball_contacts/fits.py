@@ -10,15 +10,17 @@ of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and 
 that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
 slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
 enters the flights on both of its sides. φ is the share of the scatter between impacts in the
-variance of ln r; its size σ has a log-normal prior about 0.006, which is wide. If the errors of the
-readings are given, σ² (1 - φ) is known.
+variance of ln r, so that scatter has the size σ √φ and errors of readings σ √(1 - φ). Both sizes
+have log-normal priors with a factor of 7 either way. That of scatter is about 0.011, the middle of
+the published experiments (0.0004 to 0.04); that of errors about what instruments have, 1 ms, 2 mm
+or 0.02 m/s. If the errors of the readings are given, σ² (1 - φ) is known.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
-scatter, and for weights of φ that are proportional to φ, if they do. The first one is left out if
-the impacts contradict it or if both are alike. The impacts contradict it if a test of φ = 0 rejects
-it at 5 %. Its statistic is Q(0)/σ², which has the χ² distribution, if the errors are known, and
-Q(0)/Q(1) otherwise, where Q(φ) is the sum of squares that a power of the speed leaves.
+scatter, and for all other φ, if they do. The first one is left out if the impacts contradict it or
+if both are alike. The impacts contradict it if a test of φ = 0 rejects it at 5 %. Its statistic is
+Q(0)/σ², which has the χ² distribution, if the errors are known, and Q(0)/Q(1) otherwise, where Q(φ)
+is the sum of squares that a power of the speed leaves.
 
 A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
 distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
@@ -37,6 +39,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import linalg, optimize, special
 from scipy.optimize import elementwise
 
@@ -48,12 +51,13 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, sh
 G = STANDARD_GRAVITY
 _SLOPE = 0.25
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
-# φ for unknown and for given errors of the readings.
-_SHARES = np.array([0.0, 0.01, 0.05, 0.2, 0.5, 1.0])
-_SHARES_GIVEN = np.array([0.0, 0.05, 0.2, 0.5, 0.8, 0.94, 0.985])
-# σ, with the middle and the width of the prior of ln σ.
-_SIZE = 0.006
-_SIZE_WIDTH = 2.0
+# φ: none, and evenly in ln(φ/(1 - φ)), so that sizes of scatter and errors are even in logarithms.
+_SHARES = np.concatenate([[0.0], special.expit(np.arange(-6.0, 7.0, 2.0))])
+# Usual sizes of scatter in ln r and of errors of readings, and the width of the priors of both in
+# their logarithms: a factor of 7 either way.
+_SCATTER = 0.011
+_USUAL = {"flights": 1e-3, "heights": 2e-3, "drops": 2e-3, "speeds": 0.02, "coefficients": 0.011}
+_WIDTH = 2.0
 _LEAST, _MOST = 1e-5, 0.5
 _LEVEL = 0.95
 # What is less likely than this, compared with something else, is left out.
@@ -77,12 +81,13 @@ class Impacts:
     """Impacts of a recording.
 
     ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
-    heights in m, speeds in m/s, or r).
+    heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
     """
 
     speed: Array
     log_r: Array
     readings: Array
+    usual: float
 
     @property
     def restitution(self) -> Array:
@@ -147,7 +152,8 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
                       "heights are needed")  # fmt: skip
     speeds, logs, blocks = zip(*parts, strict=True)
-    return Impacts(np.concatenate(speeds), np.concatenate(logs), linalg.block_diag(*blocks))
+    readings = linalg.block_diag(*blocks)
+    return Impacts(np.concatenate(speeds), np.concatenate(logs), readings, _USUAL[recording.kind])
 
 
 def without_contacts(recording: Recording, durations: Array) -> Recording:
@@ -167,69 +173,28 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
 
 
 @dataclass(frozen=True)
-class Errors:
-    """Covariances σ² V of ln r by shares and sizes: V (share, n, n), σ (share, size).
+class Curves:
+    """The smooth curves of a recording about a speed, by share φ, exponent q and size σ.
 
-    ``shares`` are the φ, and ``size_prior`` (share, size) has logarithms of weights.
+    ``shapes`` are the V of covariances σ² V of ln r (share, n, n), ``sizes`` the σ (share, size);
+    ``columns`` are those of β and s at the impacts (exponent, 2, n), ``project`` is XᵀV⁻¹,
+    ``spread`` the covariance of β and s, ``log_weight`` what the posterior has besides squares.
+    ``is_known`` says whether the errors of readings are given.
     """
 
-    shares: Array
+    is_known: bool
     shapes: Array
     sizes: Array
-    size_prior: Array
-
-
-def errors_of(impacts: Impacts, known: float | Array | None) -> Errors:
-    """Return the covariances that a recording may have.
-
-    ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
-    """
-    n = len(impacts.log_r)
-    of_readings = impacts.readings @ impacts.readings.T
-    if isinstance(known, np.ndarray):
-        of_readings = np.diag((known / impacts.restitution) ** 2)
-    unit = float(np.median(np.diag(of_readings)))
-    shares = _SHARES if known is None else _SHARES_GIVEN
-    share = shares[:, None, None]
-    shapes = (1 - share) * of_readings / unit + share * np.eye(n)
-    # Contributions below 10⁻⁴ of σ keep the covariances regular.
-    shapes = shapes + 1e-9 * np.eye(n)
-    if known is None:
-        # ln σ is known to about 1/√(2n), which the grid resolves.
-        size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
-        sizes = np.tile(size, (len(shares), 1))
-        prior = -0.5 * (np.log(sizes / _SIZE) / _SIZE_WIDTH) ** 2
-        return Errors(shares, shapes, sizes, prior)
-    given = 1.0 if isinstance(known, np.ndarray) else known
-    sizes = given * math.sqrt(unit) / np.sqrt(1 - shares)[:, None]
-    return Errors(shares, shapes, sizes, np.zeros_like(sizes))
-
-
-@dataclass(frozen=True)
-class Curves:
-    """The smooth curves of a recording, by share, exponent and size, at a speed.
-
-    ``columns`` are those of β and s at the impacts (exponent, 2, n), ``project`` is XᵀV⁻¹,
-    ``spread`` the covariance of β and s, ``log_weight`` what the likelihood has besides squares.
-    """
-
-    errors: Errors
     columns: Array
-    whiten: Array
     project: Array
     spread: Array
     log_weight: Array
 
-    @property
-    def deviation(self) -> Array:
-        """The standard deviation of β."""
-        return np.sqrt(self.spread[..., 0, 0])
-
     def posterior(self, y: Array) -> tuple[Array, Array, Array]:
-        """Return weights of sum 1, β and s for ln r of a recording; all shares are alike."""
+        """Return weights of sum 1, β and s for ln r of a recording."""
         normal = self.project @ y
-        squares = np.sum((self.whiten @ y) ** 2, axis=1)
-        variance = self.errors.sizes[:, None, :] ** 2
+        squares = y @ np.linalg.solve(self.shapes, y[:, None])[..., 0].T
+        variance = self.sizes[:, None, :] ** 2
         best = (self.spread @ normal[:, :, None, :, None])[..., 0] / variance[..., None]
         explained = np.sum(best * normal[:, :, None], axis=-1)
         logs = self.log_weight - (squares[:, None, None] - explained) / (2 * variance)
@@ -237,23 +202,45 @@ class Curves:
         return weights / weights.sum(), best[..., 0], best[..., 1]
 
 
-def curves_of(impacts: Impacts, errors: Errors, at: float) -> Curves:
-    """Return the smooth curves about a speed in m/s."""
+def curves_of(impacts: Impacts, known: float | Array | None, at: float) -> Curves:
+    """Return the smooth curves about a speed in m/s.
+
+    ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
+    """
+
+    def log_prior(size: Array) -> Array:
+        return -0.5 * (np.log(size) / _WIDTH) ** 2
+
     n = len(impacts.log_r)
-    x = np.log(impacts.speed / at)
+    of_readings = impacts.readings @ impacts.readings.T
+    if isinstance(known, np.ndarray):
+        of_readings = np.diag((known / impacts.restitution) ** 2)
+    unit = float(np.median(np.diag(of_readings)))
+    share = _SHARES[:, None, None]
+    # Contributions below 10⁻⁴ of σ keep the covariances regular.
+    shapes = (1 - share) * of_readings / unit + (share + 1e-9) * np.eye(n)
+    still = np.sqrt(1 - _SHARES)[:, None]
+    if known is None:
+        # ln σ is known to about 1/√(2n), which the grid resolves.
+        size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
+        sizes = np.tile(size, (len(_SHARES), 1))
+        logs = log_prior(sizes * still / (impacts.usual * math.sqrt(unit)))
+    else:
+        sizes = (1.0 if isinstance(known, np.ndarray) else known) * math.sqrt(unit) / still
+        logs = np.zeros_like(sizes)
+    logs[1:] += log_prior(sizes[1:] * np.sqrt(_SHARES[1:])[:, None] / _SCATTER)
+    logs -= 0.5 * np.linalg.slogdet(shapes)[1][:, None] + n * np.log(sizes)
     q = _EXPONENTS[:, None]
-    columns = np.stack([np.ones((len(q), n)), np.expm1(q * x) / q], axis=1)
-    inverse = np.linalg.inv(errors.shapes)
-    project = columns @ inverse[:, None]
+    columns = np.stack([np.ones((len(q), n)), np.expm1(q * np.log(impacts.speed / at)) / q], axis=1)
+    project = columns @ np.linalg.inv(shapes)[:, None]
     information = project @ np.swapaxes(columns, 1, 2)
     prior = np.diag([0.0, _SLOPE**-2])
-    precision = information[:, :, None] / errors.sizes[:, None, :, None, None] ** 2 + prior
-    determinants = np.linalg.slogdet(errors.shapes)[1]
-    logs = errors.size_prior - 0.5 * determinants[:, None] - n * np.log(errors.sizes)
+    precision = information[:, :, None] / sizes[:, None, :, None, None] ** 2 + prior
     return Curves(
-        errors=errors,
+        is_known=known is not None,
+        shapes=shapes,
+        sizes=sizes,
         columns=columns,
-        whiten=np.linalg.inv(np.linalg.cholesky(errors.shapes)),
         project=project,
         spread=np.linalg.inv(precision),
         log_weight=logs[:, None] - 0.5 * np.linalg.slogdet(precision)[1],
@@ -270,18 +257,19 @@ class Estimate:
     slope: float
 
 
-def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
-    """Return what a recording says if its shares have these weights."""
+def _estimate(curves: Curves, y: Array, possible: NDArray[np.bool_]) -> Estimate:
+    """Return what a recording says if only these shares are possible."""
     middle = float(np.mean(y))
     weights, beta, slope = curves.posterior(y - middle)
-    weights = weights * by_share[:, None, None]
+    weights = weights * possible[:, None, None]
     weights = weights / weights.sum()
+    deviation = np.sqrt(curves.spread[..., 0, 0])
     centre = float(np.sum(weights * beta))
-    spread = math.sqrt(float(np.sum(weights * (curves.deviation**2 + (beta - centre) ** 2))))
+    spread = math.sqrt(float(np.sum(weights * (deviation**2 + (beta - centre) ** 2))))
 
     def below(at: float) -> float:
         """Return the probability that β is less."""
-        return float(np.sum(weights * special.ndtr((at - beta) / curves.deviation)))
+        return float(np.sum(weights * special.ndtr((at - beta) / deviation)))
 
     # Less than 1/49 of any distribution is further from its mean than seven deviations.
     bracket = centre - 7 * spread, centre + 7 * spread
@@ -290,7 +278,7 @@ def _estimate(curves: Curves, y: Array, by_share: Array) -> Estimate:
     return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
 
 
-def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
+def without_scatter(impacts: Impacts, curves: Curves) -> float:
     """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
 
     The deviations are those from a power of the speed. A ratio of two squares is larger than the
@@ -302,10 +290,10 @@ def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
     z = contrasts.T @ impacts.log_r
     if not len(z):
         return 1.0
-    still = contrasts.T @ curves.errors.shapes[0] @ contrasts
+    still = contrasts.T @ curves.shapes[0] @ contrasts
     squares = float(z @ np.linalg.solve(still, z))
-    if is_known:
-        return float(special.chdtrc(len(z), squares / curves.errors.sizes[0, 0] ** 2))
+    if curves.is_known:
+        return float(special.chdtrc(len(z), squares / curves.sizes[0, 0] ** 2))
     scattered = float(z @ z)
     if scattered < 1e-20:
         # A power of the speed but for rounding errors.
@@ -321,17 +309,16 @@ def without_scatter(impacts: Impacts, curves: Curves, is_known: bool) -> float:
     return 0.5 + float(np.trapezoid(swing * damped, steps)) / math.pi
 
 
-def estimates(impacts: Impacts, curves: Curves, is_known: bool) -> tuple[Estimate, Estimate | None]:
+def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:
     """Return what a recording says if impacts scatter, and if they do not.
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
     y = impacts.log_r
-    shares = curves.errors.shares
-    scattering = _estimate(curves, y, shares)
-    if without_scatter(impacts, curves, is_known) < _UNLIKELY:
+    scattering = _estimate(curves, y, _SHARES > 0)
+    if without_scatter(impacts, curves) < _UNLIKELY:
         return scattering, None
-    still = _estimate(curves, y, np.where(shares == 0, 1.0, 0.0))
+    still = _estimate(curves, y, _SHARES == 0)
     is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
     return scattering, None if is_alike or still.low > 0 else still
 
@@ -450,26 +437,24 @@ def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
     return math.exp(found.x)
 
 
-def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[Judged]:
+def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     """Return the laws with their verdicts, that of the smallest errors first."""
     v = impacts.speed
     y = impacts.log_r
     n = len(y)
-    x = np.log(v) - np.mean(np.log(v))
-    powers = np.column_stack([np.ones_like(x), x, x**2])
+    powers = np.vander(np.log(v) - np.mean(np.log(v)), 3, increasing=True)
     posterior, _, _ = curves.posterior(y - np.mean(y))
-    # A law is judged with all sizes of errors alike.
-    likelihood = posterior.sum(axis=1) * np.exp(-curves.errors.size_prior)
+    likelihood = posterior.sum(axis=1)
     share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
-    shapes = curves.errors.shapes
-    sizes = curves.errors.sizes
+    shapes = curves.shapes
+    sizes = curves.sizes
     values = len(np.unique(np.round(np.log(v), 3)))
     shape = powers[:, : min(3, values, n - 1)]
     further = shape.shape[1] - 1
     likely = shapes[share] * sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
-    of_share = likelihood.sum(axis=1)
-    # Not less than rounding errors leave.
+    of_share = likelihood.sum(axis=1) * (_SHARES > 0)
+    # An r without any deviation leaves rounding errors.
     smooth = np.maximum(_rest(shapes, shape, y), 1e-20)
     left = n - shape.shape[1]
     judged = []
@@ -480,7 +465,7 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
         misfit = y - fitted
         worse = np.maximum(_rest(shapes, slope[:, None], misfit) - smooth, 0.0)
         probability = math.nan
-        if further and is_known:
+        if further and curves.is_known:
             chances = special.chdtrc(further, worse / sizes[:, 0] ** 2)
             probability = float(of_share @ chances / of_share.sum())
         elif further and left:
@@ -506,10 +491,10 @@ def judge(impacts: Impacts, curves: Curves, at: float, is_known: bool) -> list[J
             )
         )
     some_rejected = any(each.probability < REJECTED for each in judged)
-    with_words = [
-        Judged(**{**vars(each), "verdict": _verdict(each.probability, some_rejected, is_known)})
+    with_words = (
+        replace(each, verdict=_verdict(each.probability, some_rejected, curves.is_known))
         for each in judged
-    ]
+    )
     return sorted(with_words, key=lambda each: each.rms)
 
 
@@ -791,9 +776,8 @@ def fit(
     if stated is not None:
         unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
         known = positive("resolution", stated, unit.get(recording.kind, ""))
-    is_known = known is not None
-    curves = curves_of(impacts, errors_of(impacts, known), at)
-    scattering, still = estimates(impacts, curves, is_known)
+    curves = curves_of(impacts, known, at)
+    scattering, still = estimates(impacts, curves)
     above = f"r = {math.exp(scattering.value):.4f} is above 1"
     if scattering.low > 0:
         raise Refused(f"{recording.name}: {above} by more than its error: no ball bounces so")
@@ -809,14 +793,14 @@ def fit(
                 f"each ms that it lasts, which matters from {show((high - low) / 2 / falls, 's')} "
                 "on; give --contact-time"
             )
-    laws = judge(impacts, curves, at, is_known) if n >= _FEWEST else []
+    laws = judge(impacts, curves, at) if n >= _FEWEST else []
     is_near = 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max()
     fits = [each for each in laws if not each.probability < REJECTED]
     further = {
         "too few impacts for an interval of their own: it is wide": n < _FEWEST,
         f"{above} within its error: 1 is taken": scattering.value > 0,
         f"{at:.3g} m/s is outside of the measured speeds": not is_near,
-        "no errors are given: a law can only be said to deviate": not is_known,
+        "no errors are given: a law can only be said to deviate": known is None,
         "no law fits: r is that of a smooth curve": bool(laws) and not fits,
     }
     notes += [text for text, holds in further.items() if holds]

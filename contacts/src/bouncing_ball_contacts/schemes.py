@@ -21,7 +21,7 @@ offsets for one step, and not for a step beside it.
 
 import math
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,37 +72,36 @@ def nearby(steps: int, count: int) -> Trials:
     return Trials(at, step, losses)
 
 
-class Law(Protocol):
+class Law:
     """A contact force per unit of mass; the parameters are arrays, one entry for each contact."""
 
-    @property
-    def stiffness(self) -> Array: ...
+    stiffness: Array
+    damping: Array
 
     @property
-    def damping(self) -> Array: ...
+    def is_number(self) -> bool:
+        """Whether the rebound is by a restitution coefficient, and not by a spring."""
+        return False
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s."""
+        raise NotImplementedError(f"a force of {type(self).__name__}")
 
     def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
         """Return v⁺ of an implicit step from z, if v is the velocity without the contact."""
+        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
         """Return the depth at rest in m."""
+        return gravity / self.stiffness
 
     def duration(self, speed: float) -> Array:
         """Return the order of the contact time in s."""
-
-
-class _Explicit:
-    """A law that no engine steps implicitly."""
-
-    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
-        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
+        return np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
 
 
 @dataclass(frozen=True)
-class Linear:
+class Linear(Law):
     """A spring and a damper: a = k p + c w, with k in 1/s² and c in 1/s; ratio ζ = c/(2√k)."""
 
     stiffness: Array
@@ -114,12 +113,6 @@ class Linear:
     def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
         return (v - h * self.stiffness * z) / (1 + h * self.damping + h * h * self.stiffness)
 
-    def rest(self, gravity: float) -> Array:
-        return gravity / self.stiffness
-
-    def duration(self, speed: float) -> Array:
-        return np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
-
     @classmethod
     def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
         """Return the contact that sinks in by `depth` without damping."""
@@ -127,7 +120,7 @@ class Linear:
 
 
 @dataclass(frozen=True)
-class HuntCrossley:
+class HuntCrossley(Law):
     """Drake's a = k p (1 + d w)₊, with k in 1/s² and d in s/m; the ratio is d times the speed."""
 
     stiffness: Array
@@ -144,9 +137,6 @@ class HuntCrossley:
         e = v - h * self.stiffness * z
         return 2 * e / (b + np.sqrt(np.maximum(b * b - 4 * a * e, 0.0)))
 
-    def rest(self, gravity: float) -> Array:
-        return gravity / self.stiffness
-
     def duration(self, speed: float) -> Array:
         return (np.pi + self.damping * speed) / np.sqrt(self.stiffness)
 
@@ -156,7 +146,7 @@ class HuntCrossley:
 
 
 @dataclass(frozen=True)
-class Hertz(_Explicit):
+class Hertz(Law):
     """Hertz with Tsuji's damper: a = K p^(3/2) + β √(5 K) p^(1/4) w, K in 1/(s² √m).
 
     Its r = exp(-πβ/√(1 - β²)) is the same at every speed; the ratio is β.
@@ -182,7 +172,7 @@ class Hertz(_Explicit):
 
 
 @dataclass(frozen=True)
-class Stepped(_Explicit):
+class Stepped(Law):
     """The contacts of Adams and Simscape: a = K pⁿ + C s w, where s(p/d) = x²(3 - 2x), x ≤ 1.
 
     Simscape multiplies the spring by s as well. In designs d is a tenth of the penetration without
@@ -216,7 +206,7 @@ class Stepped(_Explicit):
 
 
 @dataclass(frozen=True)
-class Impedance(_Explicit):
+class Impedance(Law):
     """MuJoCo's contact: of N points with the impedance d(p) it is a = D (g + K d p + b w).
 
     D = N d/(1 + (N - 1) d) is the share of all points together. d rises from `low` at the surface
@@ -263,7 +253,7 @@ class Impedance(_Explicit):
 
 
 @dataclass(frozen=True)
-class Solved(_Explicit):
+class Solved(Law):
     """A contact that a solver of velocities gives: v⁺ = (u + D C)/(1 + D), if this is above u.
 
     u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
@@ -276,20 +266,10 @@ class Solved(_Explicit):
     damping: Array = field(default_factory=lambda: np.asarray(0.0))
     threshold: float = 0.0
 
-    def push(self, p: Array, w: Array, gravity: Array) -> Array:
-        raise NotImplementedError("an impulse is no force")
-
     @property
     def is_number(self) -> bool:
         """Whether there is a restitution coefficient, or no spring."""
         return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
-
-    def rest(self, gravity: float) -> Array:
-        return gravity / np.broadcast_to(self.stiffness, np.shape(self.restitution))
-
-    def duration(self, speed: float) -> Array:
-        k = np.broadcast_to(self.stiffness, np.shape(self.restitution))
-        return np.pi / np.sqrt(k) + 2 * self.damping / k
 
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""
@@ -352,16 +332,9 @@ class FoundAhead(Solved):
         return np.where(z + h * u < 0, self.held(u, aim, h), u)
 
 
-class Scheme(Protocol):
-    """How an engine steps a contact."""
-
-    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        """Return the velocity after the step; `free` is that without the contact."""
-
-
 @dataclass(frozen=True)
 class SemiImplicit:
-    """The force is that of the beginning of the step.
+    """The force is that of the beginning of the step; `free` is the velocity without the contact.
 
     It never pulls unless the damper `pulls` (the release of LAMMPS and MercuryDPM). The damper of
     Newton acts on `approach` only.
@@ -457,7 +430,7 @@ def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
 
 def drop(
     law: Law,
-    scheme: Scheme,
+    scheme: SemiImplicit | Implicit | OfSolver,
     step: Array | float,
     speed: float,
     gravity: float,
@@ -502,9 +475,12 @@ def drop(
     peak = np.zeros(z.shape)
     found = np.zeros(z.shape)
     inside = np.ones(z.shape, bool)
+    fall = h * g
     # A contact that is stable has ended, or has come to rest, within a few contact times.
     for _ in range(200 + int(np.max(12 * duration / h))):
-        free = v - h * (g + drag * v * (1 + np.abs(v)))
+        free = v - fall
+        if drag:
+            free = free - h * drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         peak = np.maximum(peak, np.where(inside, new - free, 0.0))
         rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)

@@ -99,5 +99,5 @@ def test_a_material_is_a_density():
 def test_a_bounce_takes_texts_and_pint_quantities_alike():
     one = Bounce(mass="50 g", restitution="80 %", drop_height="1 m")
     other = Bounce(mass=REGISTRY.Quantity(50, "g"), restitution=0.8, drop_height=1.0)
-    assert one == other
+    assert one == other and hash(one) == hash(other)
     assert one.impact_speed == pytest.approx(4.4287, abs=1e-4)

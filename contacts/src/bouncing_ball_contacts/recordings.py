@@ -159,7 +159,7 @@ def read(
     path = Path(source)
     if str(source) in experiments():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if not path.is_file():
+    if not path.exists() or path.is_dir():
         raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
     data = path.read_bytes()
     name = Path(source).name

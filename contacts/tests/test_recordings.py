@@ -315,6 +315,12 @@ def test_what_is_no_file_is_refused():
         fit([1, 2, 3])
 
 
+def test_balls_side_by_side_are_all_read(tmp_path):
+    path = tmp_path / "heard.csv"
+    path.write_text(FILES["two balls side by side"])
+    assert len(fit(path).recording.chains) == 2
+
+
 def test_columns_are_read_as_those_of_a_file():
     heights = np.array([50, 75, 100, 125])
     found = fit({"drop height (cm)": heights, "rebound height (cm)": [*(0.6724 * heights), None]})

@@ -64,7 +64,7 @@ _MEANINGS = (
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
     ("out", r"^v ?f$|final\b.*\b(speed|velocity)"),
     ("in", r"^v ?[0i]$|(impact|incoming|falling|initial)\b.*\b(speed|velocity)"),
-    ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
+    ("interval", r"interval|flight|bou\w+ time|Δt|delta ?t|^dt$"),
     ("average", r"^(average|mean)$|\b(average|mean)\b.*bound|bound.*\b(average|mean)\b"),
     ("rebound", r"rebound|bounce height|bounced|\bh ?([1-9]\d*|after|out|r|f)\b|^h ?['′]"),
     ("rebound", r"height.*\b(after|end|final|reached)|^(after|end|final|max\w*)\b.*height"),
@@ -270,12 +270,11 @@ def _table(
     first_line = body[0][1]
     last = body[-1][1]
     delimiter: str | None = next((mark for mark in ("\t", ";", ",") if mark in last), None)
-    decimal_comma = delimiter in ("\t", ";")
+    is_column = len(last.split()) < 2 and not delimiter
     if delimiter == ",":
         # Commas are decimal signs in a single column, whose heading has no comma.
         one_column = all(_is_decimal(line) for _, line in body[1:] if line.strip())
-        decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
-    is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
+        is_column = one_column and ("," not in first_line or _is_decimal(first_line))
     if is_column:
         delimiter = "\0"
     rows = (
@@ -352,28 +351,8 @@ def _meaning(name: str, unit: str) -> str | None:
     return "time" if found is None and unit.lower() in ("s", "ms") else found
 
 
-def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
-    """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
-    columns: dict[str, Array] = {}
-    alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
-    first = _meaning(*headings[0])
-    is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
-    if len(headings) > 1 and len(alike) == 1 and is_series:
-        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …, or each column is.
-        later = -values if first in ("interval", "height") else values
-        by_line, by_column = (not (np.diff(later, axis=axis) <= 0).any() for axis in (1, 0))
-        if by_line and by_column and len(values) > 1:
-            raise Refused(
-                f"{name}: each line or each column may be a recording: write one below the other "
-                "with an empty line between"
-            )
-        number = np.zeros_like(values) + np.arange(len(headings))
-        if not by_column or len(values) == 1:
-            number = np.zeros_like(values) + line[:, None]
-        columns["recording"] = number.ravel()
-        line = np.repeat(line, len(headings))
-        values = values.reshape(-1, 1)
-        headings = headings[:1]
+def _meanings(headings: _Headings, values: Array) -> list[str | None]:
+    """Return what the columns mean beside each other."""
     meanings = [_meaning(*each) for each in headings]
     # "Bounce" is a number of a bounce, or its height.
     meanings = [
@@ -396,6 +375,30 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
             meanings[place] = "position"
         elif np.any(steps) and "interval" not in meanings:
             meanings[meanings.index("time")] = None
+    return meanings
+
+
+def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
+    """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
+    columns: dict[str, Array] = {}
+    alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
+    first = _meaning(*headings[0])
+    is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
+    if len(headings) > 1 and len(alike) == 1 and is_series:
+        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …, or each column is.
+        later = -values if first in ("interval", "height") else values
+        by_column = len(values) > 1 and not (np.diff(later, axis=0) <= 0).any()
+        if by_column and not (np.diff(later) <= 0).any():
+            raise Refused(
+                f"{name}: each line or each column may be a recording: write one below the other "
+                "with an empty line between"
+            )
+        number = np.tile(np.arange(len(headings)), len(values))
+        line = np.repeat(line, len(headings))
+        columns["recording"] = number if by_column else line
+        values = values.reshape(-1, 1)
+        headings = headings[:1]
+    meanings = _meanings(headings, values)
     found: dict[str, list[Array]] = {}
     for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():

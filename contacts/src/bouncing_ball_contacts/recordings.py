@@ -393,7 +393,7 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
                 f"{name}: each line or each column may be a recording: write one below the other "
                 "with an empty line between"
             )
-        number = np.tile(np.arange(len(headings)), len(values))
+        number = np.tile(np.arange(len(headings), dtype=float), len(values))
         line = np.repeat(line, len(headings))
         columns["recording"] = number if by_column else line
         values = values.reshape(-1, 1)

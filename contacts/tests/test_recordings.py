@@ -257,6 +257,7 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("h0 [bananas],h1 [m]\n50,33", "bananas"),
         ("time\n812\n1707\n2200", r"is it in ms\? write \(ms\) behind the heading"),
         ("height A,height B\n1,0.8\n0.64,0.5", "two columns are both taken as height"),
+        ("time,height A,height B\n0,1,0.8\n0.5,0,0.1\n0.9,0.5,0", "two columns are both taken as"),
         ("height 1,height 2\n1,0.8\n0.64,0.5", "each line or each column may be a recording"),
         ("drop height,time\n1,1.1\n0.8,1\n0.7,0.9", "no bounces in drop height, time: write"),
         ("drop height (cm),COR\n20,0.8\n30,0.79", "no bounces in drop height, COR: .* COR"),

@@ -276,7 +276,7 @@ def _table(
         one_column = all(_is_decimal(line) for _, line in body[1:] if line.strip())
         is_column = one_column and ("," not in first_line or _is_decimal(first_line))
     if is_column:
-        delimiter = "\0"
+        delimiter = "\x1f"
     rows = (
         next(csv.reader([line], delimiter=delimiter)) if delimiter and line else line.split()
         for _, line in body
@@ -367,7 +367,7 @@ def _meanings(headings: _Headings, values: Array) -> list[str | None]:
         ]
     if meanings.count("height") == 1 and len(of_pair := {"drop", "rebound"} & set(meanings)) == 1:
         meanings[meanings.index("height")] = ({"drop", "rebound"} - of_pair).pop()
-    if {"time", "height"} <= set(meanings):
+    if "time" in meanings and meanings.count("height") == 1:
         place = meanings.index("height")
         steps = np.diff(values[:, place])
         # Tops of flights fall, whereas a track rises in half of its frames.
@@ -416,7 +416,9 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
         found.setdefault(meaning, []).append(column * scale)
     for meaning in ("interval", "height", "drop", "in", "out"):
         if len(found.get(meaning, [])) > 1:
-            raise Refused(f"{name}: two columns are both taken as {meaning}: {_SUGGESTED}")
+            raise Refused(
+                f"{name}: two columns are both taken as {meaning}: leave one out, or {_SUGGESTED}"
+            )
     if "rebound" not in found and "average" in found:
         found["rebound"] = found["average"]
     is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
@@ -641,7 +643,7 @@ def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
     at, before, after, scale = np.array(meetings).T
     if "metre" in columns:
         ratio = float(np.median(scale) / columns["metre"])
-        if not 1 / _OFF < ratio < _OFF:
+        if 0 < ratio < 1 / _OFF or ratio > _OFF:
             notes.append(
                 f"gravity is {STANDARD_GRAVITY / ratio:.3g} m/s² by the heights and times: the "
                 f"times are {math.sqrt(ratio):.2g} times the true ones, as in slow motion, and so "

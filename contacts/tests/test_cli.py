@@ -93,7 +93,7 @@ def test_names_are_completed(line, offered, monkeypatch, capsys):
 
 def test_without_a_command_the_help_is_shown(typed):
     status, out, err = typed("")
-    assert (status, err) == (0, "") and "Examples:\n  bounce design" in out
+    assert (status, err) == (0, "") and "Examples:\n    bounce design --mass" in out
 
 
 @pytest.mark.parametrize("option", ["--help", "-h"])

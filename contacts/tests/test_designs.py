@@ -62,7 +62,7 @@ def test_a_solver_with_error_control_has_no_step(name, of_ball):
     ("name", "r"),
     [
         *(("mujoco", r) for r in (0.0, 0.1, 0.135, 0.3, 0.97)),
-        *(("drake", r) for r in (0.02, 0.135, 0.6, 0.97)),
+        *(("drake", r) for r in (0.1, 0.135, 0.6, 0.97)),
         *(("lammps", r) for r in (0.02, 0.135, 0.9)),
         *(("newton", r) for r in (0.1, 0.135, 0.6)),
     ],
@@ -296,7 +296,7 @@ def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
 
 def test_a_random_ball_bounces_as_wanted():
     rng = np.random.default_rng(7)
-    for _ in range(16):
+    for _ in range(12):
         name = str(rng.choice(STEPPED))
         r = float(rng.uniform(0.1, 0.95))
         mass = float(10 ** rng.uniform(-5, 2))
@@ -336,7 +336,7 @@ def largest_deviation(found, change):
 def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half_a_percent():
     """Of the first 200 requests 88 did not, before a design was for its neighbours as well."""
     rng = np.random.default_rng(11)
-    for _ in range(16):
+    for _ in range(8):
         wanted, name, step = random_request(rng)
         found = design(wanted, name, step)
         allowed = max(0.02, found.row.outcome.deviation(wanted.restitution))

@@ -44,6 +44,7 @@ from scipy import linalg, optimize, special
 from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
+from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
@@ -691,7 +692,9 @@ class Fit:
             more["radius"] = self.diameter / 2
         return Bounce(mass=body, restitution=self.restitution, speed=self.speed, **more)
 
-    def design(self, engine: str = "generic", time_step: Quantity = None, **more: Any) -> Design:
+    def design(
+        self, engine: str | Engine = "generic", time_step: Quantity = None, **more: Any
+    ) -> Design:
         """Return the design of an engine for this bounce; ``more`` belongs to the bounce."""
         return design(self.bounce(**more), engine, time_step)
 

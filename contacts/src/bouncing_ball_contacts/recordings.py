@@ -172,9 +172,9 @@ def read(
 def _of_columns(name: str, columns: Any) -> str:
     """Return columns by their headings as lines with tabs."""
     try:
-        rows = zip_longest(*columns.values(), fillvalue="")
+        rows = zip_longest(*map(np.asarray, columns.values()), fillvalue="")
         return "\n".join("\t".join(map(str, row)) for row in (columns, *rows))
-    except (AttributeError, TypeError):
+    except (AttributeError, TypeError, ValueError):
         raise Refused(
             f"{name} is no recording: give a file, the name of an experiment, or columns such as "
             "{'time (s)': [0.45, 1.17, 1.75]}"

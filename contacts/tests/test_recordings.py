@@ -320,7 +320,7 @@ def test_every_published_experiment_names_its_source():
 
 
 def test_what_is_no_file_is_refused():
-    with pytest.raises(Refused, match="a list is no recording: give a file, .* columns such"):
+    with pytest.raises(Refused, match="list is no recording: give a file, .* columns such"):
         fit([1, 2, 3])
 
 

@@ -154,7 +154,7 @@ def read(
         If the file has no bounces, or numbers that are no bounces.
     """
     if not isinstance(source, str | Path):
-        lines = _of_columns(f"a {type(source).__name__}", source).splitlines()
+        lines = _of_columns(type(source).__name__, source).splitlines()
         return _interpreted("columns", lines, set(leave_out), intervals)
     path = Path(source)
     if str(source) in experiments():

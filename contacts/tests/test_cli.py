@@ -1,10 +1,14 @@
 """The command as it is typed: answers, and one line for each mistake."""
 
 import json
+import re
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+
+from bouncing_ball_contacts import cli
 
 BALL = 'design --mass "50 g" --restitution 0.8'
 MUJOCO = "diagnose --engine mujoco --mass 1 --time-step 2ms"
@@ -29,6 +33,62 @@ def test_everything_in_json(typed):
     assert found["parameters"]["solref"] == [0.02, 1.0]
     found = json.loads(typed("fit croquet --json")[1])
     assert len(found["laws"]) == 3
+    found = json.loads(typed("fit croquet --engine pybullet --time-step 1/240 --json")[1])
+    assert len(found["laws"]) == 3 and "changeDynamics" in found["design"]["snippet"]
+
+
+def test_a_cor_is_a_restitution(typed):
+    assert "restitution 0.8." in typed('design --mass "50 g" --cor 0.8')[1]
+
+
+def test_a_fit_names_its_own_options(typed):
+    text = typed("fit croquet --engine mujoco")[1]
+    named = set(re.findall(r"--[a-z-]+", text))
+    options = set(re.findall(r"--[a-z-]+", typed("fit --help")[1]))
+    assert "--density" in named and named <= options
+    assert "a solid ball of this density" in typed("fit croquet --density wood --engine mujoco")[1]
+
+
+def test_a_recording_is_piped(tmp_path):
+    code = "from bouncing_ball_contacts.cli import run; run()"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "fit", "-"],
+        input="h0,h1\n1,0.64\n0.5,0.32\n",
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "r = 0.8000" in done.stdout
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full device")
+def test_a_full_device_is_one_line():
+    code = "from bouncing_ball_contacts.cli import run; run()"
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [sys.executable, "-c", code, "engines"], stdout=full, stderr=subprocess.PIPE, text=True
+        )
+    assert done.returncode == 2
+    assert done.stderr.startswith("bounce: ") and done.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [
+        ("design --engine muj", "plain,mujoco"),
+        ("diagnose --engine pyb", "plain,pybullet"),
+        ("fit croquet --engine drake-", "plain,drake-hunt-crossley"),
+        ("fit croq", "file,croq\nplain,croquet"),
+    ],
+)
+def test_names_are_completed(line, offered, monkeypatch, capsys):
+    words = line.split()
+    monkeypatch.setenv("COMP_WORDS", f"bounce {line}")
+    monkeypatch.setenv("COMP_CWORD", str(len(words)))
+    monkeypatch.setenv("_BOUNCE_COMPLETE", "bash_complete")
+    with pytest.raises(SystemExit):
+        cli.main(prog_name="bounce")
+    assert capsys.readouterr().out.strip() == offered
 
 
 def test_without_a_command_the_help_is_shown(typed):
@@ -176,6 +236,8 @@ MISTAKES = {
     "fit croquet --leave-out one": "numbers of lines",
     "fit croquet --time-step 1ms": "--time-step needs an engine",
     "fit croquet --tolerance 0.1": "--tolerance needs an engine",
+    "fit croquet --density wood": "--density needs an engine",
+    "fit /": "/ is no file, and none of",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",

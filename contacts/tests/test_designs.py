@@ -174,7 +174,7 @@ def test_without_a_penetration_it_is_a_tenth_of_the_radius():
 def test_a_body_of_several_points_is_a_cube():
     """It was called a solid ball of steel."""
     found = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
-    assert "a solid cube of steel (--radius or --density), half height 25.2 mm" in str(found)
+    assert "a solid cube of steel (give its size or --density), half height 25.2 mm" in str(found)
     assert "radius" not in found.notes[0] and found.bounce.size**3 * 8 * 7850 == pytest.approx(1)
 
 
@@ -443,3 +443,10 @@ def test_names_of_engines_are_forgiving():
     assert engine_named("isaac_lab").name == "physx"
     with pytest.raises(Refused, match="did you mean mujoco"):
         engine_named("mujocco")
+    with pytest.raises(Refused, match="engine 5 is not known"):
+        engine_named(5)
+
+
+def test_an_engine_of_the_table_stands_for_its_name():
+    wanted = Bounce(mass="50 g", restitution=0.8)
+    assert design(wanted, ENGINES["generic"]).engine == "generic"

@@ -119,6 +119,15 @@ def test_an_exact_recording_has_a_narrow_interval():
     assert low <= 0.8 + 1e-6 and high >= 0.8 - 1e-6 and high - low < 0.003
 
 
+def test_r_of_exactly_1_everywhere_contradicts_nothing():
+    # ln r is 0 on every processor, and so is each deviation from a power of the speed.
+    pairs = np.array([[1.0, 1.0], [2.0, 1.0], [3.0, 1.0], [4.0, 1.0]])
+    found = fit(Recording("exact", "coefficients", (pairs,)))
+    assert found.restitution == found.interval[1] == 1
+    assert without_scatter(found.impacts, curves_of(found.impacts, None, 2.0)) == 1
+    assert not [law for law in found.laws if law.probability < 0.05]
+
+
 def test_the_drag_of_the_air_is_removed():
     # A table-tennis ball: its flights lose some per cent by drag.
     flights = np.array([0.9, 0.78, 0.68, 0.6])

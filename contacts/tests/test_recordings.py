@@ -1,8 +1,10 @@
 """Files as instruments, programs and people write them."""
 
 import io
+import json
 import re
 import zipfile
+from itertools import product
 
 import numpy as np
 import pytest
@@ -50,8 +52,8 @@ def picture(kind):
     return "\n".join(f"{t:.4f},{shown[kind](position(t)):.5f}" for t in FRAMES)
 
 
-def track(form="{:.4f},{:.5f}"):
-    return "\n".join(form.format(t, position(t)) for t in FRAMES)
+def track(form="{:.4f},{:.5f}", slow=1):
+    return "\n".join(form.format(slow * t, position(t)) for t in FRAMES)
 
 
 SPEEDS = (1.0, 2.0, 3.0, 4.0)
@@ -94,6 +96,7 @@ FILES = {
     "force plate with a row of units": "Time,Fz\ns,N\n"
     + "\n".join(f"{t:.4f},{push(t):.3f}" for t in PULSES),
     "heard, with a contact time": "# contact time: 8 ms\ntime [s]\n" + column(TOUCHES),
+    "heads as columns are written": "# Contact_time = 8 ms\ntime [s]\n" + column(TOUCHES),
     "intervals, with a contact time": "time [s],interval [s],duration [ms]\n"
     + "\n".join(f"{a},{b},8" for a, b in zip(TOUCHES[1:], FLIGHTS + CONTACT, strict=True)),
     "picture, y negative": "t,y\n" + picture("-y"),
@@ -110,13 +113,74 @@ FILES = {
     "two lines of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4\n80,53.8,36.2,",
     "two lines of times": "t1 (s),t2 (s),t3 (s)\n0.1,0.92,1.5924\n0.2,0.7,1.11",
     "several rebounds in one line": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,67.2,67.3",
+    "rebounds and their average": "drop (cm),rebound 1 (cm),rebound 2 (cm),mean rebound (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724},{h * 0.6724},{h * 0.9}" for h in (50, 75, 100, 125)),
+    "average rebounds alone": "drop (cm),average (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724}" for h in (50, 75, 100, 125)),
+    "trials and their average": "Drop height (cm),Trial 1 (cm),Trial 2 (cm),Average (cm)\n"
+    + "\n".join(f"{h},{h * 0.6724},{h * 0.6724},{h * 0.7}" for h in (50, 75, 100, 125)),
+    "German heights": "Höhe h0 [cm];Rücksprunghöhe [cm]\n100;67,24\n80;53,79\n50;33,62",
+    "French heights": "hauteur de chute (cm);hauteur de rebond (cm)\n100;67.24\n80;53.79\n50;33.62",
+    "Spanish heights": "altura inicial (m),altura rebote (m)\n1,0.6724\n0.8,0.5379\n0.5,0.3362",
+    "Italian heights": "altezza di caduta (m),rimbalzo (m)\n1,0.6724\n0.8,0.5379\n0.5,0.3362",
+    "German speeds": "Einfallsgeschwindigkeit (m/s);Abprallgeschwindigkeit (m/s)\n"
+    + "\n".join(f"{v};{v * 0.82}" for v in SPEEDS),
+    "minutes and seconds": "time (mm:ss)\n"
+    + "\n".join(f"{(t + 58) // 60:.0f}:{(t + 58) % 60:.6f}" for t in TIMES),
+    "hours, with decimal commas": "\n".join(f"00:01:{t + 10:.6f}" for t in TIMES).replace(".", ","),
+    "nanoseconds": "t_ns\n" + column(1e9 * TIMES + 1.7e18, "{:.0f}"),
+    "labels of Audacity with frequencies": "\n".join(
+        f"{t:.6f}\t{t + 0.004:.6f}\tbounce\n\\\t200.0\t3000.0" for t in TIMES
+    ),
+    "three balls side by side": "time 1 (s),time 2 (s),time 3 (s)\n"
+    + "\n".join(f"{t},{0.9 * t},{0.8 * t}" for t in TIMES),
+    "two balls side by side": "interval 1 (s),interval 2 (s)\n"
+    + "\n".join(f"{t},{1.1 * t}" for t in FLIGHTS),
+    "recordings with names": "ball,time (s)\n"
+    + "\n".join(f"{name},{shift + t}" for name, shift in (("A", 5), ("B", 0)) for t in TIMES),
+    "decimal commas in quotes": "h0 (cm),h1 (cm)\n"
+    + "\n".join(f'"{h:.2f}","{h * 0.6724:.2f}"' for h in (50, 75, 100, 125)).replace(".", ","),
+    "a text with a comma": "note,h0 (cm),h1 (cm)\n"
+    + "\n".join(f'"ball, old",{h},{h * 0.6724}' for h in (50, 75, 100, 125)),
+    "JSON": json.dumps({"interval_ms": list(1000 * FLIGHTS)}),
     "coefficients in per cent": "speed (m/s),COR (%)\n" + "\n".join(f"{v},82" for v in SPEEDS),
     "coefficients without unit": "speed (m/s),e (-)\n" + "\n".join(f"{v},0.82" for v in SPEEDS),
 }
 
 
-@pytest.mark.parametrize("name", FILES)
-@pytest.mark.parametrize("coding", ["utf-8-sig", "utf-16"])
+PAIRS = """
+Height before,Height after | drop,bounce | initial height,final height | dropped,bounced
+height dropped,height bounced
+start height,end height | drop height,max height | h,h' | hi,hf | height,rebound | height,bounce
+dropped from,bounced to | release height,bounce height | height before,bounce | h0,height
+"""
+
+
+@pytest.mark.parametrize("heading", [each.strip() for each in re.split(r"\||\n", PAIRS.strip())])
+def test_two_heights_are_a_drop_and_its_rebound(heading, tmp_path):
+    """They were taken for tops of one ball, of which the other column was dropped."""
+    path = tmp_path / "pairs.csv"
+    for unit, scale in ((" (cm)", 100), ("", 1)):
+        lines = [f"{scale * h},{scale * h * 0.64}" for h in (1.0, 0.8, 0.6)]
+        path.write_text(heading.replace(",", f"{unit},") + f"{unit}\n" + "\n".join(lines))
+        found = fit(path)
+        assert (found.recording.kind, len(found.impacts.speed)) == ("drops", 3)
+        assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.parametrize("heading", ["Vi (m/s),Vf (m/s)", "initial speed,final speed", "v0,vf"])
+def test_two_speeds_are_those_before_and_after(heading, tmp_path):
+    path = tmp_path / "speeds.csv"
+    path.write_text(heading + "\n1,0.8\n2,1.6\n3,2.4")
+    assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
+
+
+WIDE = ("semicolons and decimal commas", "German heights", "Tracker, rounded times")
+
+
+@pytest.mark.parametrize(
+    ("name", "coding"), [*product(FILES, ["utf-8-sig"]), *product(WIDE, ["utf-16"])]
+)
 def test_files_are_read_as_they_are(name, coding, tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text(FILES[name], encoding=coding)
@@ -187,10 +251,26 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("", "is empty"),
         ("# title: nothing", "is empty"),
         ("a,b\nx,y", "no line of numbers"),
-        ("a,b\n1,2", "no bounces in a, b"),
+        (
+            "a,b\n1,2",
+            "no bounces in a, b: write headings such as .* drop_height and rebound_height",
+        ),
+        ("Fallhöhe (m),Sprung (m)\n2,1\n1,0.5", "no bounces in Fallhöhe, Sprung: write headings"),
+        ("time\n2024-05-03T14:07:20.45Z\n2024-05-03T14:07:21.17Z", "seconds, mm:ss.s or hh:mm"),
+        ('{"time": {"0": 0.45, "1": 1.17, "2": 1.75}}', "no recording: .* columns such"),
+        ('{"time": "0.45 1.17 1.75"}', "no recording: .* columns such"),
+        ('{"time": [[0.45, 1.17], [1.75]]}', "no recording: .* columns such"),
+        ("[0.45, 1.17, 1.75]", "recording.csv is no recording: .* or columns such as {'time"),
         ("h0,h1\n50,33\n75,50", "without a unit"),
         ("h0 [bananas],h1 [m]\n50,33", "bananas"),
-        ("interval [s]\n812\n707", "is it in ms"),
+        ("time\n812\n1707\n2200", r"is it in ms\? write \(ms\) behind the heading"),
+        ("height A,height B\n1,0.8\n0.64,0.5", "two columns are both taken as height"),
+        ("time,height A,height B\n0,1,0.8\n0.5,0,0.1\n0.9,0.5,0", "two columns are both taken as"),
+        ("height 1,height 2\n1,0.8\n0.64,0.5", "each line or each column may be a recording"),
+        ("drop height,time\n1,1.1\n0.8,1\n0.7,0.9", "no bounces in drop height, time: write"),
+        ("drop height (cm),COR\n20,0.8\n30,0.79", "no bounces in drop height, COR: .* COR"),
+        ('h0 (mm),h1 (mm)\n"1,000","640"', "'1,000' may have thousands or decimals"),
+        ("time\n1\n1.7\n2.2\n0.3\n1.2\n1.8", "sort the lines, or leave an empty line where"),
         ("interval [s]\n0.5\n0.7\n0.6", "follows one of"),
         ("interval [s]\n0.5\n-0.4", "not positive"),
         ("height [m]\n0.5\n0.7\n0.6", "follows one of"),
@@ -204,6 +284,9 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("speed,COR,std (cm)\n1,0.8,0.1", "std.*does not fit"),
         ("speed,COR\n1,1.04\n2,1.041\n3,1.04\n4,1.041", "above 1 by more than its error"),
         ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
+        ("# contact time: 300 ms\ntime [s]\n" + column(TIMES), "300 ms is longer than flights are"),
+        ("# mass: 58 g\n# diameter: 6.7\ntime [s]\n" + column(TIMES), "58 g .* 6.7 m .* density"),
+        ("# mass: 58\n# diameter: 67 mm\ntime [s]\n" + column(TIMES), "is a unit missing"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
         ("v_in,v_out\n400,200\n300,200", "is it in cm/s"),
         ("speed,COR\n1,1.5", "above 1"),
@@ -237,8 +320,21 @@ def test_every_published_experiment_names_its_source():
 
 
 def test_what_is_no_file_is_refused():
-    with pytest.raises(Refused, match=r"\[1, 2, 3\] is no recording: give a file"):
+    with pytest.raises(Refused, match="list is no recording: give a file, .* columns such"):
         fit([1, 2, 3])
+
+
+def test_balls_side_by_side_are_all_read(tmp_path):
+    path = tmp_path / "heard.csv"
+    path.write_text(FILES["two balls side by side"])
+    assert len(fit(path).recording.chains) == 2
+
+
+def test_columns_are_read_as_those_of_a_file():
+    heights = np.array([50, 75, 100, 125])
+    found = fit({"drop height (cm)": heights, "rebound height (cm)": [*(0.6724 * heights), None]})
+    assert found.restitution == pytest.approx(0.82, abs=1e-9)
+    assert found.impacts.speed == pytest.approx(np.sqrt(2 * G * heights / 100))
 
 
 @pytest.mark.parametrize(
@@ -254,6 +350,14 @@ def test_what_is_no_file_is_refused():
         (FILES["force plate with a row of units"], "the contact, 7.[789]"),
         # 8 ms move r by 0.0024 here.
         ("time [s]\n" + column(TOUCHES), "lower by 0.0003 for each ms that it lasts"),
+        (
+            "# radius: 33 mm\n# diametre = 67 mm\n# date: 2024-05-03\n" + FILES["times"],
+            "the head has 'radius: 33 mm', 'diametre: 67 mm', but only mass, diameter",
+        ),
+        (
+            "t (s),y (m)\n" + track(slow=8),
+            "gravity is 0.153 m/s² .* the times are 8 times the true ones",
+        ),
         ("speed,COR\n1,1.02\n2,0.98\n3,1.03\n4,0.98", "above 1 within its error"),
     ],
 )
@@ -261,6 +365,12 @@ def test_a_note_says_what_was_done(text, said, tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text(text)
     assert [note for note in fit(path).notes if re.search(said, note)]
+
+
+def test_heights_that_agree_with_gravity_are_not_remarked(tmp_path):
+    path = tmp_path / "track.csv"
+    path.write_text(FILES["track, time and height"])
+    assert not [note for note in fit(path).notes if "true ones" in note]
 
 
 def test_a_track_is_turned_only_if_it_grows_downwards(tmp_path):

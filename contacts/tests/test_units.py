@@ -26,6 +26,9 @@ REGISTRY = pint.UnitRegistry()
         ("1e5 N/m", "N/m", 1e5),
         ("2.5 kN/mm", "N/m", 2.5e6),
         ("−3", "s", -3.0),
+        ("5*10^-2 kg", "kg", 0.05),
+        ("2×10**5", "N/m", 2e5),
+        ("3 mN/m", "N/m", 3e-3),
         (REGISTRY.Quantity(5, "cm"), "m", 0.05),
     ],
 )
@@ -39,6 +42,12 @@ def test_a_quantity_is_read(given, unit, expected):
         ("1,500 N/m", "N/m", "'1500 N/m' or as '1.500 N/m'"),
         ("five g", "kg", "does not begin with a number"),
         ("5 furlong/moon", "kg", "unit of '5 furlong/moon' is not known"),
+        ("50gr", "kg", "is it 'g'"),
+        ("50 gm", "kg", "is it 'g'"),
+        ("50 Kg", "kg", "is it 'kg'"),
+        ("50 KG", "kg", "is it 'kg'"),
+        ("2 Ms", "s", "'Ms' in '2 Ms' is not read; is it 'ms'"),
+        ("3 Mm", "m", "is it 'mm'"),
         ("5 s", "kg", "does not fit; write it as in '50 g'"),
         ("1/0", "s", "divides by zero"),
         ("nan", "s", "does not begin"),
@@ -90,5 +99,5 @@ def test_a_material_is_a_density():
 def test_a_bounce_takes_texts_and_pint_quantities_alike():
     one = Bounce(mass="50 g", restitution="80 %", drop_height="1 m")
     other = Bounce(mass=REGISTRY.Quantity(50, "g"), restitution=0.8, drop_height=1.0)
-    assert one == other
+    assert one == other and hash(one) == hash(other)
     assert one.impact_speed == pytest.approx(4.4287, abs=1e-4)

@@ -27,13 +27,14 @@ def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Comm
     return decorate
 
 
+_DENSITY = click.option("--density", help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
     click.option("--mass", help="Mass of the body, such as '50 g'."),
-    click.option("--restitution", help="√(h′/h) that is wanted, 0 to 1."),
+    click.option("--restitution", "--cor", help="√(h′/h) that is wanted, 0 to 1."),
     click.option("--drop-height", help="Height of the drop; 1 m if no speed is given."),
     click.option("--speed", help="Impact speed, in place of the height."),
     click.option("--radius", help="Radius, or half the height of a box."),
-    click.option("--density", help="In place of the radius; also steel, rubber, wood, …"),
+    _DENSITY,
     click.option("--points", type=int, default=1, help="Contact points: 4 for the face of a box."),
     click.option("--other-mass", help="Mass of a second free body; needs the speed of approach."),
     click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."),
@@ -48,7 +49,15 @@ _CONTACT = [
     click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
 _STEP = click.option("--time-step", help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
-_ENGINE = click.option("--engine", default="generic", help="One of those of 'bounce engines'.")
+
+
+def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
+    return [name for name in ENGINES if name.startswith(typed)]
+
+
+_ENGINE = click.option(
+    "--engine", default="generic", help="One of 'bounce engines'.", shell_complete=_engines
+)
 _ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
 _JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
 
@@ -88,13 +97,20 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def _print(found: Any, as_json: bool) -> None:
-    if not as_json:
-        click.echo(str(found))
-        return
+def _values(found: Any) -> dict[str, Any]:
     values = dataclasses.asdict(found)
     if isinstance(found, Design):
         values |= {"parameters": found.parameters, "snippet": found.snippet}
+    return values
+
+
+def _print(found: Any, as_json: bool, written: Design | None = None) -> None:
+    if not as_json:
+        click.echo("\n\n".join(str(each) for each in (found, written) if each is not None))
+        return
+    values = _values(found)
+    if written is not None:
+        values["design"] = _values(written)
     click.echo(json.dumps(_plain(values), indent=1, ensure_ascii=False))
 
 
@@ -179,16 +195,25 @@ def _lines(text: str | None) -> tuple[int, ...]:
         raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
 
 
+def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
+    from click.shell_completion import CompletionItem
+
+    from bouncing_ball_contacts.recordings import experiments
+
+    names = [CompletionItem(name) for name in experiments() if name.startswith(typed)]
+    return [CompletionItem(typed, type="file"), *names]
+
+
 @main.command("fit")
-@click.argument("recording")
+@click.argument("recording", shell_complete=_recordings)
 @click.option("--speed", help="At which r is wanted; the middle of the impacts if not given.")
 @click.option("--resolution", help="Standard deviation of a reading, such as '0.7 ms'.")
 @click.option("--mass", help="Of the ball, for the drag of the air and the engine.")
 @click.option("--diameter", help="Of the ball, for the drag of the air.")
 @click.option("--leave-out", help="Lines of the file, such as 4,7.")
 @click.option("--intervals", is_flag=True, help="Read the intervals, and show single impacts.")
-@click.option("--engine", help="For which the contact is written.")
-@_options(_STEP, *_CONTACT, _JSON)
+@click.option("--engine", help="For which the contact is written.", shell_complete=_engines)
+@_options(_STEP, _DENSITY, *_CONTACT, _JSON)
 def fit_command(
     recording: str,
     leave_out: str | None,
@@ -203,16 +228,17 @@ def fit_command(
 ) -> None:
     """Read a recording of bounces: r over the speed, the laws it allows, and an engine's contact.
 
-    RECORDING is a file, or one of the published experiments, such as croquet.
+    RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
     from bouncing_ball_contacts.fits import fit
 
     names = ("speed", "resolution", "mass", "diameter", "contact_time")
     given = {name: options[name] for name in names}
-    found = fit(recording, leave_out=_lines(leave_out), intervals=intervals, **given)
+    source = "/dev/stdin" if recording == "-" else recording
+    found = fit(source, leave_out=_lines(leave_out), intervals=intervals, **given)
     if intervals and not as_json:
         click.echo("\n".join([*found.intervals, ""]))
-    contact = {name: options[name] for name in ("penetration", "stiffness", "friction")}
+    contact = {name: options[name] for name in ("density", "penetration", "stiffness", "friction")}
     if engine is None:
         design_only = {"time_step": time_step, "tolerance": tolerance, "pick": pick}
         of_engine = contact | design_only | {"script": script}
@@ -224,10 +250,7 @@ def fit_command(
     bounce = found.bounce(**contact)
     written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
     _write_script(written, script)
-    _print(found, as_json)
-    if not as_json:
-        click.echo()
-    _print(written, as_json)
+    _print(found, as_json, written)
 
 
 @main.command("engines")
@@ -245,11 +268,11 @@ def run() -> None:
     """Run the command; a mistake is one line, and the exit status is 2."""
     try:
         sys.exit(main(standalone_mode=False))
-    except (Refused, click.ClickException) as mistake:
+    except BrokenPipeError:
+        sys.exit(0)
+    except (Refused, click.ClickException, OSError) as mistake:
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
         click.echo(f"bounce: {' '.join(str(text).split())}", err=True)
         sys.exit(2)
     except click.Abort:
         sys.exit(130)
-    except BrokenPipeError:
-        sys.exit(0)

@@ -129,7 +129,7 @@ class Bounce:
     other_mass: Quantity = None
     friction: Quantity = None
     gravity: Quantity = STANDARD_GRAVITY
-    given: Mapping[str, str] = field(init=False, default_factory=dict, repr=False)
+    given: Mapping[str, str] = field(init=False, default_factory=dict, repr=False, hash=False)
 
     def __post_init__(self) -> None:
         if self.mass is None:
@@ -180,7 +180,7 @@ class Bounce:
         if self.penetration is not None and self.penetration > self.size:
             raise Refused(
                 f"the penetration of {shown['penetration']} is deeper than the {self.size_name} of "
-                f"{show(self.size, 'm')} (--radius)"
+                f"{show(self.size, 'm')}"
             )
         if self.other_mass is not None and self.speed is None:
             raise Refused(
@@ -252,7 +252,7 @@ class Bounce:
         if self.drop_height is None and self.speed is None:
             found.append("a drop from 1 m (--drop-height or --speed)")
         if self.radius is None:
-            of = "steel (--radius or --density)" if self.density is None else "this density"
+            of = "steel (give its size or --density)" if self.density is None else "this density"
             body = "ball" if self.points == 1 else "cube"
             found.append(f"a solid {body} of {of}, {self.size_name} {show(self.size, 'm')}")
         return found
@@ -423,7 +423,7 @@ def _rounded(value: Any) -> Any:
 
 def design(
     bounce: Bounce,
-    engine: str = "generic",
+    engine: str | Engine = "generic",
     time_step: Quantity = None,
     *,
     tolerance: Quantity = TOLERANCE,
@@ -435,8 +435,8 @@ def design(
     Parameters
     ----------
     bounce : Bounce
-    engine : str
-        A name of :data:`.ENGINES`.
+    engine : str or Engine
+        One of :data:`.ENGINES`, or its name.
     time_step : Quantity, optional
         Of the engine. The second row is the contact that is wanted at this step; if its r is not
         within the tolerance, it is the stiffest contact whose r is.

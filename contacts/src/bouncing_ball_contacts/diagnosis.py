@@ -257,7 +257,7 @@ def _numbers(name: str, value: Any) -> tuple[float, ...]:
 
 def diagnose(
     bounce: Bounce,
-    engine: str,
+    engine: str | Engine,
     parameters: Mapping[str, Any] | None = None,
     time_step: Quantity = None,
     *,
@@ -270,7 +270,7 @@ def diagnose(
     ----------
     bounce : Bounce
         Its restitution is the one that is wanted, and may be left out.
-    engine : str
+    engine : str or Engine
     parameters : mapping
         Those of one body by their names; without any, the engine's defaults.
     time_step : Quantity

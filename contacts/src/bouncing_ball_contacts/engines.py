@@ -865,15 +865,15 @@ _ALIASES = {
 }
 
 
-def engine_named(name: str) -> Engine:
-    """Return the engine with this name or one of its other names.
+def engine_named(name: str | Engine) -> Engine:
+    """Return the engine with this name or one of its other names, or an engine itself.
 
     Raises
     ------
     Refused
         If there is none; the message has the nearest names, or all of them.
     """
-    wanted = name.strip().lower().replace("_", "-").replace(" ", "-")
+    wanted = getattr(name, "name", str(name)).strip().lower().replace("_", "-").replace(" ", "-")
     wanted = _ALIASES.get(wanted, wanted)
     if wanted in ENGINES:
         return ENGINES[wanted]

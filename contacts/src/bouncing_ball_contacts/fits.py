@@ -32,6 +32,7 @@ incompatible, but said to deviate.
 
 import functools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
@@ -43,6 +44,7 @@ from scipy import linalg, optimize, special
 from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
+from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
@@ -68,8 +70,9 @@ _ALIKE = 0.8
 REJECTED = 0.005
 """A law with a smaller probability is rejected."""
 ACCEPTED = 0.05
-# Of air, in kg/m³, and the drag coefficient of a sphere.
+# Of air and osmium, in kg/m³, and the drag coefficient of a sphere.
 _AIR = 1.2
+_DENSEST = 22600.0
 _DRAG = 0.47
 _FEWEST = 3
 
@@ -160,12 +163,13 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
     Raises
     ------
     Refused
-        If a contact would last as long as a flight.
+        If a contact would last longer than half of the flights, or than two touches are apart.
     """
     chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
-    if any((chain <= 0).any() for chain in chains):
+    typical = float(np.mean(durations))
+    if any((chain <= 0).any() or typical > np.median(chain) for chain in chains if len(chain)):
         longest = show(float(durations.max()), "s")
-        raise Refused(f"contact time: {longest} is longer than the time between two impacts")
+        raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
     return replace(recording, chains=chains)
 
 
@@ -688,7 +692,9 @@ class Fit:
             more["radius"] = self.diameter / 2
         return Bounce(mass=body, restitution=self.restitution, speed=self.speed, **more)
 
-    def design(self, engine: str = "generic", time_step: Quantity = None, **more: Any) -> Design:
+    def design(
+        self, engine: str | Engine = "generic", time_step: Quantity = None, **more: Any
+    ) -> Design:
         """Return the design of an engine for this bounce; ``more`` belongs to the bounce."""
         return design(self.bounce(**more), engine, time_step)
 
@@ -698,7 +704,7 @@ def _of_logs(estimate: Estimate) -> tuple[float, float]:
 
 
 def fit(
-    source: str | Path | Recording,
+    source: str | Path | Mapping[str, Any] | Recording,
     speed: Quantity = None,
     *,
     resolution: Quantity = None,
@@ -712,8 +718,9 @@ def fit(
 
     Parameters
     ----------
-    source : str, Path or Recording
-        A file, a published experiment by its name, or a recording.
+    source : str, Path, mapping or Recording
+        A file, a published experiment by its name, columns with the headings of a file such as
+        ``{"time (s)": [0.45, 1.17, 1.75]}``, or a recording.
     speed : Quantity, optional
         By default the middle of the speeds, the geometric mean.
     resolution : Quantity, optional
@@ -741,6 +748,13 @@ def fit(
     kilograms = None if body is None else positive("mass", body, "kg")
     wide = None if across is None else positive("diameter", across, "m")
     drag = 0.0
+    if kilograms is not None and wide is not None:
+        density = 6 * kilograms / (math.pi * wide**3)
+        if not _AIR < density < _DENSEST:
+            raise Refused(
+                f"a ball of {show(kilograms, 'kg')} with a diameter of {show(wide, 'm')} has "
+                f"a density of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
+            )
     if recording.kind in ("flights", "heights", "drops"):
         if kilograms is not None and wide is not None:
             drag = _AIR * _DRAG * math.pi * wide**2 / 8 / kilograms

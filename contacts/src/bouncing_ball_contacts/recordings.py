@@ -7,13 +7,18 @@ time, or a signal in which impacts stand out. Lines ``# key: value`` above it na
 """
 
 import contextlib
+import csv
 import io
+import json
+import math
 import re
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
+from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -26,12 +31,27 @@ UNITS = {
     "interval": "s",
     "drop": "m",
     "rebound": "m",
+    "average": "m",
     "height": "m",
     "in": "m/s",
     "out": "m/s",
     "duration": "s",
     "restitution": "",
     "uncertainty": "",
+}
+# Words of German, French, Spanish and Italian headings.
+_WORDS = {
+    "rebound": "rück(?:sprung|prall)|abprall|rebond|rebote|rimbalzo",
+    "drop": "fall(?=höhe)|chute|ca[ií]da|caduta"
+    "|(?<=hauteur )initiale|(?<=altura )inicial|(?<=altezza )iniziale",
+    "height": "höhe|hauteur|altura|altezza",
+    "impact": "einfall|aufprall|auftreff|impacto|impatto",
+    "speed": "geschwindigkeit|vitesse|velocidad|velocità",
+    "before": r"\bvor\b|avant|antes|\bprima\b",
+    "after": r"\bnach\b|après|después|\bdopo\b",
+    "restitution": "restitu|stoßzahl",
+    "average": r"mittel(?:wert)?|moyenne|promedio|\bmedia\b",
+    "time": r"\bzeit|\btemps\b|tiempo|\btempo\b",
 }
 # What a heading means: the first pattern that is found in it, in lower case and without units.
 _MEANINGS = (
@@ -42,10 +62,14 @@ _MEANINGS = (
     ("out", r"\b(v|speed|velocity)\b.*\b(out|after|rebound|up|2)\b|^(u|v2|v')$"),
     ("out", r"(rebound|outgoing|rising|exit)\b.*\b(speed|velocity)"),
     ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
-    ("in", r"(impact|incoming|falling)\b.*\b(speed|velocity)"),
-    ("interval", r"interval|flight|Δt|delta ?t|^dt$"),
-    ("rebound", r"rebound|bounce height|^h ?([1-9]\d*|'|′|after|out|r)\b|^h'"),
-    ("drop", r"drop|release|initial height|start height|^h ?(0|before|in|i)\b"),
+    ("out", r"^v ?f$|final\b.*\b(speed|velocity)"),
+    ("in", r"^v ?[0i]$|(impact|incoming|falling|initial)\b.*\b(speed|velocity)"),
+    ("interval", r"interval|flight|bou\w+ time|Δt|delta ?t|^dt$"),
+    ("average", r"^(average|mean)$|\b(average|mean)\b.*bound|bound.*\b(average|mean)\b"),
+    ("rebound", r"rebound|bounce height|bounced|\bh ?([1-9]\d*|after|out|r|f)\b|^h ?['′]"),
+    ("rebound", r"height.*\b(after|end|final|reached)|^(after|end|final|max\w*)\b.*height"),
+    ("drop", r"drop|release|^(initial|start)\b.*height|height.*\b(before|initial|start)"),
+    ("drop", r"\bh ?(0|before|in|i)\b"),
     ("height", r"height|^h$"),
     ("recording", r"recording|^run\b|trial|series|ball\b"),
     ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
@@ -55,8 +79,15 @@ _MEANINGS = (
     ("signal", r"volt|ampl|sound|accel|pressure|^ch ?\d|audio"),
 )
 _UNIT_ROW = re.compile(
-    r"|s|ms|µs|us|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
+    r"|s|ms|µs|us|ns|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
 )
+_SUGGESTED = (
+    "write headings such as time, interval, height, drop_height and rebound_height, "
+    "speed_before and speed_after, speed and COR, or t and y"
+)
+_TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
+_HEADS = ("mass", "diameter", "contact time", "resolution")
+_LENGTHS = ("m", "cm", "mm")
 _PIXELS = ("px", "pixel", "pixels")
 _HIGHEST = 100.0
 _HIGHEST_WITHOUT_UNIT = 10.0
@@ -69,6 +100,8 @@ _SILENCE = 0.03
 # A contact that lasts longer, in s, is not one of a ball.
 _LONGEST_CONTACT = 0.03
 _SHORTEST_TRACK = 8
+# Heights that contradict gravity by this factor are said so.
+_OFF = 2.0
 # A height that rises by this part of the range belongs to another flight.
 _RISE = 0.03
 
@@ -101,12 +134,15 @@ def experiments() -> list[str]:
     return sorted(path.name.removesuffix(".csv") for path in folder.iterdir())
 
 
-def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = False) -> Recording:
-    """Return the recording of a file, or of a published experiment by its name.
+def read(
+    source: str | Path | Mapping[str, Any], leave_out: Sequence[int] = (), intervals: bool = False
+) -> Recording:
+    """Return the recording of a file, of a published experiment by its name, or of columns.
 
     Parameters
     ----------
-    source : str or Path
+    source : str, Path or mapping
+        Columns have headings as in a file, ``{"time (s)": [0.45, 1.17, 1.75]}``.
     leave_out : sequence of int
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
     intervals : bool
@@ -118,16 +154,31 @@ def read(source: str | Path, leave_out: Sequence[int] = (), intervals: bool = Fa
         If the file has no bounces, or numbers that are no bounces.
     """
     if not isinstance(source, str | Path):
-        raise Refused(f"{source!r} is no recording: give a file, a name, or Recording(…)")
+        lines = _of_columns(type(source).__name__, source).splitlines()
+        return _interpreted("columns", lines, set(leave_out), intervals)
     path = Path(source)
     if str(source) in experiments():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if not path.is_file():
+    if not path.exists() or path.is_dir():
         raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
     data = path.read_bytes()
     name = Path(source).name
     text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
+    with contextlib.suppress(json.JSONDecodeError):
+        text = _of_columns(name, json.loads(text))
     return _interpreted(name, text.splitlines(), set(leave_out), intervals)
+
+
+def _of_columns(name: str, columns: Any) -> str:
+    """Return columns by their headings as lines with tabs."""
+    try:
+        rows = zip_longest(*map(np.asarray, columns.values()), fillvalue="")
+        return "\n".join("\t".join(map(str, row)) for row in (columns, *rows))
+    except (AttributeError, TypeError, ValueError):
+        raise Refused(
+            f"{name} is no recording: give a file, the name of an experiment, or columns such as "
+            "{'time (s)': [0.45, 1.17, 1.75]}"
+        ) from None
 
 
 def _decoded(name: str, data: bytes) -> str:
@@ -170,11 +221,12 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     head: dict[str, str] = {}
     body: list[tuple[int, str]] = []
     for number, line in enumerate(lines, 1):
-        found = re.match(r"\s*#\s*([\w ]+?)\s*:\s*(.*?)\s*$", line)
+        found = re.match(r"\s*#\s*([\w ]+?)\s*[:=]\s*(.*?)\s*$", line)
         if found:
-            before = head.get(found[1].lower())
-            head[found[1].lower()] = f"{before} {found[2]}" if before else found[2]
-        elif not line.lstrip().startswith("#"):
+            key = found[1].lower().replace("_", " ")
+            head[key] = f"{head[key]} {found[2]}" if key in head else found[2]
+        # Audacity has the frequencies of a label in a line that begins with a backslash.
+        elif not line.lstrip().startswith(("#", "\\")):
             body.append((number, line))
     full = [each for each in body if each[1].strip()]
     if not full:
@@ -190,6 +242,14 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     known = ", ".join(heading for heading, _ in headings if heading)
     recording, used = _measured(name, columns, head, intervals, known)
     # Lines that were left out on purpose are known to be missing.
+    unused = [
+        f"'{key}: {value}'"
+        for key, value in head.items()
+        if not key.startswith(_HEADS) and re.fullmatch(r"[\d.,]+( ?[^\d\s-]\S*)?", value)
+    ]
+    if unused:
+        note = f"the head has {', '.join(unused)}, but only {', '.join(_HEADS)} are used"
+        recording = replace(recording, notes=(*recording.notes, note))
     has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
     gaps = sorted(set(columns["line"][has_gap]) - leave_out)
     if gaps:
@@ -210,30 +270,35 @@ def _table(
     first_line = body[0][1]
     last = body[-1][1]
     delimiter: str | None = next((mark for mark in ("\t", ";", ",") if mark in last), None)
-    decimal_comma = delimiter in ("\t", ";")
+    is_column = len(last.split()) < 2 and not delimiter
     if delimiter == ",":
         # Commas are decimal signs in a single column, whose heading has no comma.
         one_column = all(_is_decimal(line) for _, line in body[1:] if line.strip())
-        decimal_comma = one_column and ("," not in first_line or _is_decimal(first_line))
-    is_column = decimal_comma if delimiter == "," else len(last.split()) < 2 and not delimiter
+        is_column = one_column and ("," not in first_line or _is_decimal(first_line))
     if is_column:
-        delimiter = "\0"
-    cells = [
-        [cell.strip().strip('"').strip() for cell in line.rstrip("\n").split(delimiter)]
+        delimiter = "\x1f"
+    rows = (
+        next(csv.reader([line], delimiter=delimiter)) if delimiter and line else line.split()
         for _, line in body
-    ]
+    )
+    cells = [[cell.strip().strip('"').strip() for cell in row] for row in rows]
 
     def number(cell: str) -> float:
-        text = cell.replace("−", "-")
+        """Return a number, the seconds of mm:ss.s or hh:mm:ss.s, or NaN."""
+        if delimiter == "," and re.fullmatch(r"[1-9]\d{0,2},\d{3}", cell):
+            raise Refused(
+                f"{name}: {cell!r} may have thousands or decimals: write it without a comma"
+            )
+        text = cell.replace("−", "-").replace(",", ".")
         try:
-            return float(text.replace(",", ".") if decimal_comma else text)
+            return sum(float(part) * 60**i for i, part in enumerate(reversed(text.split(":"))))
         except ValueError:
             return np.nan
 
     numbers = [[number(cell) for cell in row] for row in cells]
     first = next((i for i, row in enumerate(numbers) if np.isfinite(row).any()), None)
     if first is None:
-        raise Refused(f"{name} has no line of numbers")
+        raise Refused(f"{name} has no line of numbers; {_TIMES}")
     # A row of units or headings may contain digits, but rows of numbers begin with one.
     width = max(len(row) for row in numbers[first:])
     lines = np.array([line for line, _ in body[first:]])
@@ -252,30 +317,65 @@ def _table(
             headings = [(old[0], unit) for old, unit in zip(headings, units, strict=True)]
         else:
             headings = [_heading(cell) for cell in each]
+    for place, heading in enumerate(headings):
+        if _meaning(*heading) == "recording" and not np.isfinite(values[:, place]).any():
+            # Recordings may have names.
+            recordings = [(row + [""] * width)[place] for row in cells[first:]]
+            values[:, place] = [recordings.index(each) for each in recordings]
     return values, lines, headings
 
 
 def _is_decimal(line: str) -> bool:
-    return re.fullmatch(r"\s*-?\d+,\d+\s*", line) is not None
+    return re.fullmatch(r"\s*-?[\d:]+,\d+\s*", line) is not None
 
 
 def _heading(cell: str) -> tuple[str, str]:
     """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
-    units = "s|ms|us|µs|m|cm|mm|px|m/s|cm/s|N|V"
+    units = "s|ms|us|µs|ns|m|cm|mm|px|m/s|cm/s|N|V"
     found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell) or re.fullmatch(
         rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell
     )
     if found is None:
         return cell, ""
-    return found[1].strip(), "" if found[2] in ("-", "–", "1") else found[2]
+    # In (mm:ss) the colon says it all.
+    return found[1].strip(), "" if found[2] in ("-", "–", "1") or ":" in found[2] else found[2]
 
 
 def _meaning(name: str, unit: str) -> str | None:
     plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
+    for word, foreign in _WORDS.items():
+        plain = re.sub(foreign, f" {word} ", plain).strip()
     found = next((each for each, pattern in _MEANINGS if plain and re.search(pattern, plain)), None)
     if found == "height" and unit.lower() in _PIXELS:
         return "position"
     return "time" if found is None and unit.lower() in ("s", "ms") else found
+
+
+def _meanings(headings: _Headings, values: Array) -> list[str | None]:
+    """Return what the columns mean beside each other."""
+    meanings = [_meaning(*each) for each in headings]
+    # "Bounce" is a number of a bounce, or its height.
+    meanings = [
+        "rebound" if each == "count" and (unit in _LENGTHS or np.any(column % 1 > 0)) else each
+        for each, (_, unit), column in zip(meanings, headings, values.T, strict=True)
+    ]
+    if "drop" in meanings and "rebound" not in meanings:
+        # "Trial 1", "Trial 2", … beside a drop height.
+        meanings = [
+            "rebound" if each in (None, "recording") and re.search(r"\d$", heading) else each
+            for each, (heading, _) in zip(meanings, headings, strict=True)
+        ]
+    if meanings.count("height") == 1 and len(of_pair := {"drop", "rebound"} & set(meanings)) == 1:
+        meanings[meanings.index("height")] = ({"drop", "rebound"} - of_pair).pop()
+    if "time" in meanings and meanings.count("height") == 1:
+        place = meanings.index("height")
+        steps = np.diff(values[:, place])
+        # Tops of flights fall, whereas a track rises in half of its frames.
+        if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
+            meanings[place] = "position"
+        elif np.any(steps) and "interval" not in meanings:
+            meanings[meanings.index("time")] = None
+    return meanings
 
 
 def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
@@ -284,34 +384,43 @@ def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict
     alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
     first = _meaning(*headings[0])
     is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
-    if len(headings) > 2 and len(alike) == 1 and is_series:
-        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …
+    if len(headings) > 1 and len(alike) == 1 and is_series:
+        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …, or each column is.
+        later = -values if first in ("interval", "height") else values
+        by_column = len(values) > 1 and not (np.diff(later, axis=0) <= 0).any()
+        if by_column and not (np.diff(later) <= 0).any():
+            raise Refused(
+                f"{name}: each line or each column may be a recording: write one below the other "
+                "with an empty line between"
+            )
+        number = np.tile(np.arange(len(headings), dtype=float), len(values))
         line = np.repeat(line, len(headings))
-        columns["recording"] = line
+        columns["recording"] = number if by_column else line
         values = values.reshape(-1, 1)
         headings = headings[:1]
-    meanings = [_meaning(*each) for each in headings]
-    if {"time", "height"} <= set(meanings):
-        place = meanings.index("height")
-        steps = np.diff(values[:, place])
-        # Tops of flights fall, whereas a track rises in half of its frames.
-        if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
-            meanings[place] = "position"
-        elif np.any(steps) and "interval" not in meanings:
-            meanings[meanings.index("time")] = None
+    meanings = _meanings(headings, values)
     found: dict[str, list[Array]] = {}
     for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
         if meaning is None or not np.isfinite(column).any():
             continue
         scale = 1.0
+        if meaning == "position" and unit in _LENGTHS:
+            columns["metre"] = np.array(in_si(heading, f"1 {unit}", "m"))
         if unit and meaning in UNITS:
             scale = in_si(f"{name}, column {heading!r}", f"1 {unit}", UNITS[meaning])
-        elif meaning in ("drop", "rebound", "height") and np.nanmax(column) > _HIGHEST_WITHOUT_UNIT:
+        elif UNITS.get(meaning) == "m" and np.nanmax(column) > _HIGHEST_WITHOUT_UNIT:
             raise Refused(
                 f"{name}: heights up to {np.nanmax(column):g} without a unit: write it in the "
                 f"heading, as in '{heading} (cm)'"
             )
         found.setdefault(meaning, []).append(column * scale)
+    for meaning in ("interval", "height", "drop", "in", "out"):
+        if len(found.get(meaning, [])) > 1:
+            raise Refused(
+                f"{name}: two columns are both taken as {meaning}: leave one out, or {_SUGGESTED}"
+            )
+    if "rebound" not in found and "average" in found:
+        found["rebound"] = found["average"]
     is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
     if alike == {""} and (is_label or values.shape[1] == 1):
         # One column, or labels with start and end.
@@ -352,6 +461,8 @@ def _measured(
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
         columns[speed] = np.abs(columns[speed])
+    # One half of a pair is no series.
+    alone = {"drop", "rebound", "in", "out"} & have
     pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
     if intervals and not {"time", "interval"} & have:
         raise Refused(f"{name} has no column of intervals")
@@ -370,20 +481,19 @@ def _measured(
         touches, durations = _touches(name, columns, used[1])
         chains = [np.diff(touches)]
         notes.append(f"{len(touches)} impacts were found in the signal")
-    elif {"time", "interval"} & have:
+    elif {"time", "interval"} & have and not alone:
         kind = "flights"
         chains, of = _flights(name, columns, intervals)
         used = [of]
         if {"time", "interval"} <= have and not intervals:
             notes.append(f"the file has times and intervals: it is read by its {of}s")
-    elif {"height", "drop"} & have:
+    elif "height" in have and not alone:
         kind = "heights"
-        used = ["height" if "height" in have else "drop"]
-        chains = _falling(name, _parts(columns, used[0]), "height", "m", _HIGHEST)
+        used = ["height"]
+        chains = _falling(name, _parts(columns, "height"), "height", "m", _HIGHEST)
     else:
         raise Refused(
-            f"{name}: no bounces in {known or 'a table without headings'}: times, intervals, "
-            "heights, speeds or positions are needed"
+            f"{name}: no bounces in {known or 'a table without headings'}: {_SUGGESTED}; {_TIMES}"
         )
     if uncertainty is not None:
         uncertainty = uncertainty[np.isfinite(uncertainty)]
@@ -468,7 +578,10 @@ def _flights(name: str, columns: dict[str, Array], intervals: bool) -> tuple[lis
 
 
 def _unsorted(name: str, line: float) -> Refused:
-    return Refused(f"{name}, line {line:.0f}: the time is not after the one before: sort the lines")
+    return Refused(
+        f"{name}, line {line:.0f}: the time is not after the one before: sort the lines, or leave "
+        "an empty line where another recording begins"
+    )
 
 
 def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> list[Array]:
@@ -481,10 +594,7 @@ def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> lis
                 raise Refused(f"{found} is not positive")
             if value > most:
                 small = "ms" if unit == "s" else "cm"
-                raise Refused(
-                    f"{found}: is it in {small}? write the unit in the heading, as in '{what} "
-                    f"({small})'"
-                )
+                raise Refused(f"{found}: is it in {small}? write ({small}) behind the heading")
             if value > _LONGER * last:
                 raise Refused(
                     f"{found} follows one of {last:.4g} {unit}: an impact is missing, or another "
@@ -530,15 +640,23 @@ def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
     notes = [f"{len(meetings)} impacts were found where flights meet; gravity is the scale."]
     if meetings is downwards[0]:
         notes.append("the positions grow downwards, as in a picture: they were turned")
-    at, before, after = np.array(meetings).T
+    at, before, after, scale = np.array(meetings).T
+    if "metre" in columns:
+        ratio = float(np.median(scale) / columns["metre"])
+        if 0 < ratio < 1 / _OFF or ratio > _OFF:
+            notes.append(
+                f"gravity is {STANDARD_GRAVITY / ratio:.3g} m/s² by the heights and times: the "
+                f"times are {math.sqrt(ratio):.2g} times the true ones, as in slow motion, and so "
+                "are the speeds, or the heights have another unit"
+            )
     impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
     return _pairs(name, impacts, ("in", "out"), "m/s"), notes
 
 
-def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float]:
-    """Return frame, speeds before and after of each impact, and the misfit of the parabolas.
+def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float, float]], float]:
+    """Return frame, speeds before and after, and scale of each impact, and the parabolas' misfit.
 
-    Two neighbouring flights have one curvature, which is that of gravity and gives the scale.
+    Two neighbouring flights have one curvature, which is that of gravity and gives the scale in m.
     """
     from scipy.signal import find_peaks
 
@@ -565,7 +683,8 @@ def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float]], float
         a, c1, b1, c2, b2 = best
         meet = (c1 - c2) / (b2 - b1)
         scale = STANDARD_GRAVITY / (-2 * a)
-        found.append((impact, -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale))
+        speeds = -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale
+        found.append((impact, *speeds, scale))
     return found, squares / free if free else np.inf
 
 

@@ -18,9 +18,10 @@ _COMMON = {
     "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0},
     "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "g/cm^3": 1e3, "g/cm³": 1e3},
     "Hz": {"Hz": 1.0, "kHz": 1e3},
-    "N/m": {"N/m": 1.0, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    "N/m": {"N/m": 1.0, "mN/m": 1e-3, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
     "": {"%": 1e-2},
 }
+_MISSPELT = {"gr": "g", "gm": "g", "kgs": "kg"}
 DENSITIES = {
     "steel": 7850.0,
     "aluminium": 2700.0,
@@ -96,6 +97,7 @@ def _read(name: str, text: str, unit: str) -> float:
         both = (plain.replace(",", ""), plain.replace(",", "."))
         raise Refused(f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one")
     plain = re.sub(r"(?<=\d),(?=\d)", ".", plain)
+    plain = re.sub(r"\s*[*×·]\s*10(?:\^|\*\*)(?=[-+\d])", "e", plain)
     found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", plain)
     if not found:
         raise Refused(f"{name}: {text!r} does not begin with a number; {_wanted(unit)}")
@@ -106,8 +108,13 @@ def _read(name: str, text: str, unit: str) -> float:
     typed = found[3]
     if not typed:
         return number
-    if typed in _COMMON.get(unit, ()):
-        return number * _COMMON[unit][typed]
+    common = _COMMON.get(unit, {})
+    if typed in common:
+        return number * common[typed]
+    # Ms would be 10⁶ s, and gr a grain of 65 mg.
+    wanted = _MISSPELT.get(typed.lower(), typed.lower())
+    if meant := next((each for each in common if each.lower() == wanted), None):
+        raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
     registry = _registry()
     try:
         quantity = registry.Quantity(number, typed)

@@ -527,6 +527,7 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
             r"orbit = Rigid\(.*\): must be a periodic orbit, such",
         ),
         (lambda: cascade(follow(start), to=2.0), "doubling = FollowedBranch.*: must be a period d"),
+        (lambda: follow(start, to=2.0, points=0), "points = 0: must be a whole number from 2"),
         (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
     ):
         with pytest.raises(ValueError, match=text) as raised:

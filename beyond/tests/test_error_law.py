@@ -266,6 +266,7 @@ def test_solutions_that_are_no_orbits_are_left_out():
     [
         ({"amplitude": -1.0}, "amplitude"),
         ({"amplitude": 1.0, "tolerance": 0}, "tolerance"),
+        ({"amplitude": 1.0, "tolerance": "1 %"}, "tolerance = '1 %': must be a number"),
         ({"amplitude": 1.0, "quantities": ["height"]}, "height"),
     ],
 )

@@ -143,6 +143,8 @@ def test_answers_in_sentences():
     good = str(on_shaker(**TABLE, contact_duration="100 us"))
     assert "The ball bounces once in each period" in good
     assert "stays there" in good
+    # 0.8 g over (100π rad/s)².
+    assert "The table moves by ±79.49 µm at 50 Hz, with an acceleration of Λ = 0.8 times" in good
     assert good.endswith("A restitution coefficient is good enough.")
     doubled = str(on_shaker(**{**TABLE, "acceleration": "1.2 g"}, contact_duration="10 us"))
     assert "unstable, its period has doubled" in doubled and "is not good enough" in doubled

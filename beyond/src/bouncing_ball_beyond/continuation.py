@@ -575,7 +575,8 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
-    found = _follow_all(orbits, along, to, points, np.full(len(orbits), None))
+    most = whole_number("points", points, 2)
+    found = _follow_all(orbits, along, to, most, np.full(len(orbits), None))
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper, brief
+from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper, brief, checked
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
@@ -334,8 +334,7 @@ def ball_at_ratio(
     contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
 ) -> Callable:
     """The function from ϖ, or from the number in its place, to the ball."""
-    if not 0 < tolerance < np.inf:
-        raise ValueError(f"tolerance = {tolerance!r}: must be positive")
+    checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
     if isinstance(contacts, SpringDamper):
         return lambda ratio: contacts.at(frequency_ratio=ratio)
     if isinstance(contacts, ForceLaw):

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
+from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief
 from bouncing_ball_beyond.root_time import (
     MOST_PANELS,
     PATIENT,
@@ -115,6 +115,12 @@ class ForceLaw(Ball):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number")
         for name in self.units.keys() - self.values.keys():
             raise ValueError(f"units: {name} is no parameter of the law, which has {self._names}")
+        for name, powers in self.units.items():
+            if np.shape(powers) != (3,) or np.asarray(powers).dtype.kind not in "iuf":
+                raise ValueError(
+                    f"units: {name} = {brief(powers)}: must be the powers of mass, length and time,"
+                    " such as (1, 0, -2) for N/m"
+                )
         for name in self.values.keys() & set(TAKEN):
             raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
         check_force(self)
@@ -339,10 +345,23 @@ def check_force(law):
 
     Along lines of constant rates and of constant depths, the change of the force between neighbours
     must be the integral of its derivative by complex steps. It is not where the force is not
-    analytic, nor over a kink.
+    analytic, nor over a kink. Of a row of balls those with an extreme parameter are checked.
     """
-    given = {name: np.ravel(np.real(x))[0] for name, x in law.values.items()}
-    depth = _depth_of_one(law.at(**given))
+    # A force may have no parameters at all.
+    arrays = [np.ravel(np.real(x)) for x in (*law.values.values(), 0.0)]
+    try:
+        rows = np.stack(np.broadcast_arrays(*arrays), axis=-1)
+    except ValueError:
+        sizes = ", ".join(f"{name} has {np.size(x)}" for name, x in law.values.items())
+        raise ValueError(f"values: {sizes}; arrays must have the same length") from None
+    for row in np.unique(np.concatenate([rows.argmin(axis=0), rows.argmax(axis=0)])):
+        given = dict(zip(law.values, rows[row, :-1], strict=True))
+        _check_one(law.at(**given), given)
+
+
+def _check_one(law, given):
+    """Check the force of one ball, whose parameters are given."""
+    depth = _depth_of_one(law)
     depths = depth * np.geomspace(1e-3, 30.0, 321)
     rates = np.linspace(-3.003, 3.0, 241)
     some_depths = depth * np.array([[0.02], [0.3], [1.1], [8.0]])
@@ -356,12 +375,15 @@ def check_force(law):
 
 def _depth_of_one(law):
     """The depth at which a ball of the speed 1 is stopped; ValueError if there is none."""
-    p = np.array([1.0 + 1j * H])
+    p = np.array([0.5, 1.0]) + 1j * H
     try:
         force = law.force_at(p, p, 0.0, {**law.values, "u": 1.0})
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"force: fails for arrays of complex numbers ({reason})") from None
+        raise ValueError(
+            f"force: fails for arrays of complex numbers, which need np.where in place of if"
+            f" ({reason})"
+        ) from None
     if np.shape(force) != p.shape:
         raise ValueError(f"force: must have the shape of p and v, {p.shape}, not {np.shape(force)}")
     with np.errstate(all="ignore"):

@@ -22,6 +22,7 @@ from scipy.special import stdtrit
 from bouncing_ball_beyond.balls import (
     H,
     check_ball,
+    checked,
     contacts,
     has_closed_form,
     table_at,
@@ -707,7 +708,10 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     amplitude = float(table)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
-    fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
+    fast = relative_velocity_max
+    if fast is None:
+        fast = fastest(ball, amplitude)
+    checked("relative_velocity_max", fast, 0, np.inf, low_allowed=False)
     phase = TURN * middle - np.pi
     speed = fast * middle
     given = {"amplitude": amplitude, "speed": speed, "phase": phase}

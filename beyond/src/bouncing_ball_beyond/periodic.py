@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball
+from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball, checked, whole_number
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
 
 
@@ -319,7 +319,14 @@ def rows_of(ball: Ball, *others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[
     """A ball and further numbers as rows of one length, and the shape which these had."""
     check_ball(ball)
     fields = ball.parameters
-    broadcast = np.broadcast_arrays(*fields.values(), *others)
+    try:
+        broadcast = np.broadcast_arrays(*fields.values(), *others)
+    except ValueError:
+        shapes = ", ".join(str(np.shape(each)) for each in (*fields.values(), *others))
+        raise ValueError(
+            f"the parameters of the ball and the other arguments have the shapes {shapes}, which"
+            " do not go together"
+        ) from None
     shape = broadcast[0].shape if broadcast else ()
     arrays = [np.array(each).reshape(-1) for each in broadcast]
     names = list(fields)
@@ -359,7 +366,10 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     >>> round(orbit(Rigid(0.5), amplitude=1.2).phase, 6)
     0.510164
     """
-    _check_arguments(amplitude, n, side)
+    _check_amplitude(amplitude)
+    _check_periods(n)
+    if side not in ("stable", "unstable"):
+        raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
     equations = OrbitEquations(row, 1, periods)
     sign = 1 if side == "stable" else -1
@@ -432,20 +442,24 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def _check_arguments(amplitude, n, side):
-    """Raise ValueError with one line for a wrong argument."""
-    for name, given in (("amplitude", amplitude), ("n", n)):
-        if np.asarray(given).dtype.kind not in "iufb":
-            what = "is a text, and must be a number" if isinstance(given, str) else "is no number"
-            raise ValueError(f"{name} = {brief(given)}: {what}")
-    for value in np.ravel(amplitude):
-        if not 0 < value < np.inf:
-            raise ValueError(f"amplitude = {float(value):g}: must be a positive number")
-    for value in np.ravel(n):
-        if value != int(value) or not 1 <= value <= 1000:
-            raise ValueError(f"n = {float(value):g}: must be a whole number from 1 to 1000")
-    if side not in ("stable", "unstable"):
-        raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
+def _check_amplitude(amplitude):
+    """Raise ValueError with one line unless amplitudes are positive numbers."""
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+
+
+def _one_amplitude(amplitude) -> float:
+    """The amplitude as a number; ValueError unless it is a positive one."""
+    _check_amplitude(amplitude)
+    if np.ndim(amplitude):
+        raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
+    return float(amplitude)
+
+
+def _check_periods(n):
+    """Raise ValueError with one line unless all are whole numbers from 1 to 1000."""
+    values = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
+    for value in values[values % 1 != 0]:
+        raise ValueError(f"n = {value:g}: must be a whole number")
 
 
 def apart(first: float, second: float) -> tuple[str, str]:
@@ -492,10 +506,11 @@ def orbits(
     [(8.209, True), (8.007, False)]
     """
     check_ball(ball)
-    _check_arguments(amplitude, periods, "stable")
-    _check_arguments(1.0, impacts, "stable")
-    equations = OrbitEquations(ball, impacts, periods)
-    z = _all_orbits(equations, float(amplitude))
+    amplitude = _one_amplitude(amplitude)
+    equations = OrbitEquations(
+        ball, whole_number("impacts", impacts), whole_number("periods", periods)
+    )
+    z = _all_orbits(equations, amplitude)
     found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
 
@@ -633,7 +648,7 @@ def orbit_near(
         If Newton's method does not converge.
     """
     check_ball(ball)
-    _check_arguments(amplitude, 1, "stable")
+    amplitude = _one_amplitude(amplitude)
     phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
     if phases.shape != velocities.shape or phases.ndim != 1:
         raise ValueError("phases, velocities: must have one entry for each impact")

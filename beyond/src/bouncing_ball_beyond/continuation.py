@@ -624,6 +624,8 @@ def cascade(doubling, *, to, impacts: int = 64):
     wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
+    if np.ndim(to) and len(to) != len(latest):
+        raise ValueError(f"to: has {len(to)} values for {len(latest)} orbits")
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
     while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
@@ -943,14 +945,19 @@ def _joined(parts: list):
 
 
 class Limits(NamedTuple):
-    """The orbits between which those with one impact are stable; None where there is none."""
+    """The orbits between which those with one impact are stable, or the reasons for none."""
 
-    saddle_node: PeriodicOrbit | None
-    period_doubling: PeriodicOrbit | None
+    saddle_node: PeriodicOrbit | OrbitNotFound
+    period_doubling: PeriodicOrbit | OrbitNotFound
 
     def __repr__(self):
-        places = (each and f"Λ = {each.amplitude:.10g}" for each in self)
-        return "Limits: saddle-node {}, period doubling {}".format(*places)
+        places = (
+            f"{each.kind} at Λ = {each.amplitude:.10g}"
+            if isinstance(each, PeriodicOrbit)
+            else str(each)
+            for each in self
+        )
+        return "Limits: {}; {}".format(*places)
 
 
 def limits(ball: Ball, *, n=1):
@@ -958,7 +965,7 @@ def limits(ball: Ball, *, n=1):
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
     and no saddle-node. The orbits of other balls may end otherwise, for example with the grazing of
-    an impact if ζ > 1: the ``end`` of a branch of :func:`follow` says how.
+    an impact if ζ > 1. In place of a limit there is then an OrbitNotFound with the reason.
 
     Parameters
     ----------
@@ -984,11 +991,19 @@ def limits(ball: Ball, *, n=1):
     branches = _follow_all(between * 2, "amplitude", to, 500, both)
     found = []
     for below, above in zip(branches[: len(between)], branches[len(between) :], strict=True):
-        special = () if isinstance(below, OrbitNotFound) else (*below.special[::-1], *above.special)
-        folds = (each for each in special if each.kind == "saddle-node")
-        doublings = (each for each in special if each.kind == "period doubling")
-        found.append(Limits(next(folds, None), next(doublings, None)))
+        if isinstance(below, OrbitNotFound):
+            found.append(Limits(below, below))
+            continue
+        special = (*below.special[::-1], *above.special)
+        fold = _limit(special, "saddle-node", below.end)
+        found.append(Limits(fold, _limit(special, "period doubling", above.end)))
     return found if shape else found[0]
+
+
+def _limit(special, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
+    """The first special orbit of a kind, or the reason why there is none: how the branch ends."""
+    of_kind = (each for each in special if each.kind == kind)
+    return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
 
 
 def _between_limits(equations: OrbitEquations) -> list:

@@ -414,7 +414,7 @@ def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: Per
     lowest = limits(ball, n=n).saddle_node
     where = f"{amplitude:.10g}"
     why = "none is found on this side of the saddle-node"
-    if lowest is not None and amplitude < lowest.amplitude:
+    if isinstance(lowest, PeriodicOrbit) and amplitude < lowest.amplitude:
         where, limit = apart(amplitude, lowest.amplitude)
         why = f"below the saddle-node at Λ = {limit}"
     elif other or found:

@@ -999,7 +999,7 @@ def _between_limits(equations: OrbitEquations) -> list:
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     for share in (0.5, 0.9, 0.2, 2.0, 4.0):
         amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
-        z, good, _ = near_instants(equations, amplitude, 1)
+        z, good = near_instants(equations, amplitude, 1)
         for i in range(len(n)):
             if isinstance(found[i], PeriodicOrbit):
                 continue

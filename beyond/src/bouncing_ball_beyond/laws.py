@@ -15,6 +15,7 @@ from numpy.polynomial import chebyshev, legendre
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
 from bouncing_ball_beyond.root_time import (
+    FEW_CONTACTS,
     MOST_PANELS,
     PATIENT,
     ContactMotion,
@@ -327,7 +328,8 @@ class ForceLaw(Ball):
             period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
         else:
             # So many panels are about the least that impacts need.
-            first = given["T"] / (1.5 * self.root)
+            one = self.root == 1 and rows.size <= FEW_CONTACTS
+            first = given["T"] / (1.0 if one else 1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
         ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, panels)
         s, q, v, t = rows.joined(*ends)

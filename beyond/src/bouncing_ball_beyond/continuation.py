@@ -196,9 +196,12 @@ class _Start(NamedTuple):
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    derivatives = equations.linear(z).derivatives
+    none = np.zeros((*derivatives.shape[:3], 1))
     normal = np.ones(z.shape)
     for _ in range(2):
-        normal = _unit(newton(equations, z, normal, iterations=1).tangent)
+        border = normal[:, np.newaxis]
+        normal = _unit(solve_bordered(derivatives, none, border, np.ones((len(z), 1, 1)))[..., 0])
     return normal
 
 

@@ -324,8 +324,8 @@ class ForceLaw(Ball):
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
-            # A table at rest has no period; an impact lasts some three times P/u.
-            period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
+            # A table at rest has no period; most impacts last some three times P/u, and end before.
+            period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
         else:
             # So many panels are about the least that impacts need.
             one = self.root == 1 and rows.size <= FEW_CONTACTS

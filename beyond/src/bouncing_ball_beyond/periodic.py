@@ -295,8 +295,8 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     at = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
-            # For a guess, the signature at a speed is that at another one within a percent.
-            if np.any(np.abs(u - at) > 0.01 * u):
+            # For a guess, the signature at a speed is that at another one within some percent.
+            if np.any(np.abs(u - at) > 0.05 * u):
                 at = u
                 r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)

@@ -196,9 +196,12 @@ class _Start(NamedTuple):
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    derivatives = equations.linear(z).derivatives
+    none = np.zeros((*derivatives.shape[:3], 1))
     normal = np.ones(z.shape)
     for _ in range(2):
-        normal = _unit(newton(equations, z, normal, iterations=1).tangent)
+        border = normal[:, np.newaxis]
+        normal = _unit(solve_bordered(derivatives, none, border, np.ones((len(z), 1, 1)))[..., 0])
     return normal
 
 
@@ -1015,7 +1018,7 @@ def _between_limits(equations: OrbitEquations) -> list:
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     for share in (0.5, 0.9, 0.2, 2.0, 4.0):
         amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
-        z, good, _ = near_instants(equations, amplitude, 1)
+        z, good = near_instants(equations, amplitude, 1)
         for i in range(len(n)):
             if isinstance(found[i], PeriodicOrbit):
                 continue

@@ -232,9 +232,9 @@ class OrbitEquations:
         amplitude = np.broadcast_to(amplitude, leaves.shape)
         return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
-    def clearance(self, z) -> NDArray:
+    def clearance(self, z, flights: Flights | None = None) -> NDArray:
         """How far balls are above the table where flights turn back from it: the least of all."""
-        flights = self.ends(z)
+        flights = flights or self.ends(z)
         return turns_back(
             lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight
         ).min(axis=-1)
@@ -338,7 +338,7 @@ class OrbitEquations:
         falls = (ends.amplitude * np.sin(ends.leaves) > 1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
-        clear = (self.clearance(z) > 0) & (self.contact_clearance(z) > 0)
+        clear = (self.clearance(z, ends) > 0) & (self.contact_clearance(z) > 0)
         return clear & leaving & (landing & lasting).all(axis=-1)
 
 

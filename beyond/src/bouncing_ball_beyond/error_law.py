@@ -471,7 +471,7 @@ def exact_errors(
     *,
     amplitude: ArrayLike,
     n: int = 1,
-    simple: Callable[[Ball], Ball] | None = None,
+    simple: Callable[[Ball], Ball] | FreeImpact | None = None,
     quantities: Sequence[str] = QUANTITIES,
 ) -> dict:
     """Relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
@@ -482,7 +482,7 @@ def exact_errors(
         As in :func:`contact_values`.
     simple
         A function from a ball to the ball in its place, such as ``Corrected``. By default this is
-        the restitution model with the r(v) of the ball.
+        the restitution model with the r(v) of the ball; its :func:`free_impact` may be given.
 
     Returns
     -------
@@ -501,8 +501,8 @@ def exact_errors(
     [-0.041148, -0.000121]
     """
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
-    if simple is None:
-        reference = restitution_values(free_impact(ball, n), amplitude)
+    if simple is None or isinstance(simple, FreeImpact):
+        reference = restitution_values(simple or free_impact(ball, n), amplitude)
     else:
         other = simple(ball)
         reference = contact_values(other, amplitude=amplitude, n=n, quantities=quantities)
@@ -564,33 +564,44 @@ def error_thresholds(
     """
     path = ball_at_ratio(contacts, n, tolerance)
     known: dict = {"amplitude": amplitude, "n": n, "simple": simple}
+    if simple is None and isinstance(contacts, SpringDamper | ForceLaw):
+        # All stretched contacts have the same restitution coefficient.
+        known["simple"] = free_impact(path(1.0), n)
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
     errors = exact_errors(path(ratios), quantities=quantities, **known)
+    # Those of one orbit are located together, and each bifurcation alone.
+    alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
+    together = [name for name in quantities if name not in alone]
     found = {}
-    for name, error in errors.items():
+    for names in filter(None, [together, *([name] for name in alone)]):
 
-        def excess(logarithm, row, name=name):
+        def excess(logarithm, place, names=names):
             # The ratios of all rows, because a path may depend on the place in an array.
-            ratio = np.full(shape, float(high))
-            ratio.flat[row] = np.exp(logarithm)
-            there = exact_errors(path(ratio), quantities=[name], **known)[name]
-            return np.abs(there.flat[row]) - tolerance
+            ratio = np.full((len(names), *shape), float(high))
+            ratio.flat[place] = np.exp(logarithm)
+            there = exact_errors(path(ratio), quantities=names, **known)
+            error = np.array([there[name][j] for j, name in enumerate(names)])
+            # It is about in proportion to 1/ϖ, and its logarithm is about linear.
+            return np.log(np.abs(error.flat[place]) / tolerance)
 
-        scan = np.abs(error).reshape(samples, -1)
+        scan = np.array([np.abs(errors[name]).reshape(samples, -1) for name in names])
+        scan = scan.swapaxes(0, 1).reshape(samples, -1)
         beyond = ~(scan <= tolerance)
         last = samples - 1 - beyond[::-1].argmax(axis=0)
-        rows = np.arange(last.size)
-        status = np.where(np.isnan(scan[last, rows]), "no orbit", "found")
+        places = np.arange(last.size)
+        status = np.where(np.isnan(scan[last, places]), "no orbit", "found")
         status[last == samples - 1] = "outside"
         status[~beyond.any(axis=0)] = "within"
-        rows = rows[status == "found"]
+        places = places[status == "found"]
         ratio = np.full(last.size, np.nan)
-        if rows.size:
-            bracket = np.log(grid[last[rows]]), np.log(grid[last[rows] + 1])
+        if places.size:
+            bracket = np.log(grid[last[places]]), np.log(grid[last[places] + 1])
             # Rounding leaves 1e-14 of an error of 1e-2 that is about proportional to 1/ϖ.
-            place = find_root(excess, bracket, args=(rows,), tolerances={"xatol": 1e-12}).x
-            ratio[rows] = np.exp(place)
-        found[name] = ErrorThreshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
-    return found
+            root = find_root(excess, bracket, args=(places,), tolerances={"xatol": 1e-12}).x
+            ratio[places] = np.exp(root)
+        for j, name in enumerate(names):
+            each = (x.reshape(len(names), *shape)[j] for x in (ratio, status))
+            found[name] = ErrorThreshold(*each)
+    return {name: found[name] for name in quantities}

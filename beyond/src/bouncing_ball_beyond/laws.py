@@ -15,6 +15,7 @@ from numpy.polynomial import chebyshev, legendre
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief
 from bouncing_ball_beyond.root_time import (
+    FEW_CONTACTS,
     MOST_PANELS,
     PATIENT,
     ContactMotion,
@@ -329,11 +330,12 @@ class ForceLaw(Ball):
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
-            # A table at rest has no period; an impact lasts some three times P/u.
-            period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
+            # A table at rest has no period; most impacts last some three times P/u, and end before.
+            period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
         else:
             # So many panels are about the least that impacts need.
-            first = given["T"] / (1.5 * self.root)
+            one = self.root == 1 and rows.size <= FEW_CONTACTS
+            first = given["T"] / (1.0 if one else 1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
         ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, panels)
         s, q, v, t = rows.joined(*ends)

@@ -292,9 +292,13 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, side * np.pi / 3)
     step, before = np.zeros((2, *amplitude.shape))
+    at = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
-            r, _, centroid, loss = ball.signature(u)
+            # For a guess, the signature at a speed is that at another one within some percent.
+            if np.any(np.abs(u - at) > 0.05 * u):
+                at = u
+                r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)
             load = np.where(known, loss * (1 - amplitude * np.sin(psi)), 0.0)
             excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
@@ -373,7 +377,8 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
     equations = OrbitEquations(row, 1, periods)
     sign = 1 if side == "stable" else -1
-    z, good, admissible = near_instants(equations, amplitudes.astype(float), sign)
+    z, good = near_instants(equations, amplitudes.astype(float), sign)
+    admissible = good & equations.admissible(z)
     found = []
     for i, alone in enumerate(single(equations, i) for i in range(len(z))):
         one = PeriodicOrbit(alone, z[i]) if good[i] else None
@@ -386,16 +391,15 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
 
 
 def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
-    """Orbits with one impact near those of the corrected model, as rows.
-
-    Also which of them are found on a side of the saddle-node, and which of these are admissible.
+    """Orbits with one impact near those of the corrected model, as rows, and which of them are
+    found on a side of the saddle-node.
     """
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = _first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
-    good &= (z[:, 1] > 0) & (equations.ends(z).flight[:, 0] > 0)
-    return z, good, good & equations.admissible(z)
+    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
+    return z, good
 
 
 def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: PeriodicOrbit | None):

@@ -312,3 +312,22 @@ def test_a_ball_without_restitution_leaves_where_the_table_falls_faster():
     lossy = orbit(Rigid(0.0), amplitude=3.3)
     assert lossy.admissible and lossy.amplitude * np.sin(lossy.phase) > 1
     assert not orbit(Rigid(0.0), amplitude=3.2).admissible
+
+
+def test_rows_without_orbits_are_searched_together():
+    """Each has what it has alone; a ball of a compliant contact has an orbit of another branch."""
+    ratios = [1.5, 5.0, 5.0, 40.0]
+    restitution = [0.9, 0.1, 0.6, 0.3]
+    together = orbit(SpringDamper(ratios, restitution=restitution), amplitude=[1.6, 1.2, 0.3, 1.2])
+    for row, found in enumerate(together):
+        ball = SpringDamper(ratios[row], restitution=restitution[row])
+        try:
+            alone = orbit(ball, amplitude=[1.6, 1.2, 0.3, 1.2][row])
+        except OrbitNotFound as reason:
+            assert str(found) == str(reason)
+        else:
+            assert np.abs(found.z - alone.z).max() < 1e-11
+    missing = [isinstance(each, OrbitNotFound) for each in together]
+    assert any(missing) and not all(missing)
+    rigid = orbit(Rigid([0.1, 0.5, 0.3]), amplitude=1.2)
+    assert [isinstance(each, OrbitNotFound) for each in rigid] == [True, False, True]

@@ -1017,15 +1017,16 @@ def _between_limits(equations: OrbitEquations) -> list:
     fold = np.pi * n * (1 - r) / (1 + r)
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     for share in (0.5, 0.9, 0.2, 2.0, 4.0):
-        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
-        z, good = near_instants(equations, amplitude, 1)
-        for i in range(len(n)):
-            if isinstance(found[i], PeriodicOrbit):
-                continue
-            alone = single(equations, i)
-            ones = [PeriodicOrbit(alone, z[i])] if good[i] else []
-            ones = ones or shortest_contacts(alone, float(amplitude[i]), 1)
-            found[i] = ones[0] if ones else found[i]
-        if all(isinstance(each, PeriodicOrbit) for each in found):
+        left = [i for i, each in enumerate(found) if isinstance(each, OrbitNotFound)]
+        if not left:
             break
+        rows = equations.rows(left)
+        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)[left]
+        z, good = near_instants(rows, amplitude, 1)
+        for i, row in enumerate(z):
+            found[left[i]] = PeriodicOrbit(single(rows, i), row) if good[i] else found[left[i]]
+        others = [i for i in range(len(left)) if not good[i]]
+        searched = shortest_contacts(rows.rows(others), amplitude[others], 1)
+        for i, orbits in zip(others, searched, strict=True):
+            found[left[i]] = orbits[0] if orbits else found[left[i]]
     return found

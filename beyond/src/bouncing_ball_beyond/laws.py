@@ -199,7 +199,7 @@ class ForceLaw(Ball):
 
     def early_release(self, tau, u, amplitude):
         """T of the first releases; below Λ = 1, a ball that lies on the table counts as staying."""
-        panels = PATIENT if amplitude < 1 else MOST_PANELS
+        panels = PATIENT if np.all(amplitude < 1) else MOST_PANELS
         return self._followed(tau, u, amplitude, 1.0, panels=panels)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):

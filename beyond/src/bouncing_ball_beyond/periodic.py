@@ -9,8 +9,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball, checked, whole_number
+from bouncing_ball_beyond.balls import (
+    Ball,
+    Corrected,
+    Rigid,
+    brief,
+    check_ball,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
+
+TOGETHER = 16
+"""Rows whose orbits are searched for at a time, with 3072 impacts each."""
 
 
 class OrbitNotFound(ValueError):
@@ -379,10 +390,15 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     sign = 1 if side == "stable" else -1
     z, good = near_instants(equations, amplitudes.astype(float), sign)
     admissible = good & equations.admissible(z)
-    found = []
-    for i, alone in enumerate(single(equations, i) for i in range(len(z))):
-        one = PeriodicOrbit(alone, z[i]) if good[i] else None
-        found.append(one if admissible[i] else _searched(alone, float(amplitudes[i]), sign, one))
+    found: list = [
+        PeriodicOrbit(single(equations, i), z[i]) if good[i] else None for i in range(len(z))
+    ]
+    missing = np.flatnonzero(~admissible)
+    if missing.size:
+        others = [found[i] for i in missing]
+        searched = _searched(equations.rows(missing), amplitudes[missing], sign, others)
+        for i, each in zip(missing, searched, strict=True):
+            found[i] = each
     if shape:
         return found
     if isinstance(found[0], OrbitNotFound):
@@ -402,38 +418,52 @@ def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> t
     return z, good
 
 
-def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: PeriodicOrbit | None):
-    """The orbit with one impact and the shortest contact on a side of the saddle-node, or a reason.
+def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: list) -> list:
+    """The orbits with one impact and the shortest contact on a side of the saddle-node, by rows.
 
-    If a ball follows no such orbit, it is one that no ball follows, but not below the saddle-node.
+    If a ball follows no such orbit, it is one that no ball follows, of ``others`` if there is one.
+    Below the saddle-node of the branch it is the reason.
     """
     # The module of branches imports this one.
     from bouncing_ball_beyond.continuation import limits
 
-    found = shortest_contacts(equations, amplitude, sign)
-    if found and found[0].admissible:
-        return found[0]
-    ball = equations.ball
-    n = int(equations.periods)
-    lowest = limits(ball, n=n).saddle_node
-    where = f"{amplitude:.10g}"
-    why = "none is found on this side of the saddle-node"
-    if isinstance(lowest, PeriodicOrbit) and amplitude < lowest.amplitude:
-        where, limit = apart(amplitude, lowest.amplitude)
-        why = f"below the saddle-node at Λ = {limit}"
-    elif other or found:
-        return other or found[0]
-    return OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {_described(ball)}: {why}")
+    found: list = [None] * len(amplitude)
+    # With a number r the instants are the impacts, so that there are no others.
+    if not isinstance(equations.ball, Rigid) or callable(equations.ball.restitution):
+        orbits = shortest_contacts(equations, amplitude, sign)
+        found = [each[0] if each else None for each in orbits]
+    missing = [i for i, each in enumerate(found) if not (each and each.admissible)]
+    rows = equations.rows(missing)
+    lowest = limits(rows.ball, n=rows.periods) if missing else []
+    for i, (fold, _) in zip(missing, lowest, strict=True):
+        where = f"{amplitude[i]:.10g}"
+        why = "none is found on this side of the saddle-node"
+        if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
+            where, limit = apart(amplitude[i], fold.amplitude)
+            why = f"below the saddle-node at Λ = {limit}"
+        elif others[i] or found[i]:
+            found[i] = others[i] or found[i]
+            continue
+        ball = _described(equations.ball.rows(i))
+        n = np.ravel(equations.periods)[i]
+        found[i] = OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {ball}: {why}")
+    return found
 
 
 def shortest_contacts(
-    equations: OrbitEquations, amplitude: float, sign: int
-) -> list[PeriodicOrbit]:
-    """Orbits with one impact on a side of the saddle-node: those that a ball follows, and of these
-    those with short contacts, come first."""
-    found = [PeriodicOrbit(equations, row) for row in _all_orbits(equations, amplitude)]
-    on_side = [each for each in found if sign * (1 - each.turn) > 0]
-    return sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration))
+    equations: OrbitEquations, amplitude: NDArray, sign: int
+) -> list[list[PeriodicOrbit]]:
+    """Orbits with one impact on a side of the saddle-node, a list for each row.
+
+    Those that a ball follows, and of these those with short contacts, come first.
+    """
+    found = []
+    for i, z in enumerate(_all_orbits(equations, amplitude)):
+        orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
+        on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
+        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
+        found.append(on_side)
+    return found
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
@@ -514,25 +544,35 @@ def orbits(
     equations = OrbitEquations(
         ball, whole_number("impacts", impacts), whole_number("periods", periods)
     )
-    z = _all_orbits(equations, amplitude)
+    (z,) = _all_orbits(equations, np.array([amplitude]))
     found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
 
 
-def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Solutions of the equations at an amplitude, shape (orbits, N), also those no ball follows."""
-    nearby = _returns if equations.impacts == 1 else _motions
-    starts = nearby(equations, amplitude)
-    starts = starts[np.isfinite(starts).all(axis=1)]
-    if not len(starts):
-        return starts
-    z = _distinct(equations, _solutions_near(equations, starts))
-    # Some starts lead to orbits many periods later, at times with fewer digits.
-    return newton(equations, z).z if len(z) else z
+def _all_orbits(equations: OrbitEquations, amplitude: NDArray) -> list[NDArray]:
+    """Solutions of the equations at the amplitudes of rows, also those no ball follows.
+
+    An array of the shape (orbits, N) for each row; with several impacts there is one row.
+    """
+    found = []
+    for first in range(0, len(amplitude), TOGETHER):
+        block = np.arange(first, min(first + TOGETHER, len(amplitude)))
+        part = equations.rows(block)
+        nearby = _returns if part.impacts == 1 else _motions
+        starts, row = nearby(part, amplitude[block])
+        good = np.isfinite(starts).all(axis=1)
+        z, row = _solutions_near(part, starts[good], row[good])
+        z, row = _motions_among(part, z, row)
+        each = [_distinct(part.rows(i), z[row == i]) for i in range(len(block))]
+        row = np.repeat(np.arange(len(block)), [len(z) for z in each])
+        # Some starts lead to orbits many periods later, at times with fewer digits.
+        z = newton(part.rows(row), np.concatenate(each)).z if len(row) else np.concatenate(each)
+        found += [z[row == i] for i in range(len(block))]
+    return found
 
 
-def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The solutions to which Newton's method leads from starts.
+def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions to which Newton's method leads from starts of rows, and their rows.
 
     Where impacts become much faster or longer than all of those at the starts, it is lost.
     """
@@ -541,49 +581,60 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
         x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
         return np.abs(x[..., 1:]).max(axis=1)
 
-    largest = 2 * sizes(z).max(axis=0)
-    found = []
+    largest = np.zeros((row.max(initial=0) + 1, equations.unknowns - 1))
+    np.maximum.at(largest, row, 2 * sizes(z))
+    found = [z[:0]]
+    rows = [row[:0]]
     for _ in range(30):
-        solution = newton(equations, z, iterations=1)
-        found.append(solution.z[solution.found])
-        z = solution.z[~solution.found]
-        z = z[np.isfinite(z).all(axis=1) & (sizes(z) <= largest).all(axis=1)]
         if not len(z):
             break
-    return np.concatenate(found)
+        solution = newton(equations.rows(row), z, iterations=1)
+        found.append(solution.z[solution.found])
+        rows.append(row[solution.found])
+        z = solution.z
+        inside = np.isfinite(z).all(axis=1) & (sizes(z) <= largest[row]).all(axis=1)
+        z = z[inside & ~solution.found]
+        row = row[inside & ~solution.found]
+    return np.concatenate(found), np.concatenate(rows)
 
 
 @np.errstate(all="ignore")
-def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near all orbits with one impact: impacts whose speed is the same after m periods.
+def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+    """Starts near all orbits with one impact, and their rows: impacts whose speed is the same after
+    m periods.
 
     Orbits lie on the curves of such impacts, which are crossed at 96 phases.
     """
-    ball = equations.ball
-    longest = 2.2 * np.pi * int(equations.periods) + amplitude
-    speeds = np.geomspace(1e-3, longest, 32)
-    tau, u = np.meshgrid(np.linspace(0, 2 * np.pi, 96, endpoint=False), speeds, indexing="ij")
+    longest = 2.2 * np.pi * equations.periods + amplitude
+    speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]
+    phases = np.linspace(0, 2 * np.pi, 96, endpoint=False)[:, np.newaxis]
+    tau, u = np.broadcast_arrays(phases, speeds)
 
-    def impacts(tau, u):
-        columns = [tau, u, amplitude + 0 * u]
+    def impacts(tau, u, row):
+        columns = [tau, u, amplitude[row]]
+        ball = equations.ball.rows(row)
         if ball.lasts:
-            columns.insert(2, ball.early_release(tau, u, amplitude))
+            columns.insert(2, ball.early_release(*columns))
         return np.stack(columns, axis=-1)
 
-    change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
-    at, number = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
-    part = change[at, number] / (change[at, number] - change[at, number + 1])
-    between = speeds[number] + part * np.diff(speeds)[number]
-    return impacts(tau[at, 0], between)
+    row = np.repeat(np.arange(len(amplitude)), tau[0].size)
+    z = impacts(tau.ravel(), u.ravel(), row)
+    change = equations.rows(row).legs(z)[:, 0, -1].reshape(tau.shape)
+    row, at, number = np.nonzero(change[..., :-1] * change[..., 1:] < 0)
+    low = change[row, at, number]
+    part = low / (low - change[row, at, number + 1])
+    between = u[row, at, number] + part * np.diff(u)[row, at, number]
+    return impacts(tau[row, at, 0], between, row), row
 
 
-def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
+def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
     """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
     # The simulation is not needed by orbits with one impact.
     from bouncing_ball_beyond.simulation import Balls, follow
 
     k = equations.impacts
     turn = 2 * np.pi
+    (amplitude,) = amplitude
     fastest = 1.1 * np.pi * int(equations.periods) + amplitude
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
@@ -597,20 +648,27 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
     columns = [times, speed, T][: equations.unknowns]
     x = np.stack(columns, axis=-1)[:, near].swapaxes(0, 1)
     x = x.reshape(len(x), equations.size)
-    return np.column_stack([x, np.full(len(x), amplitude)])
+    return np.column_stack([x, np.full(len(x), amplitude)]), np.zeros(len(x), int)
+
+
+def _motions_among(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions whose impacts and flights last, and their rows."""
+    x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
+    good = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
+    good &= (x[..., 1] > 0).all(axis=1)
+    good[good] &= (equations.rows(row[good]).ends(z[good]).flight > 0).all(axis=1)
+    return z[good], row[good]
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     """One row for each orbit: its first impact is the one of the greatest speed.
 
-    Solutions that are no orbits and orbits of a shorter period, taken several times, are left out.
+    Orbits of a shorter period, taken several times, are left out.
     """
     if not len(z):
         return z
     k = equations.impacts
     x = z[:, : equations.size].reshape(len(z), k, equations.unknowns)
-    lasting = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
-    x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
     # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.

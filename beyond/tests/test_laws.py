@@ -578,3 +578,15 @@ class TestRefusedForces:
         ForceLaw(lambda p, v: 1000 * p, {})
         with pytest.raises(ValueError, match="depth: no parameter"):
             tsuji(1000.0, 0.3).at(depth=1.0)
+
+
+@pytest.mark.parametrize("release", ["displacement", "approach"])
+def test_few_contacts_are_as_many(release):
+    """Newton's and Picard's sweeps find the same motion of nearly linear contacts."""
+    law = linear(20.0, 0.13, release=release)
+    tau = np.linspace(0, 6, root_time.FEW_CONTACTS + 10)
+    u = np.linspace(0.5, 3, tau.size)
+    many = law.first_impact(tau, u, 1.5)
+    few = law.first_impact(tau[:3], u[:3], 1.5)
+    np.testing.assert_allclose(few[0], many[0][:3], rtol=CLOSE)
+    np.testing.assert_allclose(few[1].speed, many[1].speed[:3], rtol=CLOSE)

@@ -120,8 +120,8 @@ class Ball:
         """T of impacts: 0 for impacts without a duration."""
         return 0.0 * (tau + u + amplitude)
 
-    def early_release(self, tau, u, amplitude):
-        """As :meth:`first_release`, for a search: a release after a long rest may be left out."""
+    def early_release(self, tau, u, amplitude, periods):
+        """As :meth:`first_release`, for a search: releases after so many periods may be left out."""
         return self.first_release(tau, u, amplitude)
 
     def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:

@@ -16,8 +16,7 @@ from numpy.polynomial import chebyshev, legendre
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
-    MOST_PANELS,
-    PATIENT,
+    PERIODS,
     ContactMotion,
     follow,
     load_of,
@@ -197,10 +196,9 @@ class ForceLaw(Ball):
         """T of the first releases; NaN for balls that stay in contact."""
         return self._followed(tau, u, amplitude, gravity)[0]
 
-    def early_release(self, tau, u, amplitude):
-        """T of the first releases; below Λ = 1, a ball that lies on the table counts as staying."""
-        panels = PATIENT if np.all(amplitude < 1) else MOST_PANELS
-        return self._followed(tau, u, amplitude, 1.0, panels=panels)[0]
+    def early_release(self, tau, u, amplitude, periods):
+        """T of the first releases; NaN for balls that stay in contact for so many periods."""
+        return self._followed(tau, u, amplitude, 1.0, longest=periods)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases, and the impacts."""
@@ -306,7 +304,7 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(self, tau, u, amplitude, gravity, T=None, panels=MOST_PANELS):
+    def _followed(self, tau, u, amplitude, gravity, T=None, longest=PERIODS):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows = values_by_row(values if T is None else values | {"T": T})
@@ -337,7 +335,7 @@ class ForceLaw(Ball):
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
-        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, panels)
+        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, longest)
         s, q, v, t = rows.joined(*ends)
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 

@@ -614,7 +614,9 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
         columns = [tau, u, amplitude[row]]
         ball = equations.ball.rows(row)
         if ball.lasts:
-            columns.insert(2, ball.early_release(*columns))
+            # Contacts of an orbit are shorter than its period.
+            periods = np.broadcast_to(equations.periods, len(amplitude))[row]
+            columns.insert(2, ball.early_release(*columns, periods))
         return np.stack(columns, axis=-1)
 
     row = np.repeat(np.arange(len(amplitude)), tau[0].size)

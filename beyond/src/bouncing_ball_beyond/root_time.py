@@ -65,7 +65,8 @@ CALM = 1e-3
 """The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
 STEADY, PERIODS = 1e-9, 30
-"""A contact is permanent if its motion changes relatively by less in a period, or after so many."""
+"""A contact is permanent if its motion changes relatively by less in a period, or, unless another
+number is given, after so many."""
 
 ROWS = 1000
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
@@ -507,6 +508,7 @@ class _Contacts:
     by: NDArray
     length: NDArray
     period: NDArray
+    longest: NDArray
     size: NDArray
     side: NDArray
     before: NDArray
@@ -566,17 +568,18 @@ class _Contacts:
         state = self.now[1:3, turned]
         steady = np.abs(state - self.before[:, turned]) <= STEADY * self.size[:, turned]
         turn = self.motion.given["turn"]
-        self.lost[turned] = steady.all(0) | (turn[turned] > PERIODS * self.period[turned])
+        left = self.longest[turned] * self.period[turned] - turn[turned]
+        self.lost[turned] = steady.all(0) | (left < 0.5 * self.period[turned])
         self.before[:, turned] = state
         self.side[release + 1 :, turned] = -1.0
         turn[turned] += self.period[turned]
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MOST_PANELS):
+def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=PERIODS):
     """Contacts from their starts to the first releases, or to root times.
 
-    A contact is permanent if its motion repeats after a period, or if it lasts for PERIODS.
+    A contact is permanent if its motion repeats after a period, or if it lasts too long.
 
     Parameters
     ----------
@@ -588,8 +591,8 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MO
         Derivatives of q and v.
     until, by_until : array, shapes (rows,) and (rows, directions), optional
         Root times at which contacts are left, and their derivatives.
-    panels : int
-        A contact with more panels is taken for a permanent one.
+    longest : int or array, shape (rows,)
+        A contact that lasts for so many periods is taken for a permanent one.
 
     Returns
     -------
@@ -611,13 +614,14 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MO
         by=np.array([0 * by[0], *by, 0 * by[0]]),
         length=length.copy(),
         period=period,
+        longest=np.broadcast_to(longest, rows),
         size=np.abs(now[1:3]),
         side=side,
         before=now[1:3].copy(),
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )
-    for attempt in range(panels):
+    for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
             break

@@ -612,7 +612,7 @@ force; `simulate` uses the closed form of this contact."""
 
 `make speed` renews this page. All times are times of the processor, medians of {ROUNDS} rounds in
 which everything is measured in turn, with one thread ({system}). Other work ran on the machine;
-processor times then still vary by some tens of percent.
+processor times then vary by a factor of two from one day to another, and their ratios vary less.
 
 ## One branch
 

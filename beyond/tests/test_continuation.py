@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from integrated import around, leg
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
@@ -228,6 +228,30 @@ def test_a_refined_branch_has_no_corners():
     assert np.abs(fine.values * np.cos(phases) - np.pi / 3).max() < 1e-11
     assert np.abs(np.diff(phases)).max() < 0.05
     assert set(branch.values) <= set(fine.values)
+
+
+@pytest.mark.parametrize("r", [0.0003, 0.002, 0.005])
+def test_a_slow_start_grazes_the_table_at_once(r):
+    """After a slow start the table overtakes the ball for a moment, by the equations of a flight.
+
+    The impact is at Λ cos τ = C = π(1 - r)/(1 + r), and the ball leaves with the speed
+    r 2π/(1 + r).
+    """
+    x = np.pi * (1 - r) / (1 + r)
+
+    def touch(unknowns):
+        amplitude, t = unknowns
+        y = np.sqrt(amplitude**2 - x**2)
+        tau = np.arctan2(y, x)
+        bounce = 2 * np.pi * r / (1 + r) + x
+        gap = bounce * t - t**2 / 2 - amplitude * np.sin(tau + t) + y
+        return gap, bounce - t - amplitude * np.cos(tau + t)
+
+    lift = 3.297 - 2.2 * np.sqrt(r)
+    amplitude, _ = fsolve(touch, (lift, 2 * np.sqrt(r)), xtol=1e-12)
+    found = follow(orbit(Rigid(r), amplitude=3.45), to=3.12)
+    assert [each.kind for each in found.special] == ["grazing of a flight"]
+    assert found.special[0].amplitude == pytest.approx(amplitude, abs=1e-10)
 
 
 def test_limits_are_shown_in_a_line():

@@ -266,6 +266,7 @@ def test_solutions_that_are_no_orbits_are_left_out():
     [
         ({"amplitude": -1.0}, "amplitude"),
         ({"amplitude": 1.0, "tolerance": 0}, "tolerance"),
+        ({"amplitude": 1.0, "low": 10, "high": 1}, "low = 10, high = 1: must be positive, and low"),
         ({"amplitude": 1.0, "tolerance": "1 %"}, "tolerance = '1 %': must be a number"),
         ({"amplitude": 1.0, "quantities": ["height"]}, "height"),
     ],
@@ -274,6 +275,16 @@ def test_mistakes_are_one_line(mistake, named):
     with pytest.raises(ValueError, match=named) as raised:
         error_thresholds(BALL, **mistake)
     assert "\n" not in str(raised.value)
+
+
+def test_below_the_saddle_node_there_is_no_threshold_of_an_orbit():
+    below = 0.9 * np.pi * (1 - 0.65) / (1 + 0.65)
+    by_law = law_thresholds(BALL, amplitude=below)
+    exact = error_thresholds(BALL, amplitude=below)
+    for name in QUANTITIES:
+        of_orbit = name not in ("saddle_node", "period_doubling")
+        assert np.isnan(by_law[name]) == of_orbit
+        assert exact[name].status == ("no orbit" if of_orbit else "found")
 
 
 def test_a_free_impact_may_be_given():

@@ -64,8 +64,9 @@ class Flights(NamedTuple):
         Shape (rows, k, times), with the end of a flight in place of times after it.
         """
         level = np.arcsin(np.minimum(1, 1 / self.amplitude))
-        turns = int(np.clip(np.max(self.flight, initial=0.0) / (2 * np.pi), 0, 1000)) + 1
-        first = (np.stack([level, np.pi - level], axis=-1) - self.leaves[..., np.newaxis]) % (2 * np.pi)
+        turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
+        phases = np.stack([level, np.pi - level], axis=-1)
+        first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
         times = first[..., np.newaxis] + 2 * np.pi * np.arange(turns)
         times = times.reshape(*self.leaves.shape, -1)
         return np.minimum(times, self.flight[..., np.newaxis])
@@ -377,6 +378,11 @@ def flight(s, leaves, gap, speed, amplitude):
     return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
 
 
+def _longest(times) -> float:
+    """The greatest of times, at least 0; NaN, of a ball that does not leave the table, is none."""
+    return np.fmax.reduce(times, axis=None, initial=0.0)
+
+
 def turns_back(slope, value, ends, *, first: bool = False, among=None) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
@@ -399,7 +405,7 @@ def turns_back(slope, value, ends, *, first: bool = False, among=None) -> NDArra
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    samples = int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
+    samples = int(np.clip(32 * _longest(ends) / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
     if among is not None:
         times = np.sort(np.concatenate([times, among], axis=-1), axis=-1)

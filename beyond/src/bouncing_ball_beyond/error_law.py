@@ -24,7 +24,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper, brief, checked
+from bouncing_ball_beyond.balls import (
+    Ball,
+    Corrected,
+    H,
+    SpringDamper,
+    brief,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
@@ -175,7 +183,8 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     reference = restitution_values(impact, amplitude)
-    r = impact.restitution
+    # NaN below the saddle-node.
+    r = reference["apparent_restitution"]
     delay = impact.centroid
     shift = impact.shift
     nearer = impact.line - shift
@@ -192,7 +201,9 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
-            "apparent_restitution": loaded * load / (r * impact.speed),
+            "apparent_restitution": loaded
+            * load
+            / (impact.speed * reference["apparent_restitution"]),
             "saddle_node": np.divide(-shift, reference["saddle_node"]),
             "period_doubling": doubling / reference["period_doubling"] ** 2,
         }
@@ -514,8 +525,8 @@ class ErrorThreshold(NamedTuple):
     """From which frequency ratio on an error is within a tolerance: arrays of one shape.
 
     The status is "found"; "within" if the error is within the tolerance at all ratios; "outside" if
-    it is not so at the largest; and "no orbit" if it is within the tolerance at all ratios at which
-    the orbit is found. The ratio is NaN if it is not found.
+    it is not so at the largest; and "no orbit" if no orbit is found at the largest, or if the error
+    is within the tolerance at all ratios at which it is found. The ratio is NaN if it is not found.
     """
 
     ratio: NDArray
@@ -562,6 +573,9 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
+    if not 0 < low < high < np.inf:
+        raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
+    whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)
     known: dict = {"amplitude": amplitude, "n": n, "simple": simple}
     if simple is None and isinstance(contacts, SpringDamper | ForceLaw):
@@ -592,7 +606,7 @@ def error_thresholds(
         last = samples - 1 - beyond[::-1].argmax(axis=0)
         places = np.arange(last.size)
         status = np.where(np.isnan(scan[last, places]), "no orbit", "found")
-        status[last == samples - 1] = "outside"
+        status[(status == "found") & (last == samples - 1)] = "outside"
         status[~beyond.any(axis=0)] = "within"
         places = places[status == "found"]
         ratio = np.full(last.size, np.nan)

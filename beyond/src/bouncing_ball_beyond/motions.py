@@ -766,7 +766,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     grid, ball, (amplitude,) = grid_of(ball, amplitude=amplitude)
     if grid.ndim != 1:
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
-    value, start = np.mgrid[: grid.size, :starts].reshape(2, -1)
+    value, start = np.mgrid[: grid.size, : whole_number("starts", starts)].reshape(2, -1)
     phase = TURN * (EVEN[0] * (start + 1) % 1)
     several = ball.rows(value)
     speed = fastest(several, amplitude[value]) * (EVEN[1] * (start + 1) % 1)

@@ -433,9 +433,14 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
         orbits = shortest_contacts(equations, amplitude, sign)
         found = [each[0] if each else None for each in orbits]
     missing = [i for i, each in enumerate(found) if not (each and each.admissible)]
-    rows = equations.rows(missing)
-    lowest = limits(rows.ball, n=rows.periods) if missing else []
-    for i, (fold, _) in zip(missing, lowest, strict=True):
+    ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
+    # The limits of balls that creep off the table take long to find.
+    ending = [i for i in missing if ends[i]]
+    rows = equations.rows(ending)
+    lowest = limits(rows.ball, n=rows.periods) if ending else []
+    folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
+    for i in missing:
+        fold = folds.get(i)
         where = f"{amplitude[i]:.10g}"
         why = "none is found on this side of the saddle-node"
         if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
@@ -444,6 +449,8 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
         elif others[i] or found[i]:
             found[i] = others[i] or found[i]
             continue
+        elif not ends[i]:
+            why = "none is found, and without a table its impacts do not end"
         ball = _described(equations.ball.rows(i))
         n = np.ravel(equations.periods)[i]
         found[i] = OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {ball}: {why}")
@@ -620,6 +627,10 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
         return np.stack(columns, axis=-1)
 
     row = np.repeat(np.arange(len(amplitude)), tau[0].size)
+    some = np.arange(tau.size).reshape(tau.shape)[:, ::4, ::4].ravel()
+    if not np.isfinite(impacts(tau.flat[some], u.flat[some], row[some])).any(axis=0).all():
+        # Balls that never leave the table take long to follow.
+        return np.zeros((0, equations.length)), row[:0]
     z = impacts(tau.ravel(), u.ravel(), row)
     change = equations.rows(row).legs(z)[:, 0, -1].reshape(tau.shape)
     row, at, number = np.nonzero(change[..., :-1] * change[..., 1:] < 0)

@@ -198,6 +198,9 @@ class ShakerAnswer:
         if self.amplitude < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
+        if begun == 0 or doubled == 2:
+            question = "Whether a restitution coefficient is good enough has no answer"
+            return [*sentences, f"{question}: {reason}."]
         verdict = f"is not good enough: {reason}" if reason else "is good enough"
         return [*sentences, f"A restitution coefficient {verdict}."]
 

@@ -247,9 +247,10 @@ def test_a_slow_start_grazes_the_table_at_once(r):
         gap = bounce * t - t**2 / 2 - amplitude * np.sin(tau + t) + y
         return gap, bounce - t - amplitude * np.cos(tau + t)
 
-    lift = 3.297 - 2.2 * np.sqrt(r)
-    amplitude, _ = fsolve(touch, (lift, 2 * np.sqrt(r)), xtol=1e-12)
-    found = follow(orbit(Rigid(r), amplitude=3.45), to=3.12)
+    # To the third order in the time, δ = wt - at²/2 + xt³/6 with a = 1 - y has a double zero here.
+    a = np.sqrt(16 * np.pi * r * x / 3)
+    amplitude, _ = fsolve(touch, (np.hypot(x, 1 - a), 1.5 * a / x), xtol=1e-12)
+    found = follow(orbit(Rigid(r), amplitude=3.45), to=3.145)
     assert [each.kind for each in found.special] == ["grazing of a flight"]
     assert found.special[0].amplitude == pytest.approx(amplitude, abs=1e-10)
 

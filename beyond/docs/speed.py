@@ -146,6 +146,41 @@ def tsuji_balls():
     return motion(hertzian(), 20, balls=1000)
 
 
+def tsuji_orbit():
+    return lambda: bb.orbit(hertzian(), amplitude=0.9)
+
+
+def linear_orbit():
+    return lambda: bb.orbit(bb.SpringDamper(20.0, restitution=0.65), amplitude=0.8)
+
+
+def tsuji_limits():
+    return lambda: bb.limits(hertzian())
+
+
+def linear_limits():
+    return lambda: bb.limits(bb.SpringDamper(20.0, restitution=0.65))
+
+
+def tsuji_branch():
+    return followed(bb.orbit(hertzian(), amplitude=0.9), to=1.3)
+
+
+def integrated_branch():
+    """The branch of `one_contact`, by the integration of the contact."""
+    zeta = float(bb.SpringDamper(20.0, restitution=0.65).zeta)
+    return followed(bb.orbit(bb.linear(20.0, zeta), amplitude=0.8), to=1.3)
+
+
+def tsuji_thresholds():
+    return lambda: bb.error_thresholds(hertzian(), amplitude=1.0)
+
+
+def linear_thresholds():
+    ball = bb.SpringDamper(1.0, restitution=0.65)
+    return lambda: bb.error_thresholds(ball, amplitude=1.0)
+
+
 def rigid_basins():
     return lambda: bb.basins(bb.Rigid(0.5), amplitude=1.2, starts=100)
 
@@ -393,7 +428,8 @@ def measured() -> dict[str, float]:
     quick += [bare_one_impact, bare_two_impacts]
     slow = [rigid_rows, doubled_rows, contact_rows, whole_cascade, settling_motion]
     slow += [long_rigid_motion, long_contact_motion, tsuji_motion, tsuji_balls]
-    slow += [rigid_basins, contact_basins]
+    slow += [rigid_basins, contact_basins, linear_thresholds, linear_limits, linear_orbit]
+    slow += [tsuji_orbit, tsuji_limits, tsuji_branch, integrated_branch]
     plain = [rigid_motion, contact_motion, many_rigid_balls, many_contact_balls, settling_motion]
     plain += [rigid_basins]
     if find_spec("heyoka"):
@@ -441,6 +477,7 @@ def measured() -> dict[str, float]:
             note("plain first motion", python(WITHOUT_NUMBA + FIRST_MOTION)[0])
             if i == 0:
                 note("chaotic_basins", spent(chaotic_basins()))
+                note("tsuji_thresholds", spent(tsuji_thresholds()))
                 cache = str(Path(here, "cache"))
                 note("compiling", python(FIRST_MOTION, NUMBA_CACHE_DIR=cache)[0])
     return {name: median(each) for name, each in times.items()}
@@ -543,6 +580,12 @@ def page(t) -> str:
         ["one ball, Tsuji's law", said(t["tsuji_motion"] / 50), "–"],
         ["1000 balls, Tsuji's law", said(t["tsuji_balls"] / 2e4), "–"],
     ]
+    laws = [
+        ["a 1-T orbit", said(t["linear_orbit"]), said(t["tsuji_orbit"])],
+        ["its `limits`", said(t["linear_limits"]), said(t["tsuji_limits"])],
+        ["a branch", said(t["one_contact"]), said(t["tsuji_branch"])],
+        ["six `error_thresholds`", said(t["linear_thresholds"]), said(t["tsuji_thresholds"])],
+    ]
     first = [
         ["Python alone", said(t["nothing"])],
         ["`import numpy`", said(t["numpy"])],
@@ -569,7 +612,7 @@ force; `simulate` uses the closed form of this contact."""
 
 `make speed` renews this page. All times are times of the processor, medians of {ROUNDS} rounds in
 which everything is measured in turn, with one thread ({system}). Other work ran on the machine;
-processor times then still vary by some tens of percent.
+processor times then vary by a factor of two from one day to another, and their ratios vary less.
 
 ## One branch
 
@@ -596,6 +639,14 @@ to which steps are short.
 A cascade from 2 to 64 impacts takes {said(t["whole_cascade"])}. Its last branch, of 64 impacts,
 takes {said(t["threads 1"])} with one thread of BLAS, and {said(t["threads 2"])} of the processor
 with two, {threads:.2g} times as long.
+
+## Contacts without a closed form
+
+{table(["one ball", "ϖ = 20, r = 0.65", "Tsuji's law"], laws)}
+
+Each residual of Tsuji's contact is an integration, with its derivatives. The branch of the linear
+contact takes {said(t["integrated_branch"])} if its motion is integrated in place of the closed
+form. `limits` follow an orbit both ways. The thresholds of Tsuji's contact were measured once.
 
 ## Motions
 

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from integrated import around, leg
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
@@ -111,7 +111,7 @@ def test_limits_without_damping(ratio, n, expected):
     """The doubling is at Λ = |1 - 1/ϖ²|/|cos(π/2ϖ)|, and there is no saddle-node above Λ = 0."""
     found = limits(SpringDamper(ratio, damping_ratio=0.0), n=n)
     formula = abs(1 - 1 / ratio**2) / abs(np.cos(np.pi / (2 * ratio)))
-    assert found.saddle_node is None
+    assert isinstance(found.saddle_node, OrbitNotFound)
     assert found.period_doubling.amplitude == pytest.approx(expected, abs=2e-10)
     assert found.period_doubling.amplitude == pytest.approx(formula, abs=LOCATED)
 
@@ -230,10 +230,43 @@ def test_a_refined_branch_has_no_corners():
     assert set(branch.values) <= set(fine.values)
 
 
+@pytest.mark.parametrize("r", [0.0003, 0.002, 0.005])
+def test_a_slow_start_grazes_the_table_at_once(r):
+    """After a slow start the table overtakes the ball for a moment, by the equations of a flight.
+
+    The impact is at Λ cos τ = C = π(1 - r)/(1 + r), and the ball leaves with the speed
+    r 2π/(1 + r).
+    """
+    x = np.pi * (1 - r) / (1 + r)
+
+    def touch(unknowns):
+        amplitude, t = unknowns
+        y = np.sqrt(amplitude**2 - x**2)
+        tau = np.arctan2(y, x)
+        bounce = 2 * np.pi * r / (1 + r) + x
+        gap = bounce * t - t**2 / 2 - amplitude * np.sin(tau + t) + y
+        return gap, bounce - t - amplitude * np.cos(tau + t)
+
+    # To the third order in the time, δ = wt - at²/2 + xt³/6 with a = 1 - y has a double zero here.
+    a = np.sqrt(16 * np.pi * r * x / 3)
+    amplitude, _ = fsolve(touch, (np.hypot(x, 1 - a), 1.5 * a / x), xtol=1e-12)
+    found = follow(orbit(Rigid(r), amplitude=3.45), to=3.145)
+    assert [each.kind for each in found.special] == ["grazing of a flight"]
+    assert found.special[0].amplitude == pytest.approx(amplitude, abs=1e-10)
+
+
 def test_limits_are_shown_in_a_line():
     text = repr(limits(Rigid(0.5)))
-    assert text == "Limits: saddle-node Λ = 1.047197551, period doubling Λ = 1.526823701"
-    assert repr(limits(Rigid(1.0))) == "Limits: saddle-node None, period doubling Λ = 1"
+    assert text == "Limits: saddle-node at Λ = 1.047197551; period doubling at Λ = 1.526823701"
+
+
+def test_a_limit_that_is_missing_has_a_reason():
+    elastic = repr(limits(Rigid(1.0)))
+    reason = "no saddle-node before the branch ends: amplitude = 1e-06 is reached"
+    assert elastic == f"Limits: {reason}; period doubling at Λ = 1"
+    strongly_damped = limits(SpringDamper(5.0, damping_ratio=1.3)).saddle_node
+    assert isinstance(strongly_damped, OrbitNotFound)
+    assert "vanishing flight at amplitude = 1.0917875" in str(strongly_damped)
 
 
 def test_a_doubled_branch_ends_where_it_is_told_to():
@@ -511,6 +544,7 @@ def test_a_steep_path_is_analytic(low):
 
 def test_wrong_goals_and_parameters_are_named_in_one_line():
     start = orbit(Rigid(0.5), amplitude=1.3)
+    doubling = first_doubling(Rigid(0.5), 1.4)
     path = ParameterPath("x", low=1.0, high=2.0, amplitude=lambda x: x, restitution=lambda x: x / 4)
     wrong = ParameterPath("x", low=1.0, high=2.0, ratio=lambda x: x)
     for call, text in (
@@ -527,6 +561,8 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
             r"orbit = Rigid\(.*\): must be a periodic orbit, such",
         ),
         (lambda: cascade(follow(start), to=2.0), "doubling = FollowedBranch.*: must be a period d"),
+        (lambda: follow(start, to=2.0, points=0), "points = 0: must be a whole number from 2"),
+        (lambda: cascade([doubling], to=[1.8, 1.9]), "to: has 2 values for 1 orbits"),
         (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
     ):
         with pytest.raises(ValueError, match=text) as raised:

@@ -266,6 +266,8 @@ def test_solutions_that_are_no_orbits_are_left_out():
     [
         ({"amplitude": -1.0}, "amplitude"),
         ({"amplitude": 1.0, "tolerance": 0}, "tolerance"),
+        ({"amplitude": 1.0, "low": 10, "high": 1}, "low = 10, high = 1: must be positive, and low"),
+        ({"amplitude": 1.0, "tolerance": "1 %"}, "tolerance = '1 %': must be a number"),
         ({"amplitude": 1.0, "quantities": ["height"]}, "height"),
     ],
 )
@@ -273,6 +275,16 @@ def test_mistakes_are_one_line(mistake, named):
     with pytest.raises(ValueError, match=named) as raised:
         error_thresholds(BALL, **mistake)
     assert "\n" not in str(raised.value)
+
+
+def test_below_the_saddle_node_there_is_no_threshold_of_an_orbit():
+    below = 0.9 * np.pi * (1 - 0.65) / (1 + 0.65)
+    by_law = law_thresholds(BALL, amplitude=below)
+    exact = error_thresholds(BALL, amplitude=below)
+    for name in QUANTITIES:
+        of_orbit = name not in ("saddle_node", "period_doubling")
+        assert np.isnan(by_law[name]) == of_orbit
+        assert exact[name].status == ("no orbit" if of_orbit else "found")
 
 
 def test_a_free_impact_may_be_given():
@@ -359,3 +371,18 @@ def test_an_elastic_ball_has_thresholds_but_no_saddle_node():
     assert np.isnan(by_law["saddle_node"]) and np.isnan(exactly["saddle_node"].ratio)
     assert by_law["bounce_velocity"] == pytest.approx(50)
     assert exactly["bounce_velocity"].ratio == pytest.approx(50, rel=0.01)
+
+
+def test_thresholds_with_a_known_free_impact_and_of_one_quantity():
+    """A stretched contact has the free impact of the one with ϖ = 1, and quantities do not mix."""
+    path = ball_at_ratio(hunt_crossley(restitution=0.8, duration=0.1, speed=3.0), 1, 0.01)
+    known = free_impact(path(1.0))
+    given = {"amplitude": 1.0, "quantities": ["bounce_velocity"]}
+    error = exact_errors(path(60.0), **given)["bounce_velocity"]
+    again = exact_errors(path(60.0), simple=known, **given)["bounce_velocity"]
+    # The error is some 1e-2 of values that are right to some 1e-12.
+    assert again == pytest.approx(error, rel=1e-9)
+    both = error_thresholds(BALL, amplitude=1.0, quantities=["phase", "saddle_node"])
+    (one,) = error_thresholds(BALL, amplitude=1.0, quantities=["phase"]).values()
+    assert list(both) == ["phase", "saddle_node"]
+    assert one.ratio == pytest.approx(both["phase"].ratio, rel=1e-10)  # 1e-12 from each search

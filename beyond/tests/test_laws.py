@@ -548,6 +548,7 @@ class TestRefusedForces:
             (lambda p, v, k: k * float(p), "fails for arrays of complex numbers"),
             (lambda p, v, k: 3.0, "shape of p and v"),
             (lambda p, v, k: -k * p, "stops no ball"),
+            (lambda p, v, k: k * p if p > 0 else 0 * p, r"np\.where in place of if"),
         ],
     )
     def test_reason(self, force, reason):
@@ -566,5 +567,26 @@ class TestRefusedForces:
             one_line(error)
         with pytest.raises(ValueError, match="tau: is no name"):
             ForceLaw(lambda p, v, tau: tau * p, {"tau": 1.0})
+        with pytest.raises(ValueError, match=r"units: k = \(1, 0\): must be the powers of mass"):
+            ForceLaw(lambda p, v, k: k * p, {"k": 1.0}, units={"k": (1, 0)})
+        with pytest.raises(ValueError, match="k has 2, c has 3; arrays must have the same length"):
+            ForceLaw(lambda p, v, k, c: k * p + c * v, {"k": [1.0, 2.0], "c": [1.0, 2.0, 3.0]})
+
+    def test_a_row_is_checked_where_its_parameters_are_extreme(self):
+        with pytest.raises(ValueError, match="root=6 would do"):
+            ForceLaw(lambda p, v, m: 1000 * p**m, {"m": np.array([1.5, 1.2])}, root=2)
+        ForceLaw(lambda p, v: 1000 * p, {})
         with pytest.raises(ValueError, match="depth: no parameter"):
             tsuji(1000.0, 0.3).at(depth=1.0)
+
+
+@pytest.mark.parametrize("release", ["displacement", "approach"])
+def test_few_contacts_are_as_many(release):
+    """Newton's and Picard's sweeps find the same motion of nearly linear contacts."""
+    law = linear(20.0, 0.13, release=release)
+    tau = np.linspace(0, 6, root_time.FEW_CONTACTS + 10)
+    u = np.linspace(0.5, 3, tau.size)
+    many = law.first_impact(tau, u, 1.5)
+    few = law.first_impact(tau[:3], u[:3], 1.5)
+    np.testing.assert_allclose(few[0], many[0][:3], rtol=CLOSE)
+    np.testing.assert_allclose(few[1].speed, many[1].speed[:3], rtol=CLOSE)

@@ -286,6 +286,8 @@ def test_basins_keep_the_number_of_impacts_and_refuse_arrays():
             bb.basins(ball, amplitude=amplitude)
     with pytest.raises(ValueError, match=r"^ball = 0\.7: must be a ball, such as Rigid\(0\.7\)$"):
         bb.basins(0.7, amplitude=1.2)
+    with pytest.raises(ValueError, match=r"^relative_velocity_max = -1: must be in \(0, ∞\)$"):
+        bb.basins(bb.Rigid(0.5), amplitude=1.2, relative_velocity_max=-1)
 
 
 def test_a_summary_of_many_impacts_needs_no_history():

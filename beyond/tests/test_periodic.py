@@ -235,17 +235,21 @@ def test_a_reason_has_the_digits_that_tell_two_amplitudes_apart():
 @pytest.mark.parametrize(
     ("call", "text"),
     [
-        (lambda: orbit(Rigid(0.5), amplitude=-1), "amplitude = -1: must be a positive number"),
-        (lambda: orbit(Rigid(0.5), amplitude="1.0"), "amplitude = '1.0': is a text, and must be a"),
+        (lambda: orbit(Rigid(0.5), amplitude=-1), "amplitude = -1: must be in (0, ∞)"),
+        (lambda: orbit(Rigid(0.5), amplitude="1.0"), "amplitude = '1.0': must be a number or"),
+        (lambda: orbits(Rigid(0.5), amplitude=[1, 2]), "amplitude = [1, 2]: must be one number"),
+        (lambda: orbits(Rigid(0.5), amplitude=1, impacts=0), "impacts = 0: must be a whole number"),
+        (lambda: orbits(Rigid(0.5), amplitude=1, periods=2.5), "periods = 2.5: must be a whole"),
+        (lambda: orbit(Rigid([0.5, 0.6]), amplitude=[1, 2, 3]), "have the shapes (2,), (3,), (),"),
         (lambda: orbit(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
         (lambda: orbits(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
-        (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be a whole number from 1"),
+        (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be in [1, 1000]"),
         (lambda: orbit(Rigid(0.5), amplitude=1, side="left"), "side = 'left': must be 'stable' or"),
         (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "one entry"),
     ],
 )
 def test_wrong_arguments_are_named_in_one_line(call, text):
-    with pytest.raises(ValueError, match="must") as raised:
+    with pytest.raises(ValueError, match=r"must|shapes") as raised:
         call()
     assert text in str(raised.value) and "\n" not in str(raised.value)
 
@@ -308,3 +312,22 @@ def test_a_ball_without_restitution_leaves_where_the_table_falls_faster():
     lossy = orbit(Rigid(0.0), amplitude=3.3)
     assert lossy.admissible and lossy.amplitude * np.sin(lossy.phase) > 1
     assert not orbit(Rigid(0.0), amplitude=3.2).admissible
+
+
+def test_rows_without_orbits_are_searched_together():
+    """Each has what it has alone; a ball of a compliant contact has an orbit of another branch."""
+    ratios = [1.5, 5.0, 5.0, 40.0]
+    restitution = [0.9, 0.1, 0.6, 0.3]
+    together = orbit(SpringDamper(ratios, restitution=restitution), amplitude=[1.6, 1.2, 0.3, 1.2])
+    for row, found in enumerate(together):
+        ball = SpringDamper(ratios[row], restitution=restitution[row])
+        try:
+            alone = orbit(ball, amplitude=[1.6, 1.2, 0.3, 1.2][row])
+        except OrbitNotFound as reason:
+            assert str(found) == str(reason)
+        else:
+            assert np.abs(found.z - alone.z).max() < 1e-11
+    missing = [isinstance(each, OrbitNotFound) for each in together]
+    assert any(missing) and not all(missing)
+    rigid = orbit(Rigid([0.1, 0.5, 0.3]), amplitude=1.2)
+    assert [isinstance(each, OrbitNotFound) for each in rigid] == [True, False, True]

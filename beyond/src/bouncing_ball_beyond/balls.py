@@ -120,8 +120,8 @@ class Ball:
         """T of impacts: 0 for impacts without a duration."""
         return 0.0 * (tau + u + amplitude)
 
-    def early_release(self, tau, u, amplitude):
-        """As :meth:`first_release`, for a search: a release after a long rest may be left out."""
+    def early_release(self, tau, u, amplitude, periods):
+        """As :meth:`first_release`; those after so many periods may be left out."""
         return self.first_release(tau, u, amplitude)
 
     def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
@@ -434,6 +434,9 @@ class SpringDamper(Ball):
         else:
             zeta = checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
             object.__setattr__(self, "damping_ratio", zeta)
+        sizes = {name: np.size(x) for name, x in self.parameters.items() if np.ndim(x)}
+        if len(set(sizes.values())) > 1:
+            raise ValueError(f"{' and '.join(sizes)}: arrays must have the same length")
 
     def at(self, **values):
         """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""

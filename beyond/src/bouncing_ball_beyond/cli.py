@@ -4,6 +4,7 @@ Each command makes a ball, calls one public function with it, and prints the ans
 imported when a command runs, so that ``--help`` is fast.
 """
 
+import math
 import re
 import sys
 from collections.abc import Callable
@@ -328,7 +329,10 @@ def needed_ratios(ball, amplitude, n, tolerance):
         contacts = bb.SpringDamper(1.0, restitution=contacts.restitution)
     known = {"amplitude": amplitude, "n": n, "tolerance": tolerance}
     columns = [
-        {name: f"{ratio:.6g}" for name, ratio in bb.law_thresholds(contacts, **known).items()}
+        {
+            name: "no orbit" if math.isnan(ratio) else f"{ratio:.6g}"
+            for name, ratio in bb.law_thresholds(contacts, **known).items()
+        }
     ]
     for simple in models.values():
         found = bb.error_thresholds(contacts, simple=simple, **known)

@@ -196,9 +196,12 @@ class _Start(NamedTuple):
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    derivatives = equations.linear(z).derivatives
+    none = np.zeros((*derivatives.shape[:3], 1))
     normal = np.ones(z.shape)
     for _ in range(2):
-        normal = _unit(newton(equations, z, normal, iterations=1).tangent)
+        border = normal[:, np.newaxis]
+        normal = _unit(solve_bordered(derivatives, none, border, np.ones((len(z), 1, 1)))[..., 0])
     return normal
 
 
@@ -575,7 +578,8 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
-    found = _follow_all(orbits, along, to, points, np.full(len(orbits), None))
+    most = whole_number("points", points, 2)
+    found = _follow_all(orbits, along, to, most, np.full(len(orbits), None))
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]
@@ -623,6 +627,8 @@ def cascade(doubling, *, to, impacts: int = 64):
     wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
+    if np.ndim(to) and len(to) != len(latest):
+        raise ValueError(f"to: has {len(to)} values for {len(latest)} orbits")
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
     while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
@@ -942,14 +948,19 @@ def _joined(parts: list):
 
 
 class Limits(NamedTuple):
-    """The orbits between which those with one impact are stable; None where there is none."""
+    """The orbits between which those with one impact are stable, or the reasons for none."""
 
-    saddle_node: PeriodicOrbit | None
-    period_doubling: PeriodicOrbit | None
+    saddle_node: PeriodicOrbit | OrbitNotFound
+    period_doubling: PeriodicOrbit | OrbitNotFound
 
     def __repr__(self):
-        places = (each and f"Λ = {each.amplitude:.10g}" for each in self)
-        return "Limits: saddle-node {}, period doubling {}".format(*places)
+        places = (
+            f"{each.kind} at Λ = {each.amplitude:.10g}"
+            if isinstance(each, PeriodicOrbit)
+            else str(each)
+            for each in self
+        )
+        return "Limits: {}; {}".format(*places)
 
 
 def limits(ball: Ball, *, n=1):
@@ -957,7 +968,7 @@ def limits(ball: Ball, *, n=1):
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
     and no saddle-node. The orbits of other balls may end otherwise, for example with the grazing of
-    an impact if ζ > 1: the ``end`` of a branch of :func:`follow` says how.
+    an impact if ζ > 1. In place of a limit there is then an OrbitNotFound with the reason.
 
     Parameters
     ----------
@@ -983,11 +994,19 @@ def limits(ball: Ball, *, n=1):
     branches = _follow_all(between * 2, "amplitude", to, 500, both)
     found = []
     for below, above in zip(branches[: len(between)], branches[len(between) :], strict=True):
-        special = () if isinstance(below, OrbitNotFound) else (*below.special[::-1], *above.special)
-        folds = (each for each in special if each.kind == "saddle-node")
-        doublings = (each for each in special if each.kind == "period doubling")
-        found.append(Limits(next(folds, None), next(doublings, None)))
+        if isinstance(below, OrbitNotFound):
+            found.append(Limits(below, below))
+            continue
+        special = (*below.special[::-1], *above.special)
+        fold = _limit(special, "saddle-node", below.end)
+        found.append(Limits(fold, _limit(special, "period doubling", above.end)))
     return found if shape else found[0]
+
+
+def _limit(special, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
+    """The first special orbit of a kind, or the reason why there is none: how the branch ends."""
+    of_kind = (each for each in special if each.kind == kind)
+    return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
 
 
 def _between_limits(equations: OrbitEquations) -> list:
@@ -998,15 +1017,16 @@ def _between_limits(equations: OrbitEquations) -> list:
     fold = np.pi * n * (1 - r) / (1 + r)
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     for share in (0.5, 0.9, 0.2, 2.0, 4.0):
-        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)
-        z, good, _ = near_instants(equations, amplitude, 1)
-        for i in range(len(n)):
-            if isinstance(found[i], PeriodicOrbit):
-                continue
-            alone = single(equations, i)
-            ones = [PeriodicOrbit(alone, z[i])] if good[i] else []
-            ones = ones or shortest_contacts(alone, float(amplitude[i]), 1)
-            found[i] = ones[0] if ones else found[i]
-        if all(isinstance(each, PeriodicOrbit) for each in found):
+        left = [i for i, each in enumerate(found) if isinstance(each, OrbitNotFound)]
+        if not left:
             break
+        rows = equations.rows(left)
+        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)[left]
+        z, good = near_instants(rows, amplitude, 1)
+        for i, row in enumerate(z):
+            found[left[i]] = PeriodicOrbit(single(rows, i), row) if good[i] else found[left[i]]
+        others = [i for i in range(len(left)) if not good[i]]
+        searched = shortest_contacts(rows.rows(others), amplitude[others], 1)
+        for i, orbits in zip(others, searched, strict=True):
+            found[left[i]] = orbits[0] if orbits else found[left[i]]
     return found

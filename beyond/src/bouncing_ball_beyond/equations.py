@@ -58,6 +58,19 @@ class Flights(NamedTuple):
         leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self)
         return flight(t, leaves, gap, speed, amplitude)
 
+    def bends(self) -> NDArray:
+        """Times in the flights at which δ′ is least or greatest, because Λ sin τ = 1 there.
+
+        Shape (rows, k, times), with the end of a flight in place of times after it.
+        """
+        level = np.arcsin(np.minimum(1, 1 / self.amplitude))
+        turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
+        phases = np.stack([level, np.pi - level], axis=-1)
+        first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
+        times = first[..., np.newaxis] + 2 * np.pi * np.arange(turns)
+        times = times.reshape(*self.leaves.shape, -1)
+        return np.minimum(times, self.flight[..., np.newaxis])
+
 
 def _some(values, which):
     """The values of some rows; a number is that of all."""
@@ -232,11 +245,13 @@ class OrbitEquations:
         amplitude = np.broadcast_to(amplitude, leaves.shape)
         return Flights(leaves, impact.gap, impact.speed, time, amplitude)
 
-    def clearance(self, z) -> NDArray:
+    def clearance(self, z, flights: Flights | None = None) -> NDArray:
         """How far balls are above the table where flights turn back from it: the least of all."""
-        flights = self.ends(z)
+        flights = flights or self.ends(z)
+        # Between these times δ′ is monotonic, so that short dips after a slow start are found, too.
+        bends = flights.bends()
         return turns_back(
-            lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight
+            lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight, among=bends
         ).min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
@@ -338,7 +353,7 @@ class OrbitEquations:
         falls = (ends.amplitude * np.sin(ends.leaves) > 1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
-        clear = (self.clearance(z) > 0) & (self.contact_clearance(z) > 0)
+        clear = (self.clearance(z, ends) > 0) & (self.contact_clearance(z) > 0)
         return clear & leaving & (landing & lasting).all(axis=-1)
 
 
@@ -363,10 +378,16 @@ def flight(s, leaves, gap, speed, amplitude):
     return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
 
 
-def turns_back(slope, value, ends, *, first: bool = False) -> NDArray:
+def _longest(times) -> float:
+    """The greatest of times, at least 0; NaN, of a ball that does not leave the table, is none."""
+    return np.fmax.reduce(times, axis=None, initial=0.0)
+
+
+def turns_back(slope, value, ends, *, first: bool = False, among=None) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
-    Minima are found if the slope changes its sign between two of 32 samples in a time of 2π.
+    Minima are found if the slope changes its sign between two of 32 samples in a time of 2π, or of
+    those given.
 
     Parameters
     ----------
@@ -376,14 +397,18 @@ def turns_back(slope, value, ends, *, first: bool = False) -> NDArray:
     ends : ndarray
     first : bool
         Whether the value is that of the first minimum and not of the lowest.
+    among : ndarray, shape (..., m), optional
+        Further times at which the slope is sampled.
 
     Returns
     -------
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    samples = int(np.clip(32 * np.max(ends, initial=0.0) / (2 * np.pi), 32, 2000)) + 1
+    samples = int(np.clip(32 * _longest(ends) / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
+    if among is not None:
+        times = np.sort(np.concatenate([times, among], axis=-1), axis=-1)
     slopes = slope(times)
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
     if not turns.any():

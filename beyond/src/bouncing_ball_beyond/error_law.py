@@ -24,7 +24,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import Ball, Corrected, H, SpringDamper, brief
+from bouncing_ball_beyond.balls import (
+    Ball,
+    Corrected,
+    H,
+    SpringDamper,
+    brief,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
@@ -175,7 +183,8 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     reference = restitution_values(impact, amplitude)
-    r = impact.restitution
+    # NaN below the saddle-node.
+    r = reference["apparent_restitution"]
     delay = impact.centroid
     shift = impact.shift
     nearer = impact.line - shift
@@ -192,7 +201,9 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
-            "apparent_restitution": loaded * load / (r * impact.speed),
+            "apparent_restitution": loaded
+            * load
+            / (impact.speed * reference["apparent_restitution"]),
             "saddle_node": np.divide(-shift, reference["saddle_node"]),
             "period_doubling": doubling / reference["period_doubling"] ** 2,
         }
@@ -334,8 +345,7 @@ def ball_at_ratio(
     contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
 ) -> Callable:
     """The function from ϖ, or from the number in its place, to the ball."""
-    if not 0 < tolerance < np.inf:
-        raise ValueError(f"tolerance = {tolerance!r}: must be positive")
+    checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
     if isinstance(contacts, SpringDamper):
         return lambda ratio: contacts.at(frequency_ratio=ratio)
     if isinstance(contacts, ForceLaw):
@@ -472,7 +482,7 @@ def exact_errors(
     *,
     amplitude: ArrayLike,
     n: int = 1,
-    simple: Callable[[Ball], Ball] | None = None,
+    simple: Callable[[Ball], Ball] | FreeImpact | None = None,
     quantities: Sequence[str] = QUANTITIES,
 ) -> dict:
     """Relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
@@ -483,7 +493,7 @@ def exact_errors(
         As in :func:`contact_values`.
     simple
         A function from a ball to the ball in its place, such as ``Corrected``. By default this is
-        the restitution model with the r(v) of the ball.
+        the restitution model with the r(v) of the ball; its :func:`free_impact` may be given.
 
     Returns
     -------
@@ -502,8 +512,8 @@ def exact_errors(
     [-0.041148, -0.000121]
     """
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
-    if simple is None:
-        reference = restitution_values(free_impact(ball, n), amplitude)
+    if simple is None or isinstance(simple, FreeImpact):
+        reference = restitution_values(simple or free_impact(ball, n), amplitude)
     else:
         other = simple(ball)
         reference = contact_values(other, amplitude=amplitude, n=n, quantities=quantities)
@@ -515,8 +525,8 @@ class ErrorThreshold(NamedTuple):
     """From which frequency ratio on an error is within a tolerance: arrays of one shape.
 
     The status is "found"; "within" if the error is within the tolerance at all ratios; "outside" if
-    it is not so at the largest; and "no orbit" if it is within the tolerance at all ratios at which
-    the orbit is found. The ratio is NaN if it is not found.
+    it is not so at the largest; and "no orbit" if no orbit is found at the largest, or if the error
+    is within the tolerance at all ratios at which it is found. The ratio is NaN if it is not found.
     """
 
     ratio: NDArray
@@ -563,35 +573,49 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
     """
+    if not 0 < low < high < np.inf:
+        raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
+    whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)
     known: dict = {"amplitude": amplitude, "n": n, "simple": simple}
+    if simple is None and isinstance(contacts, SpringDamper | ForceLaw):
+        # All stretched contacts have the same restitution coefficient.
+        known["simple"] = free_impact(path(1.0), n)
     shape = rows_of(path(high), amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
     errors = exact_errors(path(ratios), quantities=quantities, **known)
+    # Those of one orbit are located together, and each bifurcation alone.
+    alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
+    together = [name for name in quantities if name not in alone]
     found = {}
-    for name, error in errors.items():
+    for names in filter(None, [together, *([name] for name in alone)]):
 
-        def excess(logarithm, row, name=name):
+        def excess(logarithm, place, names=names):
             # The ratios of all rows, because a path may depend on the place in an array.
-            ratio = np.full(shape, float(high))
-            ratio.flat[row] = np.exp(logarithm)
-            there = exact_errors(path(ratio), quantities=[name], **known)[name]
-            return np.abs(there.flat[row]) - tolerance
+            ratio = np.full((len(names), *shape), float(high))
+            ratio.flat[place] = np.exp(logarithm)
+            there = exact_errors(path(ratio), quantities=names, **known)
+            error = np.array([there[name][j] for j, name in enumerate(names)])
+            # It is about in proportion to 1/ϖ, and its logarithm is about linear.
+            return np.log(np.abs(error.flat[place]) / tolerance)
 
-        scan = np.abs(error).reshape(samples, -1)
+        scan = np.array([np.abs(errors[name]).reshape(samples, -1) for name in names])
+        scan = scan.swapaxes(0, 1).reshape(samples, -1)
         beyond = ~(scan <= tolerance)
         last = samples - 1 - beyond[::-1].argmax(axis=0)
-        rows = np.arange(last.size)
-        status = np.where(np.isnan(scan[last, rows]), "no orbit", "found")
-        status[last == samples - 1] = "outside"
+        places = np.arange(last.size)
+        status = np.where(np.isnan(scan[last, places]), "no orbit", "found")
+        status[(status == "found") & (last == samples - 1)] = "outside"
         status[~beyond.any(axis=0)] = "within"
-        rows = rows[status == "found"]
+        places = places[status == "found"]
         ratio = np.full(last.size, np.nan)
-        if rows.size:
-            bracket = np.log(grid[last[rows]]), np.log(grid[last[rows] + 1])
+        if places.size:
+            bracket = np.log(grid[last[places]]), np.log(grid[last[places] + 1])
             # Rounding leaves 1e-14 of an error of 1e-2 that is about proportional to 1/ϖ.
-            place = find_root(excess, bracket, args=(rows,), tolerances={"xatol": 1e-12}).x
-            ratio[rows] = np.exp(place)
-        found[name] = ErrorThreshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
-    return found
+            root = find_root(excess, bracket, args=(places,), tolerances={"xatol": 1e-12}).x
+            ratio[places] = np.exp(root)
+        for j, name in enumerate(names):
+            each = (x.reshape(len(names), *shape)[j] for x in (ratio, status))
+            found[name] = ErrorThreshold(*each)
+    return {name: found[name] for name in quantities}

@@ -13,10 +13,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from bouncing_ball_beyond.balls import Ball, H, Impact, Signature
+from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief
 from bouncing_ball_beyond.root_time import (
-    MOST_PANELS,
-    PATIENT,
+    FEW_CONTACTS,
+    PERIODS,
     ContactMotion,
     follow,
     load_of,
@@ -115,6 +115,12 @@ class ForceLaw(Ball):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number")
         for name in self.units.keys() - self.values.keys():
             raise ValueError(f"units: {name} is no parameter of the law, which has {self._names}")
+        for name, powers in self.units.items():
+            if np.shape(powers) != (3,) or np.asarray(powers).dtype.kind not in "iuf":
+                raise ValueError(
+                    f"units: {name} = {brief(powers)}: must be the powers of mass, length and time,"
+                    " such as (1, 0, -2) for N/m"
+                )
         for name in self.values.keys() & set(TAKEN):
             raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
         check_force(self)
@@ -190,10 +196,9 @@ class ForceLaw(Ball):
         """T of the first releases; NaN for balls that stay in contact."""
         return self._followed(tau, u, amplitude, gravity)[0]
 
-    def early_release(self, tau, u, amplitude):
-        """T of the first releases; below Λ = 1, a ball that lies on the table counts as staying."""
-        panels = PATIENT if amplitude < 1 else MOST_PANELS
-        return self._followed(tau, u, amplitude, 1.0, panels=panels)[0]
+    def early_release(self, tau, u, amplitude, periods):
+        """T of the first releases; NaN for balls that stay in contact for so many periods."""
+        return self._followed(tau, u, amplitude, 1.0, longest=periods)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases, and the impacts."""
@@ -299,7 +304,7 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(self, tau, u, amplitude, gravity, T=None, panels=MOST_PANELS):
+    def _followed(self, tau, u, amplitude, gravity, T=None, longest=PERIODS):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows = values_by_row(values if T is None else values | {"T": T})
@@ -323,13 +328,14 @@ class ForceLaw(Ball):
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
-            # A table at rest has no period; an impact lasts some three times P/u.
-            period = np.where(given["amplitude"] == 0, 3 * depth / np.abs(u), period)
+            # A table at rest has no period; most impacts last some three times P/u, and end before.
+            period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
         else:
             # So many panels are about the least that impacts need.
-            first = given["T"] / (1.5 * self.root)
+            one = self.root == 1 and rows.size <= FEW_CONTACTS
+            first = given["T"] / (1.0 if one else 1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
-        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, panels)
+        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, longest)
         s, q, v, t = rows.joined(*ends)
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 
@@ -339,10 +345,23 @@ def check_force(law):
 
     Along lines of constant rates and of constant depths, the change of the force between neighbours
     must be the integral of its derivative by complex steps. It is not where the force is not
-    analytic, nor over a kink.
+    analytic, nor over a kink. Of a row of balls those with an extreme parameter are checked.
     """
-    given = {name: np.ravel(np.real(x))[0] for name, x in law.values.items()}
-    depth = _depth_of_one(law.at(**given))
+    # A force may have no parameters at all.
+    arrays = [np.ravel(np.real(x)) for x in (*law.values.values(), 0.0)]
+    try:
+        rows = np.stack(np.broadcast_arrays(*arrays), axis=-1)
+    except ValueError:
+        sizes = ", ".join(f"{name} has {np.size(x)}" for name, x in law.values.items())
+        raise ValueError(f"values: {sizes}; arrays must have the same length") from None
+    for row in np.unique(np.concatenate([rows.argmin(axis=0), rows.argmax(axis=0)])):
+        given = dict(zip(law.values, rows[row, :-1], strict=True))
+        _check_one(law.at(**given), given)
+
+
+def _check_one(law, given):
+    """Check the force of one ball, whose parameters are given."""
+    depth = _depth_of_one(law)
     depths = depth * np.geomspace(1e-3, 30.0, 321)
     rates = np.linspace(-3.003, 3.0, 241)
     some_depths = depth * np.array([[0.02], [0.3], [1.1], [8.0]])
@@ -356,12 +375,15 @@ def check_force(law):
 
 def _depth_of_one(law):
     """The depth at which a ball of the speed 1 is stopped; ValueError if there is none."""
-    p = np.array([1.0 + 1j * H])
+    p = np.array([0.5, 1.0]) + 1j * H
     try:
         force = law.force_at(p, p, 0.0, {**law.values, "u": 1.0})
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"force: fails for arrays of complex numbers ({reason})") from None
+        raise ValueError(
+            f"force: fails for arrays of complex numbers, which need np.where in place of if"
+            f" ({reason})"
+        ) from None
     if np.shape(force) != p.shape:
         raise ValueError(f"force: must have the shape of p and v, {p.shape}, not {np.shape(force)}")
     with np.errstate(all="ignore"):

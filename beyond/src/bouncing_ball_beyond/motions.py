@@ -22,6 +22,7 @@ from scipy.special import stdtrit
 from bouncing_ball_beyond.balls import (
     H,
     check_ball,
+    checked,
     contacts,
     has_closed_form,
     table_at,
@@ -707,7 +708,10 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     amplitude = float(table)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
-    fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
+    fast = relative_velocity_max
+    if fast is None:
+        fast = fastest(ball, amplitude)
+    checked("relative_velocity_max", fast, 0, np.inf, low_allowed=False)
     phase = TURN * middle - np.pi
     speed = fast * middle
     given = {"amplitude": amplitude, "speed": speed, "phase": phase}
@@ -762,7 +766,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     grid, ball, (amplitude,) = grid_of(ball, amplitude=amplitude)
     if grid.ndim != 1:
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
-    value, start = np.mgrid[: grid.size, :starts].reshape(2, -1)
+    value, start = np.mgrid[: grid.size, : whole_number("starts", starts)].reshape(2, -1)
     phase = TURN * (EVEN[0] * (start + 1) % 1)
     several = ball.rows(value)
     speed = fastest(several, amplitude[value]) * (EVEN[1] * (start + 1) % 1)

@@ -9,8 +9,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected, brief, check_ball
+from bouncing_ball_beyond.balls import (
+    Ball,
+    Corrected,
+    Rigid,
+    brief,
+    check_ball,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
+
+TOGETHER = 16
+"""Rows whose orbits are searched for at a time, with 3072 impacts each."""
 
 
 class OrbitNotFound(ValueError):
@@ -292,9 +303,13 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, side * np.pi / 3)
     step, before = np.zeros((2, *amplitude.shape))
+    at = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
-            r, _, centroid, loss = ball.signature(u)
+            # For a guess, the signature at a speed is that at another one within some percent.
+            if np.any(np.abs(u - at) > 0.05 * u):
+                at = u
+                r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)
             load = np.where(known, loss * (1 - amplitude * np.sin(psi)), 0.0)
             excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
@@ -319,7 +334,14 @@ def rows_of(ball: Ball, *others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[
     """A ball and further numbers as rows of one length, and the shape which these had."""
     check_ball(ball)
     fields = ball.parameters
-    broadcast = np.broadcast_arrays(*fields.values(), *others)
+    try:
+        broadcast = np.broadcast_arrays(*fields.values(), *others)
+    except ValueError:
+        shapes = ", ".join(str(np.shape(each)) for each in (*fields.values(), *others))
+        raise ValueError(
+            f"the parameters of the ball and the other arguments have the shapes {shapes}, which"
+            " do not go together"
+        ) from None
     shape = broadcast[0].shape if broadcast else ()
     arrays = [np.array(each).reshape(-1) for each in broadcast]
     names = list(fields)
@@ -359,15 +381,24 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     >>> round(orbit(Rigid(0.5), amplitude=1.2).phase, 6)
     0.510164
     """
-    _check_arguments(amplitude, n, side)
+    _check_amplitude(amplitude)
+    _check_periods(n)
+    if side not in ("stable", "unstable"):
+        raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
     equations = OrbitEquations(row, 1, periods)
     sign = 1 if side == "stable" else -1
-    z, good, admissible = near_instants(equations, amplitudes.astype(float), sign)
-    found = []
-    for i, alone in enumerate(single(equations, i) for i in range(len(z))):
-        one = PeriodicOrbit(alone, z[i]) if good[i] else None
-        found.append(one if admissible[i] else _searched(alone, float(amplitudes[i]), sign, one))
+    z, good = near_instants(equations, amplitudes.astype(float), sign)
+    admissible = good & equations.admissible(z)
+    found: list = [
+        PeriodicOrbit(single(equations, i), z[i]) if good[i] else None for i in range(len(z))
+    ]
+    missing = np.flatnonzero(~admissible)
+    if missing.size:
+        others = [found[i] for i in missing]
+        searched = _searched(equations.rows(missing), amplitudes[missing], sign, others)
+        for i, each in zip(missing, searched, strict=True):
+            found[i] = each
     if shape:
         return found
     if isinstance(found[0], OrbitNotFound):
@@ -376,50 +407,70 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
 
 
 def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
-    """Orbits with one impact near those of the corrected model, as rows.
-
-    Also which of them are found on a side of the saddle-node, and which of these are admissible.
+    """Orbits with one impact near those of the corrected model, as rows, and which of them are
+    found on a side of the saddle-node.
     """
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = _first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
-    good &= (z[:, 1] > 0) & (equations.ends(z).flight[:, 0] > 0)
-    return z, good, good & equations.admissible(z)
+    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
+    return z, good
 
 
-def _searched(equations: OrbitEquations, amplitude: float, sign: int, other: PeriodicOrbit | None):
-    """The orbit with one impact and the shortest contact on a side of the saddle-node, or a reason.
+def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: list) -> list:
+    """The orbits with one impact and the shortest contact on a side of the saddle-node, by rows.
 
-    If a ball follows no such orbit, it is one that no ball follows, but not below the saddle-node.
+    If a ball follows no such orbit, it is one that no ball follows, of ``others`` if there is one.
+    Below the saddle-node of the branch it is the reason.
     """
     # The module of branches imports this one.
     from bouncing_ball_beyond.continuation import limits
 
-    found = shortest_contacts(equations, amplitude, sign)
-    if found and found[0].admissible:
-        return found[0]
-    ball = equations.ball
-    n = int(equations.periods)
-    lowest = limits(ball, n=n).saddle_node
-    where = f"{amplitude:.10g}"
-    why = "none is found on this side of the saddle-node"
-    if lowest is not None and amplitude < lowest.amplitude:
-        where, limit = apart(amplitude, lowest.amplitude)
-        why = f"below the saddle-node at Λ = {limit}"
-    elif other or found:
-        return other or found[0]
-    return OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {_described(ball)}: {why}")
+    found: list = [None] * len(amplitude)
+    # With a number r the instants are the impacts, so that there are no others.
+    if not isinstance(equations.ball, Rigid) or callable(equations.ball.restitution):
+        orbits = shortest_contacts(equations, amplitude, sign)
+        found = [each[0] if each else None for each in orbits]
+    missing = [i for i, each in enumerate(found) if not (each and each.admissible)]
+    ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
+    # The limits of balls that creep off the table take long to find.
+    ending = [i for i in missing if ends[i]]
+    rows = equations.rows(ending)
+    lowest = limits(rows.ball, n=rows.periods) if ending else []
+    folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
+    for i in missing:
+        fold = folds.get(i)
+        where = f"{amplitude[i]:.10g}"
+        why = "none is found on this side of the saddle-node"
+        if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
+            where, limit = apart(amplitude[i], fold.amplitude)
+            why = f"below the saddle-node at Λ = {limit}"
+        elif others[i] or found[i]:
+            found[i] = others[i] or found[i]
+            continue
+        elif not ends[i]:
+            why = "none is found, and without a table its impacts do not end"
+        ball = _described(equations.ball.rows(i))
+        n = np.ravel(equations.periods)[i]
+        found[i] = OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {ball}: {why}")
+    return found
 
 
 def shortest_contacts(
-    equations: OrbitEquations, amplitude: float, sign: int
-) -> list[PeriodicOrbit]:
-    """Orbits with one impact on a side of the saddle-node: those that a ball follows, and of these
-    those with short contacts, come first."""
-    found = [PeriodicOrbit(equations, row) for row in _all_orbits(equations, amplitude)]
-    on_side = [each for each in found if sign * (1 - each.turn) > 0]
-    return sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration))
+    equations: OrbitEquations, amplitude: NDArray, sign: int
+) -> list[list[PeriodicOrbit]]:
+    """Orbits with one impact on a side of the saddle-node, a list for each row.
+
+    Those that a ball follows, and of these those with short contacts, come first.
+    """
+    found = []
+    for i, z in enumerate(_all_orbits(equations, amplitude)):
+        orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
+        on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
+        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
+        found.append(on_side)
+    return found
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
@@ -432,20 +483,24 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def _check_arguments(amplitude, n, side):
-    """Raise ValueError with one line for a wrong argument."""
-    for name, given in (("amplitude", amplitude), ("n", n)):
-        if np.asarray(given).dtype.kind not in "iufb":
-            what = "is a text, and must be a number" if isinstance(given, str) else "is no number"
-            raise ValueError(f"{name} = {brief(given)}: {what}")
-    for value in np.ravel(amplitude):
-        if not 0 < value < np.inf:
-            raise ValueError(f"amplitude = {float(value):g}: must be a positive number")
-    for value in np.ravel(n):
-        if value != int(value) or not 1 <= value <= 1000:
-            raise ValueError(f"n = {float(value):g}: must be a whole number from 1 to 1000")
-    if side not in ("stable", "unstable"):
-        raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
+def _check_amplitude(amplitude):
+    """Raise ValueError with one line unless amplitudes are positive numbers."""
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+
+
+def _one_amplitude(amplitude) -> float:
+    """The amplitude as a number; ValueError unless it is a positive one."""
+    _check_amplitude(amplitude)
+    if np.ndim(amplitude):
+        raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
+    return float(amplitude)
+
+
+def _check_periods(n):
+    """Raise ValueError with one line unless all are whole numbers from 1 to 1000."""
+    values = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
+    for value in values[values % 1 != 0]:
+        raise ValueError(f"n = {value:g}: must be a whole number")
 
 
 def apart(first: float, second: float) -> tuple[str, str]:
@@ -492,28 +547,39 @@ def orbits(
     [(8.209, True), (8.007, False)]
     """
     check_ball(ball)
-    _check_arguments(amplitude, periods, "stable")
-    _check_arguments(1.0, impacts, "stable")
-    equations = OrbitEquations(ball, impacts, periods)
-    z = _all_orbits(equations, float(amplitude))
+    amplitude = _one_amplitude(amplitude)
+    equations = OrbitEquations(
+        ball, whole_number("impacts", impacts), whole_number("periods", periods)
+    )
+    (z,) = _all_orbits(equations, np.array([amplitude]))
     found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
 
 
-def _all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Solutions of the equations at an amplitude, shape (orbits, N), also those no ball follows."""
-    nearby = _returns if equations.impacts == 1 else _motions
-    starts = nearby(equations, amplitude)
-    starts = starts[np.isfinite(starts).all(axis=1)]
-    if not len(starts):
-        return starts
-    z = _distinct(equations, _solutions_near(equations, starts))
-    # Some starts lead to orbits many periods later, at times with fewer digits.
-    return newton(equations, z).z if len(z) else z
+def _all_orbits(equations: OrbitEquations, amplitude: NDArray) -> list[NDArray]:
+    """Solutions of the equations at the amplitudes of rows, also those no ball follows.
+
+    An array of the shape (orbits, N) for each row; with several impacts there is one row.
+    """
+    found = []
+    for first in range(0, len(amplitude), TOGETHER):
+        block = np.arange(first, min(first + TOGETHER, len(amplitude)))
+        part = equations.rows(block)
+        nearby = _returns if part.impacts == 1 else _motions
+        starts, row = nearby(part, amplitude[block])
+        good = np.isfinite(starts).all(axis=1)
+        z, row = _solutions_near(part, starts[good], row[good])
+        z, row = _motions_among(part, z, row)
+        each = [_distinct(part.rows(i), z[row == i]) for i in range(len(block))]
+        row = np.repeat(np.arange(len(block)), [len(z) for z in each])
+        # Some starts lead to orbits many periods later, at times with fewer digits.
+        z = newton(part.rows(row), np.concatenate(each)).z if len(row) else np.concatenate(each)
+        found += [z[row == i] for i in range(len(block))]
+    return found
 
 
-def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The solutions to which Newton's method leads from starts.
+def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions to which Newton's method leads from starts of rows, and their rows.
 
     Where impacts become much faster or longer than all of those at the starts, it is lost.
     """
@@ -522,49 +588,66 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
         x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
         return np.abs(x[..., 1:]).max(axis=1)
 
-    largest = 2 * sizes(z).max(axis=0)
-    found = []
+    largest = np.zeros((row.max(initial=0) + 1, equations.unknowns - 1))
+    np.maximum.at(largest, row, 2 * sizes(z))
+    found = [z[:0]]
+    rows = [row[:0]]
     for _ in range(30):
-        solution = newton(equations, z, iterations=1)
-        found.append(solution.z[solution.found])
-        z = solution.z[~solution.found]
-        z = z[np.isfinite(z).all(axis=1) & (sizes(z) <= largest).all(axis=1)]
         if not len(z):
             break
-    return np.concatenate(found)
+        solution = newton(equations.rows(row), z, iterations=1)
+        found.append(solution.z[solution.found])
+        rows.append(row[solution.found])
+        z = solution.z
+        inside = np.isfinite(z).all(axis=1) & (sizes(z) <= largest[row]).all(axis=1)
+        z = z[inside & ~solution.found]
+        row = row[inside & ~solution.found]
+    return np.concatenate(found), np.concatenate(rows)
 
 
 @np.errstate(all="ignore")
-def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near all orbits with one impact: impacts whose speed is the same after m periods.
+def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+    """Starts near all orbits with one impact, and their rows: impacts whose speed is the same after
+    m periods.
 
     Orbits lie on the curves of such impacts, which are crossed at 96 phases.
     """
-    ball = equations.ball
-    longest = 2.2 * np.pi * int(equations.periods) + amplitude
-    speeds = np.geomspace(1e-3, longest, 32)
-    tau, u = np.meshgrid(np.linspace(0, 2 * np.pi, 96, endpoint=False), speeds, indexing="ij")
+    longest = 2.2 * np.pi * equations.periods + amplitude
+    speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]
+    phases = np.linspace(0, 2 * np.pi, 96, endpoint=False)[:, np.newaxis]
+    tau, u = np.broadcast_arrays(phases, speeds)
 
-    def impacts(tau, u):
-        columns = [tau, u, amplitude + 0 * u]
+    def impacts(tau, u, row):
+        columns = [tau, u, amplitude[row]]
+        ball = equations.ball.rows(row)
         if ball.lasts:
-            columns.insert(2, ball.early_release(tau, u, amplitude))
+            # Contacts of an orbit are shorter than its period.
+            periods = np.broadcast_to(equations.periods, len(amplitude))[row]
+            columns.insert(2, ball.early_release(*columns, periods))
         return np.stack(columns, axis=-1)
 
-    change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
-    at, number = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
-    part = change[at, number] / (change[at, number] - change[at, number + 1])
-    between = speeds[number] + part * np.diff(speeds)[number]
-    return impacts(tau[at, 0], between)
+    row = np.repeat(np.arange(len(amplitude)), tau[0].size)
+    some = np.arange(tau.size).reshape(tau.shape)[:, ::4, ::4].ravel()
+    if not np.isfinite(impacts(tau.flat[some], u.flat[some], row[some])).any(axis=0).all():
+        # Balls that never leave the table take long to follow.
+        return np.zeros((0, equations.length)), row[:0]
+    z = impacts(tau.ravel(), u.ravel(), row)
+    change = equations.rows(row).legs(z)[:, 0, -1].reshape(tau.shape)
+    row, at, number = np.nonzero(change[..., :-1] * change[..., 1:] < 0)
+    low = change[row, at, number]
+    part = low / (low - change[row, at, number + 1])
+    between = u[row, at, number] + part * np.diff(u)[row, at, number]
+    return impacts(tau[row, at, 0], between, row), row
 
 
-def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
+def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
     """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
     # The simulation is not needed by orbits with one impact.
     from bouncing_ball_beyond.simulation import Balls, follow
 
     k = equations.impacts
     turn = 2 * np.pi
+    (amplitude,) = amplitude
     fastest = 1.1 * np.pi * int(equations.periods) + amplitude
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
@@ -578,20 +661,27 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
     columns = [times, speed, T][: equations.unknowns]
     x = np.stack(columns, axis=-1)[:, near].swapaxes(0, 1)
     x = x.reshape(len(x), equations.size)
-    return np.column_stack([x, np.full(len(x), amplitude)])
+    return np.column_stack([x, np.full(len(x), amplitude)]), np.zeros(len(x), int)
+
+
+def _motions_among(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions whose impacts and flights last, and their rows."""
+    x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
+    good = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
+    good &= (x[..., 1] > 0).all(axis=1)
+    good[good] &= (equations.rows(row[good]).ends(z[good]).flight > 0).all(axis=1)
+    return z[good], row[good]
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     """One row for each orbit: its first impact is the one of the greatest speed.
 
-    Solutions that are no orbits and orbits of a shorter period, taken several times, are left out.
+    Orbits of a shorter period, taken several times, are left out.
     """
     if not len(z):
         return z
     k = equations.impacts
     x = z[:, : equations.size].reshape(len(z), k, equations.unknowns)
-    lasting = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
-    x = x[(x[..., 1] > 0).all(axis=1) & lasting & (equations.ends(z).flight > 0).all(axis=1)]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
     # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.
@@ -633,7 +723,7 @@ def orbit_near(
         If Newton's method does not converge.
     """
     check_ball(ball)
-    _check_arguments(amplitude, 1, "stable")
+    amplitude = _one_amplitude(amplitude)
     phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
     if phases.shape != velocities.shape or phases.ndim != 1:
         raise ValueError("phases, velocities: must have one entry for each impact")

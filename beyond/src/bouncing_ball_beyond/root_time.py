@@ -29,7 +29,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
-from bouncing_ball_beyond.balls import H, sin_cos
+from bouncing_ball_beyond.balls import H
 
 ORDER = 20
 """Gauss nodes of a panel."""
@@ -65,10 +65,14 @@ CALM = 1e-3
 """The least speed of a ball that lies on the table, over its greatest one, that is resolved."""
 
 STEADY, PERIODS = 1e-9, 30
-"""A contact is permanent if its motion changes relatively by less in a period, or after so many."""
+"""A contact is permanent if its motion changes relatively by less in a period, or, unless another
+number is given, after so many."""
 
-ROWS = 500
+ROWS = 1000
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
+
+FEW_CONTACTS = 50
+"""So few contacts with m = 1, which are nearly linear, are solved by Newton's method as well."""
 
 TINY = 1e-300
 
@@ -182,7 +186,7 @@ class ContactMotion(NamedTuple):
 
 def load_of(t, given):
     """a = g - Λ sin(τ + t)."""
-    return given["gravity"] - given["amplitude"] * sin_cos(given["tau"] + t)[0]
+    return given["gravity"] - given["amplitude"] * np.sin(given["tau"] + t)
 
 
 def rates(motion, state):
@@ -203,12 +207,13 @@ def event_rate(motion, event, state):
 class Panel(NamedTuple):
     """Solved panels.
 
-    ``nodes`` and ``end`` are (q, v, t) at the nodes and at the end. ``early`` is the change of v in
-    the sweep EARLY, and ``change`` that in the last one.
+    ``nodes`` and ``end`` are (q, v, t) at the nodes and at the end, and ``push`` is F at the nodes.
+    ``early`` is the change of v in the sweep EARLY, and ``change`` about that of a further sweep.
     """
 
     nodes: tuple
     end: tuple
+    push: np.ndarray
     length: np.ndarray
     early: np.ndarray
     change: np.ndarray
@@ -216,7 +221,12 @@ class Panel(NamedTuple):
     def of(self, rows):
         """The panels of some rows."""
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
-        return Panel(nodes, end, *(x[rows] for x in self[2:]))
+        return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
+
+    def pushed(self, share):
+        """F at the nodes of the first part of each panel, by the polynomial that it is."""
+        coefficients = _COEFFICIENTS @ self.push
+        return legendre.legval(2 * share * _NODES[:, np.newaxis] - 1, coefficients, tensor=False)
 
     def replace_some(self, at, new):
         """Write other panels into these."""
@@ -272,19 +282,20 @@ def _end_of(start, h, slopes):
     return tuple(y + h * (_WEIGHTS @ slope) for y, slope in zip(start, slopes, strict=True))
 
 
-def solve_panel(motion, start, h, event=None, within=0.0, *, newton=False):
+def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=False):
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
-    An event is found if the last step to it is at most ``within``.
+    An event is found if the last step to it is at most ``within``. ``push`` is a guess of F.
 
     The sweeps are Picard's, or steps of Newton's method. With these the panel of a ball that lies
     on the table may be as long as many oscillations of its contact, which have died out. In each
     sweep a step of Newton's method also moves the end of a panel towards its event.
     """
     q0, v0, t0 = start
-    v = np.broadcast_to(v0, (ORDER, v0.size))
-    push = moved = 0.0
-    early = np.zeros(v0.size)
+    v = v0 + h * (_INTEGRALS @ np.broadcast_to(push, (ORDER, v0.size)))
+    blind = EARLY if np.ndim(push) == 0 and not newton else 0
+    moved = 0.0
+    early, change = np.zeros((2, v0.size))
     near = True
     for sweep in range(SWEEPS):
         q = q0 + h * (_INTEGRALS @ v)
@@ -298,8 +309,9 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, newton=False):
         push = force
         before = v
         v = v0 + h * (_INTEGRALS @ push)
-        if sweep < EARLY:
+        if sweep < blind:
             continue
+        earlier = change
         change = np.abs(v - before).max(0)
         if sweep == EARLY and not newton:
             early = change
@@ -308,15 +320,20 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, newton=False):
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
             near = np.abs(moved) <= within
-        if np.all(near & (change <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
+        # Each sweep changes v by a smaller part of the last change than the one before.
+        left = change * np.fmin(change / earlier, 1.0)
+        if np.all(near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
             break
         if event:
             h = h + moved
             v = v0 + h * (_INTEGRALS @ push)
+    q = q0 + h * (_INTEGRALS @ v)
+    lever = motion.lever(q)
+    t = t0 + h * (_INTEGRALS @ lever)
     end = _end_of(start, h, (v, push, lever))
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
-    return Panel((q, v, t), end, h + moved, early, np.where(near, change, np.inf))
+    return Panel((q, v, t), end, push, h + moved, early, np.where(near, left, np.inf))
 
 
 def carried(motion, nodes, by, h):
@@ -449,8 +466,9 @@ def _next_panel(motion, events, side, start, length, newton):
             begin = [y[at] for y in start]
             short = place[found == k]
             within = NEAR * length[at]
-            new = solve_panel(motion.of(at), begin, short, events[k], within, newton=newton)
-            panel.replace_some(at, new)
+            push = panel.of(at).pushed(short / panel.length[at])
+            given = motion.of(at), begin, short, events[k], within
+            panel.replace_some(at, solve_panel(*given, push=push, newton=newton))
         which[rows[found >= 0]] = found[found >= 0]
         doubtful = (found >= 0) & np.isfinite(panel.change[rows])
         if not motion.kinks:
@@ -490,6 +508,7 @@ class _Contacts:
     by: NDArray
     length: NDArray
     period: NDArray
+    longest: NDArray
     size: NDArray
     side: NDArray
     before: NDArray
@@ -508,7 +527,8 @@ class _Contacts:
             length = left / pieces
             last = pieces == 1
         side = self.side[:, here]
-        panel, which = _next_panel(motion, self.events, side, start, length, lies)
+        newton = lies or (motion.root == 1 and here.size <= FEW_CONTACTS)
+        panel, which = _next_panel(motion, self.events, side, start, length, newton)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         least = CALM if lies else 1.0
@@ -525,7 +545,7 @@ class _Contacts:
         self.size[:, kept] = np.fmax(self.size[:, kept], reached[:, good])
         self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
         which = which[good]
-        if self.by.shape[-1]:
+        if self.by.any() or self.motion.steps.keys() - {"T"}:
             self.differentiate(kept, which, panel.of(good))
         self.end_events(kept[which >= 0], which[which >= 0])
 
@@ -548,17 +568,18 @@ class _Contacts:
         state = self.now[1:3, turned]
         steady = np.abs(state - self.before[:, turned]) <= STEADY * self.size[:, turned]
         turn = self.motion.given["turn"]
-        self.lost[turned] = steady.all(0) | (turn[turned] > PERIODS * self.period[turned])
+        left = self.longest[turned] * self.period[turned] - turn[turned]
+        self.lost[turned] = steady.all(0) | (left < 0.5 * self.period[turned])
         self.before[:, turned] = state
         self.side[release + 1 :, turned] = -1.0
         turn[turned] += self.period[turned]
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MOST_PANELS):
+def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=PERIODS):
     """Contacts from their starts to the first releases, or to root times.
 
-    A contact is permanent if its motion repeats after a period, or if it lasts for PERIODS.
+    A contact is permanent if its motion repeats after a period, or if it lasts too long.
 
     Parameters
     ----------
@@ -570,8 +591,8 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MO
         Derivatives of q and v.
     until, by_until : array, shapes (rows,) and (rows, directions), optional
         Root times at which contacts are left, and their derivatives.
-    panels : int
-        A contact with more panels is taken for a permanent one.
+    longest : int or array, shape (rows,)
+        A contact that lasts for so many periods is taken for a permanent one.
 
     Returns
     -------
@@ -593,13 +614,14 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, panels=MO
         by=np.array([0 * by[0], *by, 0 * by[0]]),
         length=length.copy(),
         period=period,
+        longest=np.broadcast_to(longest, rows),
         size=np.abs(now[1:3]),
         side=side,
         before=now[1:3].copy(),
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )
-    for attempt in range(panels):
+    for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
             break

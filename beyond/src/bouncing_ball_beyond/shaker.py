@@ -96,6 +96,8 @@ class ShakerAnswer:
     """The ball with its contact, dimensionless, for the other functions of the package."""
     frequency: float
     """Of the table, in Hz."""
+    stroke: float
+    """Of the table, in m: the amplitude of its motion."""
     contact_duration: float
     """Of a free impact with the speed of the orbit, in s."""
     tolerance: float
@@ -175,7 +177,8 @@ class ShakerAnswer:
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         tolerance = f"{100 * self.tolerance:.3g}%"
         sentences = [
-            f"The acceleration of the table is Λ = {self.amplitude:.4g} times gravity."
+            f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
+            f" with an acceleration of Λ = {self.amplitude:.4g} times gravity."
             f" A contact lasts {duration}, {share:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
@@ -195,6 +198,9 @@ class ShakerAnswer:
         if self.amplitude < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
+        if begun == 0 or doubled == 2:
+            question = "Whether a restitution coefficient is good enough has no answer"
+            return [*sentences, f"{question}: {reason}."]
         verdict = f"is not good enough: {reason}" if reason else "is good enough"
         return [*sentences, f"A restitution coefficient {verdict}."]
 
@@ -361,8 +367,12 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
             f" {duration / (2 * np.pi):.2g} periods of the table"
         )
     longest = np.nan
-    # Below its saddle-node the restitution model has no height that a contact could have.
-    if np.isfinite(simple["max_height"]):
+    # Of heights of unstable orbits and below a saddle-node nothing is said.
+    stable = all(
+        values["saddle_node"] <= amplitude <= values["period_doubling"]
+        for values in (simple, exact)
+    )
+    if stable:
         low = duration / np.pi
         threshold = error_thresholds(
             contacts,
@@ -389,6 +399,7 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
         amplitude=amplitude,
         ball=ball,
         frequency=frequency,
+        stroke=amplitude * fall / rate**2,
         contact_duration=duration / rate,
         tolerance=tolerance,
         lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact),

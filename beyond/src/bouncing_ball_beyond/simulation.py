@@ -177,9 +177,10 @@ def rest(balls, gap, w):
     settles = (gap == 0) & (w * np.maximum(amplitude, 1.0) <= limit)
     stay = np.full(w.shape, -1.0)
     leaves = phase.copy()
-    for i in (settles | may_sink(gap, w, amplitude, left)).nonzero()[0]:
-        given = gap[i], w[i], restitution[i], phase[i], amplitude[i], left[i]
-        stay[i], leaves[i] = one_ball.rest(*given)
+    some = settles | may_sink(gap, w, amplitude, left)
+    if some.any():
+        given = (each[some].tolist() for each in (gap, w, restitution, phase, amplitude, left))
+        stay[some], leaves[some] = np.transpose([*map(one_ball.rest, *given)])
     rests = stay >= 0
     duration = np.maximum(stay, 0.0)
     leaves = np.where(rests, leaves, phase)

@@ -569,7 +569,7 @@ class TestRefusedForces:
             ForceLaw(lambda p, v, tau: tau * p, {"tau": 1.0})
         with pytest.raises(ValueError, match=r"units: k = \(1, 0\): must be the powers of mass"):
             ForceLaw(lambda p, v, k: k * p, {"k": 1.0}, units={"k": (1, 0)})
-        with pytest.raises(ValueError, match="k has 2, c has 3; arrays must have the same length"):
+        with pytest.raises(ValueError, match=r"k has \(2,\), c has \(3,\)"):
             ForceLaw(lambda p, v, k, c: k * p + c * v, {"k": [1.0, 2.0], "c": [1.0, 2.0, 3.0]})
 
     def test_a_row_is_checked_where_its_parameters_are_extreme(self):

@@ -240,7 +240,10 @@ def test_a_reason_has_the_digits_that_tell_two_amplitudes_apart():
         (lambda: orbits(Rigid(0.5), amplitude=[1, 2]), "amplitude = [1, 2]: must be one number"),
         (lambda: orbits(Rigid(0.5), amplitude=1, impacts=0), "impacts = 0: must be a whole number"),
         (lambda: orbits(Rigid(0.5), amplitude=1, periods=2.5), "periods = 2.5: must be a whole"),
-        (lambda: orbit(Rigid([0.5, 0.6]), amplitude=[1, 2, 3]), "have the shapes (2,), (3,), (),"),
+        (
+            lambda: orbit(Rigid([0.5, 0.6]), amplitude=[1, 2, 3]),
+            "restitution has (2,), amplitude has (3,)",
+        ),
         (lambda: orbit(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
         (lambda: orbits(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
         (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be in [1, 1000]"),

@@ -286,15 +286,20 @@ def test_friction_is_named_where_it_changes_the_bounce(of_ball):
     assert 'cone="elliptic"' in str(of_ball["mujoco"]) and not of_ball["mujoco"].notes
 
 
-def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing():
+def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
     """A friction of 0.5 was given, and CoulombFriction(0, 0) was written without a word."""
     wanted = Bounce(**BALL, friction=0.5)
-    assert "CoulombFriction(0.5, 0.5)" in design(wanted, "drake").snippet
-    for name in ENGINES:
+    for name, text in (
+        ("drake", "CoulombFriction(0.5, 0.5)"),
+        ("drake-hunt-crossley", "CoulombFriction(0.5, 0.5)"),
+        ("physx", "dynamic_friction=0.5"),
+        ("ode", "mu = 0.5"),
+    ):
         found = design(wanted, name)
-        written = re.search(r"[fF]riction.*0\.5|mu = 0\.5", found.snippet)
-        assert bool(written) != ("of 0.5 is not in what is pasted" in repr(found)), name
-        assert "not in what" not in repr(design(Bounce(**BALL), name))
+        assert text in found.snippet and "not in what" not in repr(found)
+    for name in ("mujoco", "lammps", "newton-mujoco"):
+        assert "of 0.5 is not in what is pasted" in repr(design(wanted, name))
+        assert "not in what" not in repr(of_ball[name])
 
 
 @pytest.mark.parametrize("more", [{"stiffness": "10 N/m"}, {"contact_time": "1 s"}])

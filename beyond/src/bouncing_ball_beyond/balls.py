@@ -162,6 +162,16 @@ def whole_number(name, value, least=1):
     return int(number)
 
 
+def together(named):
+    """Arrays of one shape from pairs of a name and an array; ValueError if there are none."""
+    named = list(named)
+    try:
+        return np.broadcast_arrays(*(x for _, x in named))
+    except ValueError:
+        shapes = ", ".join(f"{name} has {np.shape(x)}" for name, x in named)
+        raise ValueError(f"arrays must have shapes that go together: {shapes}") from None
+
+
 def checked(name, value, low, high, *, low_allowed):
     """The value as a number or an array; ValueError unless all are finite, from low to high."""
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
@@ -434,9 +444,7 @@ class SpringDamper(Ball):
         else:
             zeta = checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
             object.__setattr__(self, "damping_ratio", zeta)
-        sizes = {name: np.size(x) for name, x in self.parameters.items() if np.ndim(x)}
-        if len(set(sizes.values())) > 1:
-            raise ValueError(f"{' and '.join(sizes)}: arrays must have the same length")
+        together(self.parameters.items())
 
     def at(self, **values):
         """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""

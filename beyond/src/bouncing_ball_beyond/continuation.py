@@ -987,7 +987,7 @@ def limits(ball: Ball, *, n=1):
     >>> round(limits(Rigid(0.5)).saddle_node.amplitude, 6)
     1.047198
     """
-    row, (periods,), shape = rows_of(ball, n)
+    row, (periods,), shape = rows_of(ball, n=n)
     between = _between_limits(OrbitEquations(row, 1, periods))
     both = np.repeat(["saddle-node", "period doubling"], len(between))
     to = [1e-6] * len(between) + [None] * len(between)

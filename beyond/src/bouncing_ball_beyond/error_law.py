@@ -396,7 +396,7 @@ def contact_values(
         raise ValueError(f"quantities: {min(unknown)!r} must be one of {', '.join(QUANTITIES)}")
     if not np.all(np.asarray(amplitude) > 0):
         raise ValueError(f"amplitude = {amplitude!r}: must be positive")
-    row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
         if name in found:
@@ -581,7 +581,7 @@ def error_thresholds(
     if simple is None and isinstance(contacts, SpringDamper | ForceLaw):
         # All stretched contacts have the same restitution coefficient.
         known["simple"] = free_impact(path(1.0), n)
-    shape = rows_of(path(high), amplitude)[2]
+    shape = rows_of(path(high), amplitude=amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
     errors = exact_errors(path(ratios), quantities=quantities, **known)

@@ -16,6 +16,7 @@ from bouncing_ball_beyond.balls import (
     brief,
     check_ball,
     checked,
+    together,
     whole_number,
 )
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
@@ -330,18 +331,11 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
-def rows_of(ball: Ball, *others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
+def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
     """A ball and further numbers as rows of one length, and the shape which these had."""
     check_ball(ball)
     fields = ball.parameters
-    try:
-        broadcast = np.broadcast_arrays(*fields.values(), *others)
-    except ValueError:
-        shapes = ", ".join(str(np.shape(each)) for each in (*fields.values(), *others))
-        raise ValueError(
-            f"the parameters of the ball and the other arguments have the shapes {shapes}, which"
-            " do not go together"
-        ) from None
+    broadcast = together([*fields.items(), *others.items()])
     shape = broadcast[0].shape if broadcast else ()
     arrays = [np.array(each).reshape(-1) for each in broadcast]
     names = list(fields)
@@ -385,7 +379,7 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     _check_periods(n)
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
-    row, (amplitudes, periods), shape = rows_of(ball, amplitude, n)
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     equations = OrbitEquations(row, 1, periods)
     sign = 1 if side == "stable" else -1
     z, good = near_instants(equations, amplitudes.astype(float), sign)

@@ -34,6 +34,8 @@ MOST_STEPS = 3000
 # speed then also has to be nearly constant, which it is not where the body turns.
 _REST = 2e-3
 _CREEPING = 2e-5
+# Whether a body rests is looked at after so many steps.
+_REST_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -480,36 +482,42 @@ def drop(
     # The step that ends below the surface is the second one, for contacts that are found ahead.
     v = 2 * g * h - arrival
     z = (2 - at) * arrival * h - g * h * h
-    depth = np.zeros(z.shape)
-    peak = np.zeros(z.shape)
-    found = np.zeros(z.shape)
-    inside = np.ones(z.shape, bool)
     fall = h * g
+    # The law may have more values than there are steps.
+    shape = np.shape(scheme.velocity(columns, z, v, v - fall, h, g))
+    lowest = np.zeros(shape)
+    peak = np.zeros(shape)
+    found = np.zeros(shape)
+    inside = np.ones(shape, bool)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
-    for _ in range(200 + int(np.max(12 * duration / h))):
+    rises = np.zeros(shape, bool)
+    for count in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
         if drag:
             free = free - h * drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
-        peak = np.maximum(peak, np.where(inside, new - free, 0.0))
-        rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
-        sinks_again = (v > 0) & (new <= 0) & (z < 0)
+        np.maximum(peak, new - free, out=peak, where=inside)
+        falls_again = rises & (z < 0)
+        rises = new > 0
+        falls_again &= ~rises
         z = z + h * new
-        v = new
-        depth = np.maximum(depth, np.where(inside, -z, 0.0))
-        leaves = inside & (z >= 0) & (v > 0)
+        np.minimum(lowest, z, out=lowest, where=inside)
+        leaves = inside & rises & (z >= 0)
         if leaves.any():
             if gravity:
                 # The highest of the steps that follow: n more of them raise the body.
-                upward = np.maximum(v, 0.0)
+                upward = np.maximum(new, 0.0)
                 if drag:
                     upward = np.interp(upward, *_drag_free(2 * speed, gravity, drag))
                 n = np.floor(upward / (g * h))
                 rise = np.maximum(z + n * h * upward - g * h**2 * n * (n + 1) / 2, 0.0)
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
-                found = np.where(leaves, v / speed, found)
-        inside = inside & ~(leaves | sinks_again | rests)
+                found = np.where(leaves, new / speed, found)
+        inside &= ~(leaves | falls_again)
+        if count % _REST_STEPS == 0:
+            inside &= ~((np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed))
+        v = new
         if not inside.any():
             break
-    return Drops(found, depth, peak / h)
+    return Drops(found, 0 - lowest, peak / h)

@@ -61,10 +61,10 @@ def test_a_solver_with_error_control_has_no_step(name, of_ball):
 @pytest.mark.parametrize(
     ("name", "r"),
     [
-        *(("mujoco", r) for r in (0.0, 0.1, 0.135, 0.3, 0.97)),
-        *(("drake", r) for r in (0.1, 0.135, 0.6, 0.97)),
-        *(("lammps", r) for r in (0.02, 0.135, 0.9)),
-        *(("newton", r) for r in (0.1, 0.135, 0.6)),
+        *(("mujoco", r) for r in (0.0, 0.135, 0.97)),
+        *(("drake", r) for r in (0.1, 0.6)),
+        *(("lammps", r) for r in (0.02, 0.9)),
+        *(("newton", r) for r in (0.135, 0.6)),
     ],
 )
 def test_every_restitution_is_reached(name, r):
@@ -221,9 +221,9 @@ def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
 
 
 @pytest.mark.parametrize("name", STEPPED)
-def test_points_share_the_force(name):
-    one = design(Bounce(**BALL), name, "0.2 ms")
-    four = design(Bounce(**BALL, points=4), name, "0.2 ms")
+def test_points_share_the_force(name, of_ball):
+    one = of_ball[name]
+    four = design(Bounce(**BALL, points=4), name)
     assert four.row.outcome.restitution == pytest.approx(one.row.outcome.restitution, abs=1e-3)
     if ENGINES[name].points_share and name not in ("ode", "genesis", "mujoco"):
         first = ENGINES[name].names[0]

@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import math
 import re
 import sys
 from collections.abc import Callable
@@ -84,19 +83,6 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-def _plain(value: Any) -> Any:
-    """Return a value that JSON has: no NaN, no arrays."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    return value
-
-
 def _values(found: Any) -> dict[str, Any]:
     values = dataclasses.asdict(found)
     if isinstance(found, Design):
@@ -111,7 +97,10 @@ def _print(found: Any, as_json: bool, written: Design | None = None) -> None:
     values = _values(found)
     if written is not None:
         values["design"] = _values(written)
-    click.echo(json.dumps(_plain(values), indent=1, ensure_ascii=False))
+    # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
+    text = json.dumps(values, default=lambda array: array.tolist())
+    plain = json.loads(text, parse_constant=lambda _: None)
+    click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
 
 
 def _write_script(found: Design, path: str | None) -> None:

@@ -399,7 +399,7 @@ def _reasons(
         rule = problem.engine.rules[number].text
         spring = "no spring is set" if np.isinf(law.stiffness) else "a restitution beside a spring"
         yield f"{spring}: this is an impact by the number {number}, {rule}"
-        alike = replace(problem, drag=0.0).outcome(Bullet(law.restitution), step)
+        alike = replace(problem, drag=0.0).outcome(Bullet(restitution=law.restitution), step)
         if isinstance(law, Bullet) and alike.around != outcome.around:
             sees = f"sees the surface {show(law.ahead, 'm')} ahead and " if law.ahead > 0 else ""
             yield (

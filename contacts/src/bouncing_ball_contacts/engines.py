@@ -365,12 +365,6 @@ _BULLET_DEFAULTS = {
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
 }
-_BULLET_UNITS = _BULLET["units"] | {
-    "linearDamping": "1/s",
-    "restitutionVelocityThreshold": "m/s",
-    "contactSlop": "m",
-    "contactProcessingThreshold": "m",
-}
 UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
@@ -480,9 +474,6 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 _GAZEBO = _forces(("kp", "kd"))
 
 
-_GAZEBO_UNITS = _GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"}
-
-
 def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
     return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
 
@@ -501,13 +492,12 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
-_PHYSX_SPEED = {"bounceThresholdVelocity": "m/s"}
-
-
 def _read_physx(p: Parameters, at: Setting) -> Law:
     if p["compliantContactStiffness"] > 0:
         return _PHYSX["read"](p, at)
-    return FoundAhead(np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"])
+    return FoundAhead(
+        restitution=np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"]
+    )
 
 
 def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
@@ -545,7 +535,7 @@ _DRAKE_BOX = (
 )
 _LIGGGHTS_DELAY = "Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late"
 _VERLET = SemiImplicit(pulls=True)
-_ALL = {
+ENGINES: Mapping[str, Engine] = {
     engine.name: engine
     for engine in (
         Engine(
@@ -570,7 +560,16 @@ _ALL = {
         Engine(
             name="pybullet",
             scheme=Implicit(),
-            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet, "units": _BULLET_UNITS},
+            names=_BULLET["names"],
+            write=_write_pybullet,
+            read=_read_pybullet,
+            units=_BULLET["units"]
+            | {
+                "linearDamping": "1/s",
+                "restitutionVelocityThreshold": "m/s",
+                "contactSlop": "m",
+                "contactProcessingThreshold": "m",
+            },
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
                 "contactStiffness": _if_set(SERIES, 1e18),
@@ -730,7 +729,10 @@ _ALL = {
         PhysX(
             name="physx",
             scheme=Implicit(ahead=True),
-            **_PHYSX | {"read": _read_physx, "units": _PHYSX["units"] | _PHYSX_SPEED},
+            names=_PHYSX["names"],
+            write=_PHYSX["write"],
+            read=_read_physx,
+            units=_PHYSX["units"] | {"bounceThresholdVelocity": "m/s"},
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
@@ -782,7 +784,10 @@ _ALL = {
         Engine(
             name="gazebo",
             scheme=Implicit(),
-            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo, "units": _GAZEBO_UNITS},
+            names=_GAZEBO["names"],
+            write=_write_gazebo,
+            read=_read_gazebo,
+            units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             rules={
                 "kp": SERIES,
@@ -848,7 +853,6 @@ _ALL = {
         ),
     )
 }
-ENGINES: Mapping[str, Engine] = _ALL
 """The engines by name."""
 
 _ALIASES = {

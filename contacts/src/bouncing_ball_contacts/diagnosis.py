@@ -4,7 +4,6 @@ import difflib
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from bouncing_ball_contacts.designs import (
     TOLERANCE,
     Bounce,
     Outcome,
+    Page,
     Problem,
     Quantity,
     design,
@@ -76,7 +76,7 @@ class Change:
 
 
 @dataclass(frozen=True, repr=False)
-class Diagnosis:
+class Diagnosis(Page):
     """What the parameters of an engine do.
 
     ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
@@ -147,9 +147,6 @@ class Diagnosis:
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
-
-    def _repr_html_(self) -> str:
-        return "".join(f"<p>{escape(line)}</p>" for line in self.lines)
 
 
 def _typed(value: Any) -> str:

@@ -34,7 +34,6 @@ import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +42,7 @@ from numpy.typing import NDArray
 from scipy import linalg, optimize, special
 from scipy.optimize import elementwise
 
-from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
+from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
@@ -572,7 +571,7 @@ def _verdict(probability: float, some_rejected: bool, is_known: bool) -> str:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Page):
     """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
 
     ``without_scatter`` is the interval if impacts do not scatter; None if it is the same, or if the
@@ -664,14 +663,6 @@ class Fit:
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in line) + "</tr>"
-            for line in self.table
-        )
-        lines = "".join(f"<p>{escape(line)}</p>" for line in self.lines[:3])
-        return f"{lines}<table>{rows}</table>"
 
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
         """Return the bounce at this speed, with the contact time of the recording if it has one.

@@ -53,16 +53,8 @@ _SHARES = (
     "soft_erp",
     "contactERP",
 )
-# Parameters that are per unit of mass.
-_PER_MASS = {
-    "mujoco": ("solref",),
-    "newton-mujoco": ("ke", "kd"),
-    "lammps": ("gamma_n",),
-    "lammps-limit-damping": ("gamma_n",),
-    "liggghts": ("gamman",),
-    "liggghts-limit-force": ("gamman",),
-    "chrono": ("gn",),
-}
+# The units of a stiffness and a damping per unit of mass.
+_PER_MASS = ("1/s^2", "1/s")
 
 
 @dataclass(frozen=True)
@@ -287,9 +279,7 @@ def diagnose(
     given = parameters_of(row, parameters or {})
     if one_body and other:
         raise Refused("give either the parameters of the other body or --one-body, not both")
-    other_given = None
-    if other or one_body:
-        other_given = parameters_of(row, other or {})
+    other_given = parameters_of(row, other or {}) if other or one_body else None
     of_one = {**row.defaults, **given}
     of_other = of_one if other_given is None else {**row.defaults, **other_given}
     problem = Problem(bounce, row, drag=of_one.get("linearDamping", 0.0))
@@ -304,7 +294,9 @@ def diagnose(
     if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
-        free = float(_without_gravity(problem).drops(law, short).mean)
+        speed = bounce.impact_speed
+        weightless = replace(bounce, drop_height=None, speed=speed, gravity=0.0)
+        free = float(Problem(weightless, row).drops(law, short).mean)
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
     change = None
@@ -352,12 +344,6 @@ class _Pair:
     def mean(self, step: float) -> float:
         """Return the mean r."""
         return float(self.problem.drops(self.law(step), step).mean)
-
-
-def _without_gravity(problem: Problem) -> Problem:
-    bounce = problem.bounce
-    alone = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
-    return replace(problem, bounce=alone, drag=0.0)
 
 
 def _spring(problem: Problem, law: Law) -> tuple[float, float]:
@@ -424,7 +410,7 @@ def _reasons(
         yield f"the step changes r by {mean - limit:+.3f}, from {limit:.3f} in short steps"
     if abs(free - limit) > TOLERANCE / 2:
         yield f"gravity during the contact changes r by {limit - free:+.3f}, from {free:.3f}"
-    stiffness, ratio = _spring(problem, law)
+    _, ratio = _spring(problem, law)
     if ratio >= 1:
         yield f"the damping ratio of {ratio:.3g} is that of a contact without oscillation"
     if outcome.depth[1] > bounce.size:
@@ -457,7 +443,9 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
     mass = problem.bounce.reduced_mass
     if abs(free - wanted) < TOLERANCE:
         return
-    names = _PER_MASS.get(engine.name, ())
+    names = [name for name in engine.names if engine.units.get(name) in _PER_MASS]
+    if engine.name == "mujoco":
+        names = ["solref"]
     divided = pair
     for name in names:
         values = tuple(value / mass for value in np.atleast_1d(pair.one[name]))
@@ -500,8 +488,7 @@ def _another(pair: _Pair, step: float) -> str:
     text += f"; {values} has {row.outcome.around}{at}"
     if text_of(f"{engine.name}-impulse") and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
-        text += f"; {_listed(impulse.parameters)} without a spring has "
-        text += f"{impulse.outcome.around}"
+        text += f"; {_listed(impulse.parameters)} without a spring has {impulse.outcome.around}"
     return text
 
 
@@ -513,12 +500,10 @@ def _least_change(pair: _Pair, step: float) -> Change | None:
         return _damping(pair, step, problem.engine.number)
     if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
         return None
-    for halvings in range(7):
+    for halvings in range(7 if problem.engine.fixed_steps else 1):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:
             return found
-        if not problem.engine.fixed_steps:
-            return None
     return None
 
 

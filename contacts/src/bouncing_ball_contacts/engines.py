@@ -415,42 +415,30 @@ def _read_dissipation(p: Parameters, at: Setting) -> Law:
     return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
 
 
-def _tsuji_restitution(law: Law) -> float:
-    beta = min(float(law.damping), 1 - 1e-9)
-    return math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+def _hertz(
+    names: tuple[str, str], stiffness: float = 1.0, least: float = -math.inf
+) -> dict[str, Any]:
+    """Return what a row has of Hertz with Tsuji: a modulus, and an e that is above `least`.
 
+    The modulus is `stiffness` times k/√R = (4/3) E*.
+    """
 
-def _tsuji(e: float) -> Array:
-    log = math.log(max(e, 1e-12))
-    return np.asarray(-log / math.hypot(math.pi, log))
+    def write(law: Law, at: Setting) -> dict[str, Any]:
+        modulus = stiffness * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
+        beta = min(float(law.damping), 1 - 1e-9)
+        e = math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+        if e <= least:
+            raise Refused(f"LIGGGHTS takes no {names[1]} below {least:g}, as here {e:.3g}")
+        return {names[0]: modulus, names[1]: e}
 
+    def read(p: Parameters, at: Setting) -> Law:
+        k = p[names[0]] / stiffness * math.sqrt(at.radius) * at.points / at.mass
+        log = math.log(max(p[names[1]], 1e-12))
+        return Hertz(np.asarray(k), np.asarray(-log / math.hypot(math.pi, log)))
 
-def _write_hertz(law: Law, at: Setting) -> dict[str, Any]:
-    k = float(law.stiffness) * at.mass / at.points
-    return {"kn": k / math.sqrt(at.radius), "e": _tsuji_restitution(law)}
-
-
-def _read_hertz(p: Parameters, at: Setting) -> Law:
-    k = p["kn"] * math.sqrt(at.radius) * at.points / at.mass
-    return Hertz(np.asarray(k), _tsuji(p["e"]))
-
-
-_POISSON = 0.3
-
-
-def _write_liggghts_hertz(law: Law, at: Setting) -> dict[str, Any]:
-    # Two alike bodies have 1/E* = 2 (1 - ν²)/E, and k = (4/3) E* √R.
-    reduced = 0.75 * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-    e = _tsuji_restitution(law)
-    if e <= 0.05:
-        raise Refused(f"LIGGGHTS takes no coefficientRestitution below 0.05, as here {e:.3g}")
-    return {"youngsModulus": 2 * (1 - _POISSON**2) * reduced, "coefficientRestitution": e}
-
-
-def _read_liggghts_hertz(p: Parameters, at: Setting) -> Law:
-    reduced = p["youngsModulus"] / (2 * (1 - _POISSON**2))
-    k = 4 / 3 * reduced * math.sqrt(at.radius) * at.points / at.mass
-    return Hertz(np.asarray(k), _tsuji(p["coefficientRestitution"]))
+    units = {names[0]: "Pa"}
+    of_depth = Hertz.of_depth
+    return {"names": names, "units": units, "write": write, "read": read, "of_depth": of_depth}
 
 
 def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
@@ -500,19 +488,12 @@ def _read_physx(p: Parameters, at: Setting) -> Law:
     )
 
 
-def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
-    return Stepped(
-        1.25 * speed**2 / depth**2.5, 2 * ratio * speed / depth, depth / 10, exponent=1.5
-    )
-
-
-def _simscape_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
-    linear = Linear.of_depth(depth, ratio, speed)
-    return Stepped(linear.stiffness, linear.damping, depth / 10, steps_spring=True)
-
-
 def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
-    """Return `names`, `units`, `write` and `read` of a damper that is stepped in over a depth."""
+    """Return what a row has of a damper that is stepped in over a depth."""
+
+    def of_depth(depth: Array, ratio: Array, speed: float) -> Law:
+        k = (exponent + 1) / 2 * speed**2 / depth ** (exponent + 1)
+        return Stepped(k, 2 * ratio * speed / depth, depth / 10, exponent, steps_spring)
 
     def write(law: Any, at: Setting) -> dict[str, Any]:
         numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
@@ -524,7 +505,13 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
 
     spring = "N/m" if exponent == 1 else f"N/m^{exponent}"
     units = dict(zip(names, (spring, "N s/m", "m"), strict=True))
-    return {"names": names[:2], "units": units, "write": write, "read": read}
+    return {
+        "names": names[:2],
+        "units": units,
+        "write": write,
+        "read": read,
+        "of_depth": of_depth,
+    }
 
 
 _BOTH = "Give both bodies these numbers"
@@ -639,14 +626,10 @@ ENGINES: Mapping[str, Engine] = {
         ),
         Engine(
             name="lammps-hertz",
-            names=("kn", "e"),
             scheme=_VERLET,
-            write=_write_hertz,
-            read=_read_hertz,
+            **_hertz(("kn", "e")),
             meaning="kn = (4/3) E* in Pa, e = r",
-            units={"kn": "Pa"},
             rules={"kn": PAIR, "e": PAIR},
-            of_depth=Hertz.of_depth,
             sets_pair=True,
             deepest=1.0,
             unit="N/m^1.5",
@@ -677,15 +660,12 @@ ENGINES: Mapping[str, Engine] = {
         ),
         Engine(
             name="liggghts-hertz",
-            names=("youngsModulus", "coefficientRestitution"),
             scheme=_VERLET,
-            write=_write_liggghts_hertz,
-            read=_read_liggghts_hertz,
+            # Two alike bodies have 1/E* = 2 (1 - ν²)/E.
+            **_hertz(("youngsModulus", "coefficientRestitution"), 1.5 * (1 - 0.3**2), 0.05),
             meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
             ran="LIGGGHTS 3.8.0",
-            units={"youngsModulus": "Pa"},
             rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
-            of_depth=Hertz.of_depth,
             sets_pair=True,
             deepest=1.0,
             notes=(_LIGGGHTS_DELAY,),
@@ -824,7 +804,6 @@ ENGINES: Mapping[str, Engine] = {
             name="simscape",
             scheme=SemiImplicit(),
             **_stepped(("stiffness", "damping", "transition_region_width"), 1.0, True),
-            of_depth=_simscape_of_depth,
             meaning="stiffness = k, damping = c, transition region width = a tenth of the depth",
             rules={"stiffness": PAIR, "damping": PAIR, "transition_region_width": PAIR},
             sets_pair=True,
@@ -835,7 +814,6 @@ ENGINES: Mapping[str, Engine] = {
             name="adams",
             scheme=SemiImplicit(),
             **_stepped(("stiffness", "damping", "penetration_depth"), 1.5, False),
-            of_depth=_adams_of_depth,
             meaning="IMPACT with exponent 1.5, stiffness K, full damping C at the penetration d",
             rules={"stiffness": PAIR, "damping": PAIR, "penetration_depth": PAIR},
             sets_pair=True,

@@ -368,7 +368,7 @@ class Problem:
     def row(self, law: Law, step: float) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
         step = _rounded(step)
-        combined = self.engine.write(law, self.setting(step))
+        combined = {**self.engine.write(law, self.setting(step)), **self.engine.beside}
         of_body = self.engine.of_one if self.one_body else self.engine.of_each
         parameters = {name: _rounded(value) for name, value in of_body(combined).items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass

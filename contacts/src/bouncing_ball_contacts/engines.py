@@ -88,6 +88,8 @@ class Engine:
         How the engine combines each parameter of two bodies.
     write : callable
         The combined parameters of a law in a setting.
+    beside : mapping
+        What is written beside them.
     read : callable
         The law of combined parameters in a setting.
     meaning : str
@@ -131,6 +133,7 @@ class Engine:
     read: Callable[[Parameters, Setting], Law]
     meaning: str
     rules: Mapping[str, Rule]
+    beside: Parameters = field(default_factory=dict)
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
     units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
@@ -256,11 +259,7 @@ def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
 def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
     # N points of the impedance d act as one of N d/(1 + (N - 1) d).
     share = (1 + (at.points - 1) * LEAST_IMPEDANCE) / at.points
-    k = float(law.stiffness) * share
-    return {
-        "solref": (-k, -float(law.damping) * share),
-        "solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001),
-    }
+    return {"solref": (-float(law.stiffness) * share, -float(law.damping) * share)}
 
 
 def _solimp(values: Any) -> tuple[float, ...]:
@@ -369,11 +368,6 @@ UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
 
-def _write_pybullet(law: Law, at: Setting) -> dict[str, Any]:
-    undisturbed = ("linearDamping", "contactSlop", "contactProcessingThreshold")
-    return _BULLET["write"](law, at) | dict.fromkeys(undisturbed, 0.0)
-
-
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
     # A ball is found within 2 % of half the diagonal of the box around it; two balls, or two boxes,
     # when they touch.
@@ -462,10 +456,6 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 _GAZEBO = _forces(("kp", "kd"))
 
 
-def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
-    return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
-
-
 def _read_gazebo(p: Parameters, at: Setting) -> Law:
     linear = _GAZEBO["read"](p, at)
     return ContactJoint(
@@ -530,6 +520,7 @@ ENGINES: Mapping[str, Engine] = {
             names=("solref", "solref"),
             scheme=SemiImplicit(),
             write=_write_mujoco,
+            beside={"solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001)},
             read=_read_mujoco,
             meaning="solref = -k/m -c/m, solimp = 1e-4 1e-4 0.001",
             rules=_MUJOCO_RULES,
@@ -548,7 +539,8 @@ ENGINES: Mapping[str, Engine] = {
             name="pybullet",
             scheme=Implicit(),
             names=_BULLET["names"],
-            write=_write_pybullet,
+            write=_BULLET["write"],
+            beside={"linearDamping": 0.0, "contactSlop": 0.0, "contactProcessingThreshold": 0.0},
             read=_read_pybullet,
             units=_BULLET["units"]
             | {
@@ -765,7 +757,8 @@ ENGINES: Mapping[str, Engine] = {
             name="gazebo",
             scheme=Implicit(),
             names=_GAZEBO["names"],
-            write=_write_gazebo,
+            write=_GAZEBO["write"],
+            beside={"max_vel": 1000.0},
             read=_read_gazebo,
             units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",

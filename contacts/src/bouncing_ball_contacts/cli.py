@@ -242,8 +242,8 @@ def fit_command(
         click.echo("\n".join([*found.intervals, ""]))
     contact = {name: options[name] for name in ("density", "penetration", "stiffness", "friction")}
     if engine is None:
-        design_only = {"time_step": time_step, "tolerance": tolerance, "pick": pick}
-        of_engine = contact | design_only | {"script": script}
+        of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
+        of_engine = contact | of_design
         if needless := [name for name, value in of_engine.items() if value is not None]:
             option = needless[0].replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")

@@ -506,8 +506,8 @@ def design(
 
 def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
     """Return whether a row keeps the tolerance and a limit of the penetration in m."""
-    keeps = row.outcome.deviation(problem.target) <= tolerance
-    return keeps and row.outcome.depth[1] <= limit
+    found = row.outcome
+    return found.deviation(problem.target) <= tolerance and found.depth[1] <= limit
 
 
 def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
@@ -551,7 +551,6 @@ def _undamped_depth(problem: Problem) -> float | None:
 def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
     """Return the contact that keeps the limit, at the longest step with half of the tolerance."""
     limit = problem.bounce.limit
-    target = problem.target
     if not problem.engine.fixed_steps:
         step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
         return _kept(problem, kept or limit, step, is_fixed=kept is not None)
@@ -564,10 +563,10 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
             found = problem.drops(problem.law(depth, ratio), step)
             if kept is None:
                 depth = depth * 0.998 * limit / found.depth.max(axis=-1)
-        good = np.flatnonzero(found.error(target) <= tolerance / 2)
+        good = np.flatnonzero(found.error(problem.target) <= tolerance / 2)
         if good.size:
             break
-    best = int(good[0]) if good.size else int(np.argmin(found.error(target)))
+    best = int(good[0]) if good.size else int(np.argmin(found.error(problem.target)))
     step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
     return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
 

@@ -302,8 +302,12 @@ def diagnose(
     change = None
     if bounce.restitution is not None and outcome.deviation(bounce.restitution) > TOLERANCE:
         change = _least_change(pair, step)
-        keeps = change is not None and change.outcome.deviation(bounce.restitution) <= TOLERANCE
-        if change is None or not keeps or not math.isclose(change.step, step):
+        is_enough = (
+            change is not None
+            and change.outcome.deviation(bounce.restitution) <= TOLERANCE
+            and math.isclose(change.step, step)
+        )
+        if not is_enough:
             reasons += (_another(pair, step),)
     return Diagnosis(
         engine=row.name,
@@ -332,8 +336,7 @@ class _Pair:
 
     def law(self, step: float) -> Law:
         engine = self.problem.engine
-        combined = engine.combined(self.one, self.other)
-        return engine.read(combined, self.problem.setting(step))
+        return engine.read(engine.combined(self.one, self.other), self.problem.setting(step))
 
     def changed(self, name: str, value: Any) -> "_Pair":
         """Return the pair with another value, of both bodies if they are alike."""
@@ -348,14 +351,12 @@ class _Pair:
 
 def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     """Return k in N/m and ζ of a spring and a damper."""
-    mass = problem.bounce.reduced_mass
     if isinstance(law, Impedance):
         law = law.deep
     if not isinstance(law, Linear | Solved) or law.is_number:
         return math.nan, math.nan
     k = float(law.stiffness)
-    c = float(law.damping)
-    return k * mass, c / (2 * math.sqrt(k))
+    return k * problem.bounce.reduced_mass, float(law.damping) / (2 * math.sqrt(k))
 
 
 def _reasons(
@@ -483,9 +484,8 @@ def _another(pair: _Pair, step: float) -> str:
     except Refused:
         return text
     row = found.row
-    values = _listed(row.parameters)
     at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
-    text += f"; {values} has {row.outcome.around}{at}"
+    text += f"; {_listed(row.parameters)} has {row.outcome.around}{at}"
     if text_of(f"{engine.name}-impulse") and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
         text += f"; {_listed(impulse.parameters)} without a spring has {impulse.outcome.around}"
@@ -536,8 +536,7 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
         else:
             low = middle
     value = float(f"{(low + high) / 2:.5g}")
-    found = pair.changed(name, of(value))
-    outcome = problem.outcome(found.law(step), step)
+    outcome = problem.outcome(pair.changed(name, of(value)).law(step), step)
     # A mean that hides large errors is no change for the better.
     misses = abs(outcome.restitution[1] - target) > TOLERANCE or outcome.error > 3 * TOLERANCE
     if misses or outcome.restitution[2] > 1.02:

@@ -314,11 +314,10 @@ def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | No
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
-    y = impacts.log_r
-    scattering = _estimate(curves, y, _SHARES > 0)
+    scattering = _estimate(curves, impacts.log_r, _SHARES > 0)
     if without_scatter(impacts, curves) < _UNLIKELY:
         return scattering, None
-    still = _estimate(curves, y, _SHARES == 0)
+    still = _estimate(curves, impacts.log_r, _SHARES == 0)
     is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
     return scattering, None if is_alike or still.low > 0 else still
 

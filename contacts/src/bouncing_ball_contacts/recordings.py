@@ -455,7 +455,6 @@ def _measured(
     have = columns.keys()
     notes: list[str] = []
     durations = None
-    uncertainty = None
     for speed in {"in", "out"} & have:
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
@@ -463,12 +462,12 @@ def _measured(
     # One half of a pair is no series.
     alone = {"drop", "rebound", "in", "out"} & have
     pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
+    uncertainty = None if pairs is None else columns.get("uncertainty")
     if intervals and not {"time", "interval"} & have:
         raise Refused(f"{name} has no column of intervals")
     if pairs is not None:
         kind, *used, unit = pairs
         chains = [_pairs(name, columns, used, unit)]
-        uncertainty = columns.get("uncertainty")
     elif {"time", "position"} <= have:
         kind = "speeds"
         used = ["time", "position"]

@@ -298,8 +298,7 @@ class Outcome:
 
     def deviation(self, wanted: float) -> float:
         """Return the largest distance of r from the wanted one."""
-        low, _, high = self.restitution
-        return max(abs(high - wanted), abs(low - wanted))
+        return max(abs(r - wanted) for r in self.restitution)
 
     @property
     def around(self) -> str:

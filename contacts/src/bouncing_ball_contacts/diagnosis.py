@@ -294,8 +294,7 @@ def diagnose(
     if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
-        speed = bounce.impact_speed
-        weightless = replace(bounce, drop_height=None, speed=speed, gravity=0.0)
+        weightless = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
         free = float(Problem(weightless, row).drops(law, short).mean)
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))

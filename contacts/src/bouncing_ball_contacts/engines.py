@@ -192,8 +192,7 @@ class Engine:
     @property
     def pairs(self) -> str:
         """How the parameters of two bodies are combined, in a few words."""
-        texts = dict.fromkeys(self.rules[name].text for name in dict.fromkeys(self.names))
-        return ", ".join(texts)
+        return ", ".join(dict.fromkeys(self.rules[name].text for name in self.names))
 
 
 @dataclass(frozen=True)

@@ -47,7 +47,7 @@ def test_the_croquet_ball():
     assert first.law.startswith("Hertz") and first.rms == pytest.approx(0.0041, abs=1e-4)
     assert first.left_out == pytest.approx(0.0045, abs=1e-4)
     assert "deviates" in str(found) and "errors needed" in str(found)
-    assert "<table>" in found._repr_html_()
+    assert "errors needed" in found._repr_html_()
 
 
 def test_one_impact_has_no_interval_of_its_own():

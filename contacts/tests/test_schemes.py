@@ -53,7 +53,11 @@ def by_force(z):
 def test_an_impulse_found_ahead_is_that_of_pybullet(step, number, measured):
     """400 drops of PyBullet 3.2.7 with its defaults from 1 m: a ball of a radius of 0.1 m."""
     law = Bullet(
-        np.asarray(number**2), threshold=0.2, erp=0.08, slop=1e-5, ahead=0.02 * math.sqrt(3) * 0.1
+        restitution=np.asarray(number**2),
+        threshold=0.2,
+        erp=0.08,
+        slop=1e-5,
+        ahead=0.02 * math.sqrt(3) * 0.1,
     )
     speed = math.sqrt(2 * 9.80665)
     r = drop(law, OfSolver(), step, speed, 9.80665, exact(offsets(201)), 0.04).restitution
@@ -66,7 +70,7 @@ def test_a_solver_without_restitution_has_implicit_steps(scheme):
     """What the engines' formulas of v⁺ come to if nothing else is set."""
     k = np.asarray(3e4)
     c = np.asarray(20.0)
-    law = scheme(np.asarray(0.0), stiffness=k, damping=c)
+    law = scheme(k, c, restitution=np.asarray(0.0))
     found = drop(law, OfSolver(), 1e-3, 2.0, 9.81, AT)
     implicit = drop(Linear(k, c), Implicit(), 1e-3, 2.0, 9.81, AT)
     assert found.restitution == pytest.approx(implicit.restitution, rel=1e-9)
@@ -76,7 +80,7 @@ def test_a_solver_without_restitution_has_implicit_steps(scheme):
 def test_linear_damping_limits_the_speed_of_a_fall():
     """A body falls with v of D v (1 + v) = g at most, and rises against the same drag."""
     terminal = math.sqrt(0.25 + 9.80665 / 0.04) - 0.5
-    fast = drop(Bullet(np.asarray(0.5)), OfSolver(), 1e-4, 300.0, 9.80665, AT, 0.04)
+    fast = drop(Bullet(restitution=np.asarray(0.5)), OfSolver(), 1e-4, 300.0, 9.80665, AT, 0.04)
 
     def slower(time, state):
         speed = state[1]
@@ -158,7 +162,7 @@ def test_implicit_steps_with_contacts_ahead_bounce_as_physx():
 
 
 def test_an_impulse_is_its_number_without_gravity():
-    law = Bullet(np.asarray(0.7))
+    law = Bullet(restitution=np.asarray(0.7))
     assert drop(law, OfSolver(), 1e-3, 2.0, 0.0, AT).restitution == pytest.approx(0.7)
 
 

@@ -2,10 +2,8 @@
 
 import dataclasses
 import json
-import math
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,51 +13,43 @@ from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, d
 from bouncing_ball_contacts.engines import ENGINES
 from bouncing_ball_contacts.units import Refused
 
-Command = Callable[..., Any]
-
-
-def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
-    def decorate(command: Command) -> Command:
-        for option in reversed(options):
-            command = option(command)
-        return command
-
-    return decorate
-
-
-_DENSITY = click.option("--density", help="In place of the size; also steel, rubber, wood, …")
+_DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
-    click.option("--mass", help="Mass of the body, such as '50 g'."),
-    click.option("--restitution", "--cor", help="√(h′/h) that is wanted, 0 to 1."),
-    click.option("--drop-height", help="Height of the drop; 1 m if no speed is given."),
-    click.option("--speed", help="Impact speed, in place of the height."),
-    click.option("--radius", help="Radius, or half the height of a box."),
+    click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
+    click.Option(["--restitution", "--cor"], help="√(h′/h) that is wanted, 0 to 1."),
+    click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),
+    click.Option(["--speed"], help="Impact speed, in place of the height."),
+    click.Option(["--radius"], help="Radius, or half the height of a box."),
     _DENSITY,
-    click.option("--points", type=int, default=1, help="Contact points: 4 for the face of a box."),
-    click.option("--other-mass", help="Mass of a second free body; needs the speed of approach."),
-    click.option("--gravity", default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."),
+    click.Option(
+        ["--points"], type=int, default=1, help="Contact points: 4 for the face of a box."
+    ),
+    click.Option(["--other-mass"], help="Mass of a second free body; needs the speed of approach."),
+    click.Option(
+        ["--gravity"], default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."
+    ),
 ]
 _CONTACT = [
-    click.option("--penetration", help="Depth that must not be exceeded."),
-    click.option("--stiffness", help="Of the contact, in place of the penetration."),
-    click.option("--contact-time", help="Of a contact without damping, in place of these."),
-    click.option("--friction", help="Coefficient of friction; r is computed without."),
-    click.option("--tolerance", help="Largest deviation of r; 0.02 if not given."),
-    click.option("--pick", help="Row that is written, such as 'what you want' or impulse."),
-    click.option("--script", type=click.Path(dir_okay=False), help="File for a script to run."),
+    click.Option(["--penetration"], help="Depth that must not be exceeded."),
+    click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
+    click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
+    click.Option(["--friction"], help="Coefficient of friction; r is computed without."),
+    click.Option(["--tolerance"], help="Largest deviation of r; 0.02 if not given."),
+    click.Option(["--pick"], help="Row that is written, such as 'what you want' or impulse."),
+    click.Option(["--script"], type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
-_STEP = click.option("--time-step", help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
+_STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
 
 def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
     return [name for name in ENGINES if name.startswith(typed)]
 
 
-_ENGINE = click.option(
-    "--engine", default="generic", help="One of 'bounce engines'.", shell_complete=_engines
+_ENGINE = click.Option(
+    ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
 )
-_ONE_BODY = click.option("--one-body", is_flag=True, help="The other body keeps its defaults.")
-_JSON = click.option("--json", "as_json", is_flag=True, help="All numbers, in SI units.")
+_ONE_BODY = click.Option(["--one-body"], is_flag=True, help="The other body keeps its defaults.")
+_JSON = click.Option(["--json", "as_json"], is_flag=True, help="All numbers, in SI units.")
 
 
 _EXAMPLES = """\b
@@ -84,19 +74,6 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-def _plain(value: Any) -> Any:
-    """Return a value that JSON has: no NaN, no arrays."""
-    if isinstance(value, float):
-        return value if math.isfinite(value) else None
-    if isinstance(value, dict):
-        return {str(key): _plain(each) for key, each in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain(each) for each in value]
-    if hasattr(value, "tolist"):
-        return _plain(value.tolist())
-    return value
-
-
 def _values(found: Any) -> dict[str, Any]:
     values = dataclasses.asdict(found)
     if isinstance(found, Design):
@@ -111,7 +88,10 @@ def _print(found: Any, as_json: bool, written: Design | None = None) -> None:
     values = _values(found)
     if written is not None:
         values["design"] = _values(written)
-    click.echo(json.dumps(_plain(values), indent=1, ensure_ascii=False))
+    # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
+    text = json.dumps(values, default=lambda array: array.tolist())
+    plain = json.loads(text, parse_constant=lambda _: None)
+    click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
 
 
 def _write_script(found: Design, path: str | None) -> None:
@@ -139,8 +119,7 @@ def _given(options: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in options.items() if name in names}
 
 
-@main.command("design")
-@_options(*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON)
+@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON])
 def design_command(script: str | None, as_json: bool, **options: Any) -> None:
     """Write the contact of an engine for the bounce that you want."""
     options["tolerance"] = options["tolerance"] or TOLERANCE
@@ -163,10 +142,20 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
-@main.command("diagnose")
-@click.argument("parameters", nargs=-1, metavar="[NAME=VALUE]...")
-@_options(*_BODY, _ENGINE, _STEP, _ONE_BODY, _JSON)
-@click.option("--other", multiple=True, help="NAME=VALUE of the other body, if it differs.")
+@main.command(
+    "diagnose",
+    params=[
+        click.Argument(["parameters"], nargs=-1, metavar="[NAME=VALUE]..."),
+        *_BODY,
+        _ENGINE,
+        _STEP,
+        _ONE_BODY,
+        _JSON,
+        click.Option(
+            ["--other"], multiple=True, help="NAME=VALUE of the other body, if it differs."
+        ),
+    ],
+)
 def diagnose_command(
     parameters: tuple[str, ...], other: tuple[str, ...], as_json: bool, **options: Any
 ) -> None:
@@ -204,16 +193,29 @@ def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
     return [CompletionItem(typed, type="file"), *names]
 
 
-@main.command("fit")
-@click.argument("recording", shell_complete=_recordings)
-@click.option("--speed", help="At which r is wanted; the middle of the impacts if not given.")
-@click.option("--resolution", help="Standard deviation of a reading, such as '0.7 ms'.")
-@click.option("--mass", help="Of the ball, for the drag of the air and the engine.")
-@click.option("--diameter", help="Of the ball, for the drag of the air.")
-@click.option("--leave-out", help="Lines of the file, such as 4,7.")
-@click.option("--intervals", is_flag=True, help="Read the intervals, and show single impacts.")
-@click.option("--engine", help="For which the contact is written.", shell_complete=_engines)
-@_options(_STEP, _DENSITY, *_CONTACT, _JSON)
+@main.command(
+    "fit",
+    params=[
+        click.Argument(["recording"], shell_complete=_recordings),
+        click.Option(
+            ["--speed"], help="At which r is wanted; the middle of the impacts if not given."
+        ),
+        click.Option(["--resolution"], help="Standard deviation of a reading, such as '0.7 ms'."),
+        click.Option(["--mass"], help="Of the ball, for the drag of the air and the engine."),
+        click.Option(["--diameter"], help="Of the ball, for the drag of the air."),
+        click.Option(["--leave-out"], help="Lines of the file, such as 4,7."),
+        click.Option(
+            ["--intervals"], is_flag=True, help="Read the intervals, and show single impacts."
+        ),
+        click.Option(
+            ["--engine"], help="For which the contact is written.", shell_complete=_engines
+        ),
+        _STEP,
+        _DENSITY,
+        *_CONTACT,
+        _JSON,
+    ],
+)
 def fit_command(
     recording: str,
     leave_out: str | None,
@@ -240,8 +242,8 @@ def fit_command(
         click.echo("\n".join([*found.intervals, ""]))
     contact = {name: options[name] for name in ("density", "penetration", "stiffness", "friction")}
     if engine is None:
-        design_only = {"time_step": time_step, "tolerance": tolerance, "pick": pick}
-        of_engine = contact | design_only | {"script": script}
+        of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
+        of_engine = contact | of_design
         if needless := [name for name, value in of_engine.items() if value is not None]:
             option = needless[0].replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")

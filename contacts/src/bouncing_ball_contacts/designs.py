@@ -80,6 +80,34 @@ _CONTROLLED = 1000
 # ln r is found to this error, a tenth of the last printed digit of r.
 _LN_R = 1e-4
 _DIGITS = 6
+# Of what a bounce is given by, in the order in which it is said.
+_UNITS = {
+    "mass": "kg",
+    "restitution": "",
+    "drop_height": "m",
+    "speed": "m/s",
+    "radius": "m",
+    "penetration": "m",
+    "stiffness": "N/m",
+    "contact_time": "s",
+    "other_mass": "kg",
+    "density": "kg/m^3",
+    "friction": "",
+    "gravity": "m/s^2",
+}
+# Of each of these at most one is given.
+_ALTERNATIVES = (
+    ("drop height", "speed"),
+    ("radius", "density"),
+    ("penetration", "stiffness", "contact time"),
+)
+
+
+class Page:
+    """A result that a notebook shows as it is printed."""
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
 
 @dataclass(frozen=True)
@@ -134,45 +162,32 @@ class Bounce:
     def __post_init__(self) -> None:
         if self.mass is None:
             raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
-        in_units = {
-            "mass": "kg",
-            "drop_height": "m",
-            "speed": "m/s",
-            "radius": "m",
-            "penetration": "m",
-            "stiffness": "N/m",
-            "contact_time": "s",
-            "other_mass": "kg",
-        }
-        values: dict[str, Any] = {}
         shown: dict[str, str] = {}
-        for name, unit in in_units.items():
-            given = getattr(self, name)
-            if given is not None:
-                values[name] = positive(name.replace("_", " "), given, unit)
-                shown[name.replace("_", " ")] = show(values[name], unit, 4)
-        if self.density is not None:
-            values["density"] = density_of(self.density)
-            shown["density"] = show(values["density"], "kg/m^3", 4)
-        if self.restitution is not None:
-            values["restitution"] = within("restitution", self.restitution, 0, 1)
-            shown["restitution"] = f"{values['restitution']:g}"
-        if self.friction is not None:
-            values["friction"] = within("friction", self.friction, 0, math.inf)
-            shown["friction"] = f"{values['friction']:g}"
-        values["gravity"] = in_si("gravity", self.gravity, "m/s^2")
-        if values["gravity"] < 0 or (values["gravity"] == 0 and self.speed is None):
+        for name, unit in _UNITS.items():
+            value = getattr(self, name)
+            if value is None:
+                continue
+            words = name.replace("_", " ")
+            if name in ("restitution", "friction"):
+                value = within(words, value, 0, 1 if name == "restitution" else math.inf)
+            elif name == "density":
+                value = density_of(value)
+            elif name == "gravity":
+                value = in_si(words, value, unit)
+            else:
+                value = positive(words, value, unit)
+            object.__setattr__(self, name, value)
+            if name != "gravity" or value != STANDARD_GRAVITY:
+                shown[words] = show(value, unit, 4 if unit else 6)
+        if self.gravity < 0 or (self.gravity == 0 and self.speed is None):
             raise Refused(
-                f"gravity = {show(values['gravity'], 'm/s^2')} is not positive; without any, give "
+                f"gravity = {show(self.gravity, 'm/s^2')} is not positive; without any, give "
                 "the speed, --speed '2 m/s'"
             )
-        if values["gravity"] != STANDARD_GRAVITY:
-            shown["gravity"] = show(values["gravity"], "m/s^2", 4)
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
-        self._require_one("drop_height", "speed")
-        self._require_one("radius", "density")
-        self._require_one("penetration", "stiffness", "contact_time")
+        for names in _ALTERNATIVES:
+            given = [name for name in names if name in shown]
+            if len(given) > 1:
+                raise Refused(f"give either the {given[0]} or the {given[1]}, not both")
         if not (isinstance(self.points, int) and self.points >= 1):
             raise Refused(f"points = {self.points!r} is no whole number from 1 on")
         if self.points > 1:
@@ -186,13 +201,7 @@ class Bounce:
             raise Refused(
                 "two free bodies need the speed at which they approach each other: --speed '2 m/s'"
             )
-        first = {name: shown[name] for name in ("mass", "restitution") if name in shown}
-        object.__setattr__(self, "given", first | shown)
-
-    def _require_one(self, *names: str) -> None:
-        given = [name.replace("_", " ") for name in names if getattr(self, name) is not None]
-        if len(given) > 1:
-            raise Refused(f"give either the {given[0]} or the {given[1]}, not both")
+        object.__setattr__(self, "given", shown)
 
     @property
     def reduced_mass(self) -> float:
@@ -285,13 +294,11 @@ class Outcome:
     @property
     def error(self) -> float:
         """The largest distance of r from its mean."""
-        low, mean, high = self.restitution
-        return max(high - mean, mean - low)
+        return self.deviation(self.restitution[1])
 
     def deviation(self, wanted: float) -> float:
         """Return the largest distance of r from the wanted one."""
-        low, _, high = self.restitution
-        return max(abs(high - wanted), abs(low - wanted))
+        return max(abs(r - wanted) for r in self.restitution)
 
     @property
     def around(self) -> str:
@@ -348,20 +355,19 @@ class Problem:
         """Return what one contact does at a time step in s."""
         # With error control it does not matter where in a step an impact begins.
         found = self.drops(law, step, trials if self.engine.fixed_steps else _COARSE)
-        mass = self.bounce.reduced_mass
+        force = self.bounce.reduced_mass * found.peak
         r = found.restitution
-        rest = float(law.rest(self.bounce.load)) if self.bounce.load else 0.0
         return Outcome(
             depth=(float(found.depth.min()), float(found.depth.max())),
-            rest=rest,
-            force=(float(found.peak.min()) * mass, float(found.peak.max()) * mass),
+            rest=float(law.rest(self.bounce.load)) if self.bounce.load else 0.0,
+            force=(float(force.min()), float(force.max())),
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
 
     def row(self, law: Law, step: float) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
         step = _rounded(step)
-        combined = self.engine.write(law, self.setting(step))
+        combined = {**self.engine.write(law, self.setting(step)), **self.engine.beside}
         of_body = self.engine.of_one if self.one_body else self.engine.of_each
         parameters = {name: _rounded(value) for name, value in of_body(combined).items()}
         stiffness = float(law.stiffness) * self.bounce.reduced_mass
@@ -499,8 +505,8 @@ def design(
 
 def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
     """Return whether a row keeps the tolerance and a limit of the penetration in m."""
-    keeps = row.outcome.deviation(problem.target) <= tolerance
-    return keeps and row.outcome.depth[1] <= limit
+    found = row.outcome
+    return found.deviation(problem.target) <= tolerance and found.depth[1] <= limit
 
 
 def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
@@ -529,24 +535,21 @@ def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
 def _undamped_depth(problem: Problem) -> float | None:
     """Return the depth in m, without damping, of a contact that is given; None if none is."""
     bounce = problem.bounce
-    v = bounce.impact_speed
-    unit = float(problem.law(np.asarray(1.0), np.asarray(0.0)).stiffness)
+    unit = problem.law(np.asarray(1.0), np.asarray(0.0))
     if bounce.stiffness is not None:
         if problem.engine.unit != "N/m":
             raise Refused(f"{problem.engine.name} has no stiffness in N/m: give the penetration")
         # The stiffness of an undamped depth d is proportional to 1/d².
-        return math.sqrt(unit * bounce.reduced_mass / bounce.stiffness)
+        return math.sqrt(float(unit.stiffness) * bounce.reduced_mass / bounce.stiffness)
     if bounce.contact_time is not None:
-        # A contact of unit depth lasts a time that is proportional to the depth.
-        still = problem.law(np.asarray(1.0), np.asarray(0.0))
-        return float(bounce.contact_time / still.duration(v))
+        # A contact lasts a time that is proportional to the depth.
+        return float(bounce.contact_time / unit.duration(bounce.impact_speed))
     return None
 
 
 def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
     """Return the contact that keeps the limit, at the longest step with half of the tolerance."""
     limit = problem.bounce.limit
-    target = problem.target
     if not problem.engine.fixed_steps:
         step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
         return _kept(problem, kept or limit, step, is_fixed=kept is not None)
@@ -559,10 +562,10 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
             found = problem.drops(problem.law(depth, ratio), step)
             if kept is None:
                 depth = depth * 0.998 * limit / found.depth.max(axis=-1)
-        good = np.flatnonzero(found.error(target) <= tolerance / 2)
+        good = np.flatnonzero(found.error(problem.target) <= tolerance / 2)
         if good.size:
             break
-    best = int(good[0]) if good.size else int(np.argmin(found.error(target)))
+    best = int(good[0]) if good.size else int(np.argmin(found.error(problem.target)))
     step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
     return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
 
@@ -648,8 +651,7 @@ def _impulse(problem: Problem, step: float) -> Row:
     best = float(np.interp(problem.bounce.restitution, mean, numbers))
     each = _rounded(engine.rules[engine.number].alike(best))
     parameters = {engine.number: each, **engine.undisturbed}
-    found = own.outcome(own.law_of(parameters, step), step)
-    return Row(step, math.nan, found, parameters)
+    return Row(step, math.nan, own.outcome(own.law_of(parameters, step), step), parameters)
 
 
 def _too_long(
@@ -731,7 +733,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
 
 
 @dataclass(frozen=True, repr=False)
-class Design:
+class Design(Page):
     """The contacts that answer a question, by the names of their rows, and the one written.
 
     Its ``repr`` is the table with its notes; printed it also has the snippet and what was assumed.
@@ -775,37 +777,30 @@ class Design:
     @property
     def table(self) -> list[list[str]]:
         """The cells of the table, the headings first."""
-        unit = engine_named(self.engine).unit
-        cells = [["", "step", "k", "sinks", "at rest", "force", "r"]]
-        for name, row in self.rows.items():
-            found = row.outcome
-            fixed = engine_named(self.engine).fixed_steps
-            cells.append(
-                [
-                    f"{name} *" if name == self.chosen else name,
-                    show(row.step, "s") if fixed else "–",
-                    show(row.stiffness, unit),
-                    show(found.depth[1], "m"),
-                    show(found.rest, "m") if self.bounce.load else "–",
-                    show(found.force[1], "N"),
-                    found.around,
-                ]
-            )
-        return cells
-
-    @property
-    def given(self) -> str:
-        """What was given, so that a wrong unit is seen."""
-        values = dict(self.bounce.given)
-        if self.time_step is not None:
-            values["time step"] = show(self.time_step, "s", 4)
-        return ", ".join(f"{name} {value}" for name, value in values.items())
+        engine = engine_named(self.engine)
+        rows = [
+            [
+                f"{name} *" if name == self.chosen else name,
+                show(row.step, "s") if engine.fixed_steps else "–",
+                show(row.stiffness, engine.unit),
+                show(row.outcome.depth[1], "m"),
+                show(row.outcome.rest, "m") if self.bounce.load else "–",
+                show(row.outcome.force[1], "N"),
+                row.outcome.around,
+            ]
+            for name, row in self.rows.items()
+        ]
+        return [["", "step", "k", "sinks", "at rest", "force", "r"], *rows]
 
     @property
     def remarks(self) -> list[str]:
         """The lines below the snippet: what was given and assumed, and what the engine needs."""
         row = engine_named(self.engine)
-        lines = [f"Given: {self.given}."]
+        given = dict(self.bounce.given)
+        if self.time_step is not None:
+            given["time step"] = show(self.time_step, "s", 4)
+        # So that a wrong unit is seen.
+        lines = [f"Given: {', '.join(f'{name} {value}' for name, value in given.items())}."]
         if self.bounce.assumed:
             lines.append(f"Assumed: {'; '.join(self.bounce.assumed)}.")
         if self.bounce.other_mass is not None:
@@ -834,14 +829,6 @@ class Design:
 
     def __str__(self) -> str:
         return "\n".join([repr(self), "", self.snippet, "", *self.remarks])
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in line) + "</tr>"
-            for line in self.table
-        )
-        notes = "".join(f"<p>{escape(note)}</p>" for note in self.notes)
-        return f"<table>{rows}</table>{notes}<pre>{escape(self.snippet)}</pre>"
 
 
 def aligned(table: list[list[str]]) -> list[str]:

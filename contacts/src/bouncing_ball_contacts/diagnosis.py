@@ -4,7 +4,6 @@ import difflib
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from html import escape
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from bouncing_ball_contacts.designs import (
     TOLERANCE,
     Bounce,
     Outcome,
+    Page,
     Problem,
     Quantity,
     design,
@@ -53,16 +53,8 @@ _SHARES = (
     "soft_erp",
     "contactERP",
 )
-# Parameters that are per unit of mass.
-_PER_MASS = {
-    "mujoco": ("solref",),
-    "newton-mujoco": ("ke", "kd"),
-    "lammps": ("gamma_n",),
-    "lammps-limit-damping": ("gamma_n",),
-    "liggghts": ("gamman",),
-    "liggghts-limit-force": ("gamman",),
-    "chrono": ("gn",),
-}
+# The units of a stiffness and a damping per unit of mass.
+_PER_MASS = ("1/s^2", "1/s")
 
 
 @dataclass(frozen=True)
@@ -76,7 +68,7 @@ class Change:
 
 
 @dataclass(frozen=True, repr=False)
-class Diagnosis:
+class Diagnosis(Page):
     """What the parameters of an engine do.
 
     ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
@@ -147,9 +139,6 @@ class Diagnosis:
 
     def __str__(self) -> str:
         return "\n".join(self.lines)
-
-    def _repr_html_(self) -> str:
-        return "".join(f"<p>{escape(line)}</p>" for line in self.lines)
 
 
 def _typed(value: Any) -> str:
@@ -290,9 +279,7 @@ def diagnose(
     given = parameters_of(row, parameters or {})
     if one_body and other:
         raise Refused("give either the parameters of the other body or --one-body, not both")
-    other_given = None
-    if other or one_body:
-        other_given = parameters_of(row, other or {})
+    other_given = parameters_of(row, other or {}) if other or one_body else None
     of_one = {**row.defaults, **given}
     of_other = of_one if other_given is None else {**row.defaults, **other_given}
     problem = Problem(bounce, row, drag=of_one.get("linearDamping", 0.0))
@@ -307,14 +294,19 @@ def diagnose(
     if not law.is_number:
         short = min(float(law.duration(bounce.impact_speed)) / _SHORT, step)
         limit = float(replace(problem, drag=0.0).drops(law, short).mean)
-        free = float(_without_gravity(problem).drops(law, short).mean)
+        weightless = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
+        free = float(Problem(weightless, row).drops(law, short).mean)
     stiffness, ratio = _spring(problem, law)
     reasons = tuple(_reasons(pair, step, law, outcome, limit, free))
     change = None
     if bounce.restitution is not None and outcome.deviation(bounce.restitution) > TOLERANCE:
         change = _least_change(pair, step)
-        keeps = change is not None and change.outcome.deviation(bounce.restitution) <= TOLERANCE
-        if change is None or not keeps or not math.isclose(change.step, step):
+        is_enough = (
+            change is not None
+            and change.outcome.deviation(bounce.restitution) <= TOLERANCE
+            and math.isclose(change.step, step)
+        )
+        if not is_enough:
             reasons += (_another(pair, step),)
     return Diagnosis(
         engine=row.name,
@@ -343,8 +335,7 @@ class _Pair:
 
     def law(self, step: float) -> Law:
         engine = self.problem.engine
-        combined = engine.combined(self.one, self.other)
-        return engine.read(combined, self.problem.setting(step))
+        return engine.read(engine.combined(self.one, self.other), self.problem.setting(step))
 
     def changed(self, name: str, value: Any) -> "_Pair":
         """Return the pair with another value, of both bodies if they are alike."""
@@ -357,22 +348,14 @@ class _Pair:
         return float(self.problem.drops(self.law(step), step).mean)
 
 
-def _without_gravity(problem: Problem) -> Problem:
-    bounce = problem.bounce
-    alone = replace(bounce, drop_height=None, speed=bounce.impact_speed, gravity=0.0)
-    return replace(problem, bounce=alone, drag=0.0)
-
-
 def _spring(problem: Problem, law: Law) -> tuple[float, float]:
     """Return k in N/m and ζ of a spring and a damper."""
-    mass = problem.bounce.reduced_mass
     if isinstance(law, Impedance):
         law = law.deep
     if not isinstance(law, Linear | Solved) or law.is_number:
         return math.nan, math.nan
     k = float(law.stiffness)
-    c = float(law.damping)
-    return k * mass, c / (2 * math.sqrt(k))
+    return k * problem.bounce.reduced_mass, float(law.damping) / (2 * math.sqrt(k))
 
 
 def _reasons(
@@ -399,7 +382,7 @@ def _reasons(
         rule = problem.engine.rules[number].text
         spring = "no spring is set" if np.isinf(law.stiffness) else "a restitution beside a spring"
         yield f"{spring}: this is an impact by the number {number}, {rule}"
-        alike = replace(problem, drag=0.0).outcome(Bullet(law.restitution), step)
+        alike = replace(problem, drag=0.0).outcome(Bullet(restitution=law.restitution), step)
         if isinstance(law, Bullet) and alike.around != outcome.around:
             sees = f"sees the surface {show(law.ahead, 'm')} ahead and " if law.ahead > 0 else ""
             yield (
@@ -427,7 +410,7 @@ def _reasons(
         yield f"the step changes r by {mean - limit:+.3f}, from {limit:.3f} in short steps"
     if abs(free - limit) > TOLERANCE / 2:
         yield f"gravity during the contact changes r by {limit - free:+.3f}, from {free:.3f}"
-    stiffness, ratio = _spring(problem, law)
+    _, ratio = _spring(problem, law)
     if ratio >= 1:
         yield f"the damping ratio of {ratio:.3g} is that of a contact without oscillation"
     if outcome.depth[1] > bounce.size:
@@ -460,7 +443,9 @@ def _mistaken(pair: _Pair, step: float, free: float, ratio: float) -> Iterator[s
     mass = problem.bounce.reduced_mass
     if abs(free - wanted) < TOLERANCE:
         return
-    names = _PER_MASS.get(engine.name, ())
+    names = [name for name in engine.names if engine.units.get(name) in _PER_MASS]
+    if engine.name == "mujoco":
+        names = ["solref"]
     divided = pair
     for name in names:
         values = tuple(value / mass for value in np.atleast_1d(pair.one[name]))
@@ -498,13 +483,11 @@ def _another(pair: _Pair, step: float) -> str:
     except Refused:
         return text
     row = found.row
-    values = _listed(row.parameters)
     at = "" if math.isclose(row.step, step, rel_tol=1e-4) else f", at {show(row.step, 's')}"
-    text += f"; {values} has {row.outcome.around}{at}"
+    text += f"; {_listed(row.parameters)} has {row.outcome.around}{at}"
     if text_of(f"{engine.name}-impulse") and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
-        text += f"; {_listed(impulse.parameters)} without a spring has "
-        text += f"{impulse.outcome.around}"
+        text += f"; {_listed(impulse.parameters)} without a spring has {impulse.outcome.around}"
     return text
 
 
@@ -516,12 +499,10 @@ def _least_change(pair: _Pair, step: float) -> Change | None:
         return _damping(pair, step, problem.engine.number)
     if isinstance(law, ContactJoint) and law.fastest < problem.bounce.impact_speed:
         return None
-    for halvings in range(7):
+    for halvings in range(7 if problem.engine.fixed_steps else 1):
         found = _damping(pair, step / 2**halvings, problem.engine.names[1])
         if found is not None:
             return found
-        if not problem.engine.fixed_steps:
-            return None
     return None
 
 
@@ -554,8 +535,7 @@ def _damping(pair: _Pair, step: float, name: str) -> Change | None:
         else:
             low = middle
     value = float(f"{(low + high) / 2:.5g}")
-    found = pair.changed(name, of(value))
-    outcome = problem.outcome(found.law(step), step)
+    outcome = problem.outcome(pair.changed(name, of(value)).law(step), step)
     # A mean that hides large errors is no change for the better.
     misses = abs(outcome.restitution[1] - target) > TOLERANCE or outcome.error > 3 * TOLERANCE
     if misses or outcome.restitution[2] > 1.02:

@@ -88,6 +88,8 @@ class Engine:
         How the engine combines each parameter of two bodies.
     write : callable
         The combined parameters of a law in a setting.
+    beside : mapping
+        What is written beside them.
     read : callable
         The law of combined parameters in a setting.
     meaning : str
@@ -131,6 +133,7 @@ class Engine:
     read: Callable[[Parameters, Setting], Law]
     meaning: str
     rules: Mapping[str, Rule]
+    beside: Parameters = field(default_factory=dict)
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
     units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
@@ -189,8 +192,7 @@ class Engine:
     @property
     def pairs(self) -> str:
         """How the parameters of two bodies are combined, in a few words."""
-        texts = dict.fromkeys(self.rules[name].text for name in dict.fromkeys(self.names))
-        return ", ".join(texts)
+        return ", ".join(dict.fromkeys(self.rules[name].text for name in self.names))
 
 
 @dataclass(frozen=True)
@@ -256,11 +258,7 @@ def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
 def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
     # N points of the impedance d act as one of N d/(1 + (N - 1) d).
     share = (1 + (at.points - 1) * LEAST_IMPEDANCE) / at.points
-    k = float(law.stiffness) * share
-    return {
-        "solref": (-k, -float(law.damping) * share),
-        "solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001),
-    }
+    return {"solref": (-float(law.stiffness) * share, -float(law.damping) * share)}
 
 
 def _solimp(values: Any) -> tuple[float, ...]:
@@ -365,19 +363,8 @@ _BULLET_DEFAULTS = {
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
 }
-_BULLET_UNITS = _BULLET["units"] | {
-    "linearDamping": "1/s",
-    "restitutionVelocityThreshold": "m/s",
-    "contactSlop": "m",
-    "contactProcessingThreshold": "m",
-}
 UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
-
-
-def _write_pybullet(law: Law, at: Setting) -> dict[str, Any]:
-    undisturbed = ("linearDamping", "contactSlop", "contactProcessingThreshold")
-    return _BULLET["write"](law, at) | dict.fromkeys(undisturbed, 0.0)
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
@@ -421,42 +408,30 @@ def _read_dissipation(p: Parameters, at: Setting) -> Law:
     return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
 
 
-def _tsuji_restitution(law: Law) -> float:
-    beta = min(float(law.damping), 1 - 1e-9)
-    return math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+def _hertz(
+    names: tuple[str, str], stiffness: float = 1.0, least: float = -math.inf
+) -> dict[str, Any]:
+    """Return what a row has of Hertz with Tsuji: a modulus, and an e that is above `least`.
 
+    The modulus is `stiffness` times k/√R = (4/3) E*.
+    """
 
-def _tsuji(e: float) -> Array:
-    log = math.log(max(e, 1e-12))
-    return np.asarray(-log / math.hypot(math.pi, log))
+    def write(law: Law, at: Setting) -> dict[str, Any]:
+        modulus = stiffness * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
+        beta = min(float(law.damping), 1 - 1e-9)
+        e = math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+        if e <= least:
+            raise Refused(f"LIGGGHTS takes no {names[1]} below {least:g}, as here {e:.3g}")
+        return {names[0]: modulus, names[1]: e}
 
+    def read(p: Parameters, at: Setting) -> Law:
+        k = p[names[0]] / stiffness * math.sqrt(at.radius) * at.points / at.mass
+        log = math.log(max(p[names[1]], 1e-12))
+        return Hertz(np.asarray(k), np.asarray(-log / math.hypot(math.pi, log)))
 
-def _write_hertz(law: Law, at: Setting) -> dict[str, Any]:
-    k = float(law.stiffness) * at.mass / at.points
-    return {"kn": k / math.sqrt(at.radius), "e": _tsuji_restitution(law)}
-
-
-def _read_hertz(p: Parameters, at: Setting) -> Law:
-    k = p["kn"] * math.sqrt(at.radius) * at.points / at.mass
-    return Hertz(np.asarray(k), _tsuji(p["e"]))
-
-
-_POISSON = 0.3
-
-
-def _write_liggghts_hertz(law: Law, at: Setting) -> dict[str, Any]:
-    # Two alike bodies have 1/E* = 2 (1 - ν²)/E, and k = (4/3) E* √R.
-    reduced = 0.75 * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-    e = _tsuji_restitution(law)
-    if e <= 0.05:
-        raise Refused(f"LIGGGHTS takes no coefficientRestitution below 0.05, as here {e:.3g}")
-    return {"youngsModulus": 2 * (1 - _POISSON**2) * reduced, "coefficientRestitution": e}
-
-
-def _read_liggghts_hertz(p: Parameters, at: Setting) -> Law:
-    reduced = p["youngsModulus"] / (2 * (1 - _POISSON**2))
-    k = 4 / 3 * reduced * math.sqrt(at.radius) * at.points / at.mass
-    return Hertz(np.asarray(k), _tsuji(p["coefficientRestitution"]))
+    units = {names[0]: "Pa"}
+    of_depth = Hertz.of_depth
+    return {"names": names, "units": units, "write": write, "read": read, "of_depth": of_depth}
 
 
 def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
@@ -480,13 +455,6 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 _GAZEBO = _forces(("kp", "kd"))
 
 
-_GAZEBO_UNITS = _GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"}
-
-
-def _write_gazebo(law: Law, at: Setting) -> dict[str, Any]:
-    return _GAZEBO["write"](law, at) | {"max_vel": 1000.0}
-
-
 def _read_gazebo(p: Parameters, at: Setting) -> Law:
     linear = _GAZEBO["read"](p, at)
     return ContactJoint(
@@ -501,28 +469,20 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
-_PHYSX_SPEED = {"bounceThresholdVelocity": "m/s"}
-
-
 def _read_physx(p: Parameters, at: Setting) -> Law:
     if p["compliantContactStiffness"] > 0:
         return _PHYSX["read"](p, at)
-    return FoundAhead(np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"])
-
-
-def _adams_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
-    return Stepped(
-        1.25 * speed**2 / depth**2.5, 2 * ratio * speed / depth, depth / 10, exponent=1.5
+    return FoundAhead(
+        restitution=np.asarray(p["restitution"]), threshold=p["bounceThresholdVelocity"]
     )
 
 
-def _simscape_of_depth(depth: Array, ratio: Array, speed: float) -> Law:
-    linear = Linear.of_depth(depth, ratio, speed)
-    return Stepped(linear.stiffness, linear.damping, depth / 10, steps_spring=True)
-
-
 def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
-    """Return `names`, `units`, `write` and `read` of a damper that is stepped in over a depth."""
+    """Return what a row has of a damper that is stepped in over a depth."""
+
+    def of_depth(depth: Array, ratio: Array, speed: float) -> Law:
+        k = (exponent + 1) / 2 * speed**2 / depth ** (exponent + 1)
+        return Stepped(k, 2 * ratio * speed / depth, depth / 10, exponent, steps_spring)
 
     def write(law: Any, at: Setting) -> dict[str, Any]:
         numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
@@ -534,7 +494,13 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
 
     spring = "N/m" if exponent == 1 else f"N/m^{exponent}"
     units = dict(zip(names, (spring, "N s/m", "m"), strict=True))
-    return {"names": names[:2], "units": units, "write": write, "read": read}
+    return {
+        "names": names[:2],
+        "units": units,
+        "write": write,
+        "read": read,
+        "of_depth": of_depth,
+    }
 
 
 _BOTH = "Give both bodies these numbers"
@@ -545,7 +511,7 @@ _DRAKE_BOX = (
 )
 _LIGGGHTS_DELAY = "Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late"
 _VERLET = SemiImplicit(pulls=True)
-_ALL = {
+ENGINES: Mapping[str, Engine] = {
     engine.name: engine
     for engine in (
         Engine(
@@ -553,6 +519,7 @@ _ALL = {
             names=("solref", "solref"),
             scheme=SemiImplicit(),
             write=_write_mujoco,
+            beside={"solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001)},
             read=_read_mujoco,
             meaning="solref = -k/m -c/m, solimp = 1e-4 1e-4 0.001",
             rules=_MUJOCO_RULES,
@@ -570,7 +537,17 @@ _ALL = {
         Engine(
             name="pybullet",
             scheme=Implicit(),
-            **_BULLET | {"write": _write_pybullet, "read": _read_pybullet, "units": _BULLET_UNITS},
+            names=_BULLET["names"],
+            write=_BULLET["write"],
+            beside={"linearDamping": 0.0, "contactSlop": 0.0, "contactProcessingThreshold": 0.0},
+            read=_read_pybullet,
+            units=_BULLET["units"]
+            | {
+                "linearDamping": "1/s",
+                "restitutionVelocityThreshold": "m/s",
+                "contactSlop": "m",
+                "contactProcessingThreshold": "m",
+            },
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
                 "contactStiffness": _if_set(SERIES, 1e18),
@@ -640,14 +617,10 @@ _ALL = {
         ),
         Engine(
             name="lammps-hertz",
-            names=("kn", "e"),
             scheme=_VERLET,
-            write=_write_hertz,
-            read=_read_hertz,
+            **_hertz(("kn", "e")),
             meaning="kn = (4/3) E* in Pa, e = r",
-            units={"kn": "Pa"},
             rules={"kn": PAIR, "e": PAIR},
-            of_depth=Hertz.of_depth,
             sets_pair=True,
             deepest=1.0,
             unit="N/m^1.5",
@@ -678,15 +651,12 @@ _ALL = {
         ),
         Engine(
             name="liggghts-hertz",
-            names=("youngsModulus", "coefficientRestitution"),
             scheme=_VERLET,
-            write=_write_liggghts_hertz,
-            read=_read_liggghts_hertz,
+            # Two alike bodies have 1/E* = 2 (1 - ν²)/E.
+            **_hertz(("youngsModulus", "coefficientRestitution"), 1.5 * (1 - 0.3**2), 0.05),
             meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
             ran="LIGGGHTS 3.8.0",
-            units={"youngsModulus": "Pa"},
             rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
-            of_depth=Hertz.of_depth,
             sets_pair=True,
             deepest=1.0,
             notes=(_LIGGGHTS_DELAY,),
@@ -730,7 +700,10 @@ _ALL = {
         PhysX(
             name="physx",
             scheme=Implicit(ahead=True),
-            **_PHYSX | {"read": _read_physx, "units": _PHYSX["units"] | _PHYSX_SPEED},
+            names=_PHYSX["names"],
+            write=_PHYSX["write"],
+            read=_read_physx,
+            units=_PHYSX["units"] | {"bounceThresholdVelocity": "m/s"},
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
@@ -782,7 +755,11 @@ _ALL = {
         Engine(
             name="gazebo",
             scheme=Implicit(),
-            **_GAZEBO | {"write": _write_gazebo, "read": _read_gazebo, "units": _GAZEBO_UNITS},
+            names=_GAZEBO["names"],
+            write=_GAZEBO["write"],
+            beside={"max_vel": 1000.0},
+            read=_read_gazebo,
+            units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             rules={
                 "kp": SERIES,
@@ -819,7 +796,6 @@ _ALL = {
             name="simscape",
             scheme=SemiImplicit(),
             **_stepped(("stiffness", "damping", "transition_region_width"), 1.0, True),
-            of_depth=_simscape_of_depth,
             meaning="stiffness = k, damping = c, transition region width = a tenth of the depth",
             rules={"stiffness": PAIR, "damping": PAIR, "transition_region_width": PAIR},
             sets_pair=True,
@@ -830,7 +806,6 @@ _ALL = {
             name="adams",
             scheme=SemiImplicit(),
             **_stepped(("stiffness", "damping", "penetration_depth"), 1.5, False),
-            of_depth=_adams_of_depth,
             meaning="IMPACT with exponent 1.5, stiffness K, full damping C at the penetration d",
             rules={"stiffness": PAIR, "damping": PAIR, "penetration_depth": PAIR},
             sets_pair=True,
@@ -848,7 +823,6 @@ _ALL = {
         ),
     )
 }
-ENGINES: Mapping[str, Engine] = _ALL
 """The engines by name."""
 
 _ALIASES = {

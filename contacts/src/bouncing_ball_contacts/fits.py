@@ -34,7 +34,6 @@ import functools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -43,13 +42,13 @@ from numpy.typing import NDArray
 from scipy import linalg, optimize, special
 from scipy.optimize import elementwise
 
-from bouncing_ball_contacts.designs import Bounce, Design, Quantity, aligned, design
+from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
+from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
+from bouncing_ball_contacts.units import Refused, positive, show, span
 
-G = STANDARD_GRAVITY
 _SLOPE = 0.25
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # φ: none, and evenly in ln(φ/(1 - φ)), so that sizes of scatter and errors are even in logarithms.
@@ -102,8 +101,8 @@ def _flight_speeds(duration: Array, drag: float) -> tuple[Array, Array]:
         return G * duration / 2, G * duration / 2
 
     def lasts(up: Array) -> Array:
-        fall = np.arccosh(np.sqrt(1 + drag * up**2 / G))
-        return (np.arctan(up * math.sqrt(drag / G)) + fall) / math.sqrt(drag * G)
+        x = up * math.sqrt(drag / G)
+        return (np.arctan(x) + np.arcsinh(x)) / math.sqrt(drag * G)
 
     bracket = (G * duration / 2, 2 * G * duration)
     up = elementwise.find_root(lambda up, all_: lasts(up) - all_, bracket, args=(duration,)).x
@@ -315,11 +314,10 @@ def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | No
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
-    y = impacts.log_r
-    scattering = _estimate(curves, y, _SHARES > 0)
+    scattering = _estimate(curves, impacts.log_r, _SHARES > 0)
     if without_scatter(impacts, curves) < _UNLIKELY:
         return scattering, None
-    still = _estimate(curves, y, _SHARES == 0)
+    still = _estimate(curves, impacts.log_r, _SHARES == 0)
     is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
     return scattering, None if is_alike or still.low > 0 else still
 
@@ -447,16 +445,14 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     posterior, _, _ = curves.posterior(y - np.mean(y))
     likelihood = posterior.sum(axis=1)
     share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
-    shapes = curves.shapes
-    sizes = curves.sizes
     values = len(np.unique(np.round(np.log(v), 3)))
     shape = powers[:, : min(3, values, n - 1)]
     further = shape.shape[1] - 1
-    likely = shapes[share] * sizes[share, size] ** 2
+    likely = curves.shapes[share] * curves.sizes[share, size] ** 2
     root = np.linalg.cholesky(likely)
     of_share = likelihood.sum(axis=1) * (_SHARES > 0)
     # An r without any deviation leaves rounding errors.
-    smooth = np.maximum(_rest(shapes, shape, y), 1e-20)
+    smooth = np.maximum(_rest(curves.shapes, shape, y), 1e-20)
     left = n - shape.shape[1]
     judged = []
     for name, law in LAWS.items():
@@ -464,18 +460,17 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
         fitted = law.log_r(a, v)
         slope = (law.log_r(a * 1.001, v) - law.log_r(a * 0.999, v)) / (0.002 * a)
         misfit = y - fitted
-        worse = np.maximum(_rest(shapes, slope[:, None], misfit) - smooth, 0.0)
+        worse = np.maximum(_rest(curves.shapes, slope[:, None], misfit) - smooth, 0.0)
         probability = math.nan
         if further and curves.is_known:
-            chances = special.chdtrc(further, worse / sizes[:, 0] ** 2)
+            chances = special.chdtrc(further, worse / curves.sizes[:, 0] ** 2)
             probability = float(of_share @ chances / of_share.sum())
         elif further and left:
             chances = special.fdtrc(further, left, worse / further / (smooth / left))
             probability = float(chances[of_share > _UNLIKELY * of_share.max()].max())
-        r = impacts.restitution
-        errors = r - np.exp(fitted)
-        inverse = np.linalg.inv(likely)
-        hat = slope * (inverse @ slope) / (slope @ inverse @ slope)
+        errors = impacts.restitution - np.exp(fitted)
+        weighted = np.linalg.solve(likely, slope)
+        hat = slope * weighted / (slope @ weighted)
         apart = errors / np.maximum(1 - hat, 1e-9)
         excess = _rest(np.eye(n)[None], slope[:, None], misfit) - _rest(np.eye(n)[None], shape, y)
         bound = special.chdtri(further, REJECTED) if further else math.nan
@@ -486,7 +481,7 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
                 restitution=float(np.exp(law.log_r(a, np.asarray(at)))),
                 rms=float(np.sqrt(np.mean(errors**2))),
                 left_out=float(np.sqrt(np.mean(apart**2))),
-                needed=float(np.mean(r) * math.sqrt(max(excess[0], 0.0) / bound)),
+                needed=float(np.mean(impacts.restitution) * math.sqrt(max(excess[0], 0.0) / bound)),
                 probability=probability,
                 verdict="",
             )
@@ -572,7 +567,7 @@ def _verdict(probability: float, some_rejected: bool, is_known: bool) -> str:
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Page):
     """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
 
     ``without_scatter`` is the interval if impacts do not scatter; None if it is the same, or if the
@@ -665,14 +660,6 @@ class Fit:
     def __str__(self) -> str:
         return "\n".join(self.lines)
 
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in line) + "</tr>"
-            for line in self.table
-        )
-        lines = "".join(f"<p>{escape(line)}</p>" for line in self.lines[:3])
-        return f"{lines}<table>{rows}</table>"
-
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
         """Return the bounce at this speed, with the contact time of the recording if it has one.
 
@@ -743,10 +730,14 @@ def fit(
     recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
     head = recording.head
     notes = list(recording.notes)
-    body = mass if mass is not None else head.get("mass")
-    across = diameter if diameter is not None else head.get("diameter")
-    kilograms = None if body is None else positive("mass", body, "kg")
-    wide = None if across is None else positive("diameter", across, "m")
+
+    def known_of(name: str, given: Quantity, unit: str) -> float | None:
+        """Return what is given, or else what the head of the recording says."""
+        value = head.get(name) if given is None else given
+        return None if value is None else positive(name, value, unit)
+
+    kilograms = known_of("mass", mass, "kg")
+    wide = known_of("diameter", diameter, "m")
     drag = 0.0
     if kilograms is not None and wide is not None:
         density = 6 * kilograms / (math.pi * wide**3)
@@ -774,11 +765,9 @@ def fit(
     n = len(impacts.log_r)
     middle = math.exp(float(np.mean(np.log(impacts.speed))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    stated = resolution if resolution is not None else head.get("resolution")
-    known: float | Array | None = recording.uncertainty
-    if stated is not None:
-        unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s"}
-        known = positive("resolution", stated, unit.get(recording.kind, ""))
+    unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s", "coefficients": ""}
+    stated = known_of("resolution", resolution, unit[recording.kind])
+    known = recording.uncertainty if stated is None else stated
     curves = curves_of(impacts, known, at)
     scattering, still = estimates(impacts, curves)
     above = f"r = {math.exp(scattering.value):.4f} is above 1"

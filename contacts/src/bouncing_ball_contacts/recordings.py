@@ -241,23 +241,22 @@ def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bo
     columns = _columns(name, values, numbers, headings)
     known = ", ".join(heading for heading, _ in headings if heading)
     recording, used = _measured(name, columns, head, intervals, known)
-    # Lines that were left out on purpose are known to be missing.
+    notes = list(recording.notes)
     unused = [
         f"'{key}: {value}'"
         for key, value in head.items()
         if not key.startswith(_HEADS) and re.fullmatch(r"[\d.,]+( ?[^\d\s-]\S*)?", value)
     ]
     if unused:
-        note = f"the head has {', '.join(unused)}, but only {', '.join(_HEADS)} are used"
-        recording = replace(recording, notes=(*recording.notes, note))
+        notes.append(f"the head has {', '.join(unused)}, but only {', '.join(_HEADS)} are used")
+    # Lines that were left out on purpose are known to be missing.
     has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
     gaps = sorted(set(columns["line"][has_gap]) - leave_out)
     if gaps:
         shown = ", ".join(f"{number:.0f}" for number in gaps[:5]) + (", …" if gaps[5:] else "")
         divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-        note = f"a number is missing in line {shown}, which is left out{divides}"
-        return replace(recording, notes=(*recording.notes, note))
-    return recording
+        notes.append(f"a number is missing in line {shown}, which is left out{divides}")
+    return replace(recording, notes=tuple(notes))
 
 
 _Headings = list[tuple[str, str]]
@@ -456,7 +455,6 @@ def _measured(
     have = columns.keys()
     notes: list[str] = []
     durations = None
-    uncertainty = None
     for speed in {"in", "out"} & have:
         if np.nanmax(columns[speed]) < 0:
             notes.append("the velocities are all negative: their sizes are the speeds")
@@ -464,12 +462,12 @@ def _measured(
     # One half of a pair is no series.
     alone = {"drop", "rebound", "in", "out"} & have
     pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
+    uncertainty = None if pairs is None else columns.get("uncertainty")
     if intervals and not {"time", "interval"} & have:
         raise Refused(f"{name} has no column of intervals")
     if pairs is not None:
         kind, *used, unit = pairs
         chains = [_pairs(name, columns, used, unit)]
-        uncertainty = columns.get("uncertainty")
     elif {"time", "position"} <= have:
         kind = "speeds"
         used = ["time", "position"]
@@ -506,7 +504,7 @@ def _measured(
     elif len(given):
         is_each = pairs is not None and len(given) == len(chains[0])
         durations = given if is_each else np.array([given.mean()])
-    found = Recording(
+    recording = Recording(
         name=name,
         kind=kind,
         chains=tuple(chains),
@@ -515,7 +513,7 @@ def _measured(
         head=head,
         notes=tuple(notes),
     )
-    return found, used
+    return recording, used
 
 
 def _pairs(name: str, columns: dict[str, Array], both: Sequence[str], unit: str) -> Array:

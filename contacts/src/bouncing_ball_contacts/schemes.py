@@ -74,6 +74,7 @@ def nearby(steps: int, count: int) -> Trials:
     return Trials(at, step, losses)
 
 
+@dataclass(frozen=True)
 class Law:
     """A contact force per unit of mass; the parameters are arrays, one entry for each contact."""
 
@@ -107,12 +108,8 @@ class Law:
         return np.minimum(time, 300 / np.maximum(self.damping, 1e-300))
 
 
-@dataclass(frozen=True)
 class Linear(Law):
     """A spring and a damper: a = k p + c w, with k in 1/s² and c in 1/s; ratio ζ = c/(2√k)."""
-
-    stiffness: Array
-    damping: Array
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         return self.stiffness * p + self.damping * w
@@ -126,12 +123,8 @@ class Linear(Law):
         return cls((speed / depth) ** 2, 2 * ratio * speed / depth)
 
 
-@dataclass(frozen=True)
 class HuntCrossley(Law):
     """Drake's a = k p (1 + d w)₊, with k in 1/s² and d in s/m; the ratio is d times the speed."""
-
-    stiffness: Array
-    damping: Array
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         return self.stiffness * p * np.maximum(1 + self.damping * w, 0.0)
@@ -152,15 +145,11 @@ class HuntCrossley(Law):
         return cls((speed / depth) ** 2, ratio / speed)
 
 
-@dataclass(frozen=True)
 class Hertz(Law):
     """Hertz with Tsuji's damper: a = K p^(3/2) + β √(5 K) p^(1/4) w, K in 1/(s² √m).
 
     Its r = exp(-πβ/√(1 - β²)) is the same at every speed; the ratio is β.
     """
-
-    stiffness: Array
-    damping: Array
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         root = np.sqrt(np.maximum(p, 0.0))
@@ -186,8 +175,6 @@ class Stepped(Law):
     damping, and the ratio is that of a linear contact of the same penetration.
     """
 
-    stiffness: Array
-    damping: Array
     depth: Array
     exponent: float = 1.0
     steps_spring: bool = False
@@ -220,8 +207,6 @@ class Impedance(Law):
     to `high` at the depth `width`, by a power curve through the middle (`solimp`).
     """
 
-    stiffness: Array
-    damping: Array
     points: int = 1
     low: float = 0.9
     high: float = 0.95
@@ -272,9 +257,9 @@ class Solved(Law):
     restitution coefficient e counts at speeds above the `threshold`.
     """
 
-    restitution: Array
     stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
     damping: Array = field(default_factory=lambda: np.asarray(0.0))
+    restitution: Array = field(kw_only=True)
     threshold: float = 0.0
 
     @property
@@ -417,13 +402,13 @@ class Drops:
 
 def _beside(law: Law, trials: Trials) -> Law:
     """Return the law with one more axis at the end of its arrays, for the trials."""
-    values = {each.name: getattr(law, each.name) for each in fields(law)}  # type: ignore[arg-type]
+    values = {each.name: getattr(law, each.name) for each in fields(law)}
     arrays = {
         name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
     }
     if "damping" in arrays:
         arrays["damping"] = arrays["damping"] * trials.losses
-    return replace(law, **arrays)  # type: ignore[type-var]
+    return replace(law, **arrays)
 
 
 def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:

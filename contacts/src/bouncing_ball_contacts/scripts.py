@@ -32,7 +32,6 @@ _SHAPES = {
         "Box(2 * @radius@, 2 * @radius@, 2 * @radius@)",
     ),
 }
-_PAIRS = ("mujoco", "pybullet", "drake", "lammps")
 
 
 def drop_script(design: Design) -> str:
@@ -52,7 +51,8 @@ def drop_script(design: Design) -> str:
         known = ", ".join(FAMILIES)
         raise Refused(f"no script is written for {design.engine}: only for {known}")
     is_pair = bounce.other_mass is not None
-    if is_pair and family not in _PAIRS:
+    text = text_of(f"{family}-meet" if is_pair else f"{family}-drop")
+    if not text:
         raise Refused(f"no script of two free balls is written for {design.engine}")
     if bounce.points > 1 and (bounce.points != 4 or family not in _SHAPES or is_pair):
         raise Refused("a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points")
@@ -71,7 +71,7 @@ def drop_script(design: Design) -> str:
         fall = 0.0
     else:
         gap = speed**2 / (2 * bounce.gravity)
-        fall = math.sqrt(2 * gap / bounce.gravity)
+        fall = speed / bounce.gravity
         steps = math.ceil((2.05 * fall + lasts) / row.step) + 10
     radius = bounce.size
     other = bounce.other_mass or bounce.mass
@@ -107,4 +107,4 @@ def drop_script(design: Design) -> str:
     texts["table"] = "GEOM_BOX, halfExtents=[9, 9, 9]" if bounce.points > 1 else "GEOM_PLANE"
     texts["below"] = "-9" if bounce.points > 1 else "0"
     texts["body"] = "box of a half height" if bounce.points > 1 else "ball of a radius"
-    return filled(text_of(f"{family}-meet" if is_pair else f"{family}-drop"), texts)
+    return filled(text, texts)

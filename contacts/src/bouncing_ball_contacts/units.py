@@ -35,6 +35,14 @@ DENSITIES = {
 """Of solid materials, in kg/m³."""
 _LONGEST_STEP = 0.1
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# The least and the greatest power of ten of units that are not read with all prefixes: kilometres,
+# kiloseconds and km/s are rare, and masses above a tonne stay in kilograms.
+_POWERS = {
+    "m": (-9, 0),
+    "s": (-9, 0),
+    "g": (-9, 3),
+    **dict.fromkeys(("", "m/s", "kg/m^3", "m/s^2"), (0, 0)),
+}
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _EXAMPLES = {
     "kg": "50 g",
@@ -115,9 +123,8 @@ def _read(name: str, text: str, unit: str) -> float:
     wanted = _MISSPELT.get(typed.lower(), typed.lower())
     if meant := next((each for each in common if each.lower() == wanted), None):
         raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
-    registry = _registry()
     try:
-        quantity = registry.Quantity(number, typed)
+        quantity = _registry().Quantity(number, typed)
     except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
         raise Refused(f"{name}: the unit of {text!r} is not known; {_wanted(unit)}") from None
     return _converted(name, quantity, unit, text)
@@ -199,15 +206,8 @@ def show(value: float, unit: str, digits: int = 3) -> str:
     if value == 0:
         return f"0 {unit}".strip()
     rounded = float(f"{value:.{digits}g}")
-    power = 3 * math.floor(math.log10(abs(rounded)) / 3)
-    power = max(-9, min(power, 9))
-    # Kilometres, kiloseconds and km/s are rarely read; masses above a tonne stay in kilograms.
-    if unit in ("m", "s", "m/s"):
-        power = min(power, 0)
-    if unit == "g":
-        power = min(power, 3)
-    if unit in ("", "m/s", "kg/m^3", "m/s^2"):
-        power = 0
+    least, most = _POWERS.get(unit, (-9, 9))
+    power = max(least, min(3 * math.floor(math.log10(abs(rounded)) / 3), most))
     scaled = float(f"{value / 10.0**power:.{digits}g}")
     text = f"{scaled:.0f}" if abs(scaled) >= 100 else f"{scaled:.{digits}g}"
     return f"{text} {_PREFIXES[power]}{unit}".strip()

@@ -125,23 +125,16 @@ class SpecialCurve(FollowedBranch):
         return tuple(PeriodicOrbit(self.equations, row, self.kind) for row in self.z)
 
 
-class _Border(NamedTuple):
-    """Vectors v and w of length 1 near the null vectors of the chain, shape (kq,)."""
-
-    v: NDArray
-    w: NDArray
-
-
 class _Point(NamedTuple):
     """A special orbit of a curve: z, and the tangent with normal · tangent = 1, shape (N,).
 
-    ``border`` are its null vectors and ``bent`` the derivatives of the legs along v; both are None
-    for kinds without a multiplier.
+    ``border`` are the vectors v and w of length 1 near its null vectors, shape (kq,), and ``bent``
+    the derivatives of the legs along v; both are None for kinds without a multiplier.
     """
 
     z: NDArray
     tangent: NDArray
-    border: _Border | None
+    border: tuple[NDArray, NDArray] | None
     bent: Curvature | None
 
 
@@ -157,12 +150,12 @@ class _System:
         """Of saddle-nodes and period doublings: 1 or -1."""
         return MULTIPLIERS[self.kind]
 
-    def border(self, z: NDArray) -> _Border | None:
-        """The null vectors at a special orbit."""
+    def border(self, z: NDArray) -> tuple[NDArray, NDArray] | None:
+        """The null vectors v and w at a special orbit."""
         if self.kind not in MULTIPLIERS:
             return None
         derivatives = self.equations.linear(z[np.newaxis]).derivatives[0]
-        return _Border(*null_vectors(closed(derivatives, self.multiplier)))
+        return null_vectors(closed(derivatives, self.multiplier))
 
     def condition(self, z, derivatives, border):
         """g at z, the gradient of g/∏ρ times ∏ρ, the null vectors, and the derivatives along v.
@@ -172,19 +165,20 @@ class _System:
         if border is None:
             value, gradient, _ = value_and_gradient(self.equations, self.kind, z[np.newaxis])
             return value[0], gradient[0], None, None
-        size = len(border.v)
+        c, b = border
+        size = len(c)
         matrix = np.zeros((size + 1, size + 1))
         matrix[:-1, :-1] = closed(derivatives[0], self.multiplier)
-        matrix[:-1, -1] = border.w
-        matrix[-1, :-1] = border.v
+        matrix[:-1, -1] = b
+        matrix[-1, :-1] = c
         right = np.zeros(size + 1)
         right[-1] = 1.0
         *v, value = np.linalg.solve(matrix, right)
         *w, _ = np.linalg.solve(matrix.T, right)
-        new = _Border(np.array(v), np.array(w))
-        step = longest_step(self.equations, z, new.v)
-        bent = curvature(self.equations, z, new.v, self.multiplier, step)
-        gradient = -new.w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
+        new = np.array(v), np.array(w)
+        step = longest_step(self.equations, z, new[0])
+        bent = curvature(self.equations, z, new[0], self.multiplier, step)
+        gradient = -new[1] @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
         if len(derivatives) > 1:
             rates = np.zeros((len(derivatives[0]), 3))
             rates[:, 0] = derivatives[0, :, 0, 2]
@@ -254,7 +248,7 @@ class _System:
         """a or b, with the lengths of v and w."""
         assert point.border is not None
         assert point.bent is not None
-        return coefficient(point.bent, point.border.v, point.border.w, self.multiplier)
+        return coefficient(point.bent, *point.border, self.multiplier)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -319,26 +313,17 @@ def special_curve(
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
         raise OrbitNotFound(f"the orbit is no {system.kind}: the nearest one is elsewhere")
     direction = first.tangent / np.linalg.norm(first.tangent)
-    forth = _half(system, *_march(system, first, direction, limits, points))
-    if forth.end == CLOSED:
-        back = _Half(first.z[np.newaxis], (), CLOSED)
-    else:
-        back = _half(system, *_march(system, first, -direction, limits, points))
-    z = np.concatenate([back.z[:0:-1], forth.z])
-    found = (*back.special[::-1], *forth.special)
-    return SpecialCurve(system.equations, z, found, back.end, forth.end, system.kind)
+    z, found, end = _half(system, *_march(system, first, direction, limits, points))
+    start = CLOSED
+    if end != CLOSED:
+        back, before, start = _half(system, *_march(system, first, -direction, limits, points))
+        z = np.concatenate([back[:0:-1], z])
+        found = (*before[::-1], *found)
+    return SpecialCurve(system.equations, z, found, start, end, system.kind)
 
 
 CLOSED = "the curve is closed"
 SUCH = "such as branch.first('period doubling')"
-
-
-class _Half(NamedTuple):
-    """One direction of a curve from its start."""
-
-    z: NDArray
-    special: tuple[PeriodicOrbit, ...]
-    end: str
 
 
 def _start(special: Any, along) -> tuple[_System, NDArray]:
@@ -388,8 +373,8 @@ def _limits(equations, z, special, ranges) -> NDArray:
     ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
         least, greatest = path.limits(special.ball, special.amplitude)
-        usual = greatest if greatest <= 10 else min(greatest, max(10.0, 10 * value))
-        low, high = wanted.pop(path.name, (least, usual))
+        usual = least, min(greatest, max(10.0, 10 * value))
+        low, high = wanted.pop(path.name, usual)
         if not max(low, least) <= value <= min(high, greatest):
             raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")
         ends.append((max(low, least), min(high, greatest)))
@@ -477,8 +462,11 @@ class _Passed(NamedTuple):
     z: NDArray | None
 
 
-def _half(system: _System, points: list[_Point], end: str) -> _Half:
-    """One direction of a curve with its points of codimension two, up to one where it ends."""
+def _half(system: _System, points: list[_Point], end: str) -> tuple:
+    """One direction of a curve, up to a point of codimension two where it ends.
+
+    Returns the special orbits, shape (points, N), those of codimension two, and why it ends.
+    """
     tests = system.tests(points, system.names)
     none = _Passed(len(points), 0.0, "", None)
     ends = [
@@ -508,7 +496,7 @@ def _half(system: _System, points: list[_Point], end: str) -> _Half:
         rows.append(last.z)
     if last.name:
         end = f"{last.name}: {KINDS[last.name].end}"
-    return _Half(np.array(rows), tuple(special), end or _lost(system, points[-1]))
+    return np.array(rows), tuple(special), end or _lost(system, points[-1])
 
 
 def _lost(system: _System, point: _Point) -> str:

@@ -76,7 +76,11 @@ class Ball:
     @property
     def parameters(self):
         """Names and values of the parameters that can be varied."""
-        return {name: value for name, value in vars(self).items() if _varies(value)}
+        return {
+            name: value
+            for name, value in vars(self).items()
+            if not (value is None or callable(value) or isinstance(value, str))
+        }
 
     def at(self, **values):
         """The same ball with other values of parameters: numbers or arrays, real or complex.
@@ -109,8 +113,8 @@ class Ball:
         return {}
 
     def start(self, u):
-        """The gap at which impacts of the closing speed u start."""
-        return 0.0 * u
+        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
+        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
 
     def free(self, u):
         """T of a free impact: 0 for impacts without a duration."""
@@ -136,10 +140,6 @@ class Ball:
         """T of the first release, and the impact up to it."""
         T = self.first_release(tau, u, amplitude, gravity)
         return T, self.contact(tau, u, T, amplitude, gravity)
-
-
-def _varies(value):
-    return not (value is None or callable(value) or isinstance(value, str))
 
 
 def brief(value):
@@ -468,10 +468,6 @@ class SpringDamper(Ball):
     def frequency_powers(self):
         """ϖ is proportional to 1/Ω."""
         return {"frequency_ratio": -1.0}
-
-    def start(self, u):
-        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
-        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
 
     def contact(self, tau, u, T, amplitude, gravity=1.0):
         """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""

@@ -81,10 +81,11 @@ def law_of_impact(law_of, restitution, duration, speed):
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
-    restitution = checked("restitution", restitution, 0, 1, low_allowed=False)
-    duration = checked("duration", duration, 0, np.inf, low_allowed=False)
-    speed = checked("speed", speed, 0, np.inf, low_allowed=False)
-    r, lasts, v = np.broadcast_arrays(restitution, duration, speed)
+    r, lasts, v = np.broadcast_arrays(
+        checked("restitution", restitution, 0, 1, low_allowed=False),
+        checked("duration", duration, 0, np.inf, low_allowed=False),
+        checked("speed", speed, 0, np.inf, low_allowed=False),
+    )
     found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
     damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
     length = lasts * v / unit.reshape(r.shape)

@@ -120,13 +120,12 @@ class Ball:
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
-        """T of impacts: 0 for impacts without a duration."""
-        return 0.0 * (tau + u + amplitude)
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
+        """T of impacts: 0 for impacts without a duration.
 
-    def early_release(self, tau, u, amplitude, periods):
-        """As :meth:`first_release`; those after so many periods may be left out."""
-        return self.first_release(tau, u, amplitude)
+        Contacts that last longer than a number of periods of the table may be left out, as NaN.
+        """
+        return 0.0 * (tau + u + amplitude)
 
     def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
@@ -494,7 +493,7 @@ class SpringDamper(Ball):
         loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
         return Signature(r, duration, r * through / (1 + r), loss)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
         It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.

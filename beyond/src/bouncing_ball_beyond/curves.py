@@ -145,17 +145,12 @@ class _System:
     equations: OrbitEquations
     kind: str
 
-    @cached_property
-    def multiplier(self) -> int:
-        """Of saddle-nodes and period doublings: 1 or -1."""
-        return MULTIPLIERS[self.kind]
-
     def border(self, z: NDArray) -> tuple[NDArray, NDArray] | None:
         """The null vectors v and w at a special orbit."""
         if self.kind not in MULTIPLIERS:
             return None
         derivatives = self.equations.linear(z[np.newaxis]).derivatives[0]
-        return null_vectors(closed(derivatives, self.multiplier))
+        return null_vectors(closed(derivatives, MULTIPLIERS[self.kind]))
 
     def condition(self, z, derivatives, border):
         """g at z, the gradient of g/∏ρ times ∏ρ, the null vectors, and the derivatives along v.
@@ -168,7 +163,7 @@ class _System:
         c, b = border
         size = len(c)
         matrix = np.zeros((size + 1, size + 1))
-        matrix[:-1, :-1] = closed(derivatives[0], self.multiplier)
+        matrix[:-1, :-1] = closed(derivatives[0], MULTIPLIERS[self.kind])
         matrix[:-1, -1] = b
         matrix[-1, :-1] = c
         right = np.zeros(size + 1)
@@ -177,7 +172,7 @@ class _System:
         *w, _ = np.linalg.solve(matrix.T, right)
         new = np.array(v), np.array(w)
         step = longest_step(self.equations, z, new[0])
-        bent = curvature(self.equations, z, new[0], self.multiplier, step)
+        bent = curvature(self.equations, z, new[0], MULTIPLIERS[self.kind], step)
         gradient = -new[1] @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
         if len(derivatives) > 1:
             rates = np.zeros((len(derivatives[0]), 3))
@@ -248,7 +243,7 @@ class _System:
         """a or b, with the lengths of v and w."""
         assert point.border is not None
         assert point.bent is not None
-        return coefficient(point.bent, *point.border, self.multiplier)
+        return coefficient(point.bent, *point.border, MULTIPLIERS[self.kind])
 
     @cached_property
     def names(self) -> tuple[str, ...]:

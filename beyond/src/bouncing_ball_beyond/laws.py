@@ -184,13 +184,9 @@ class ForceLaw(Ball):
         """The state of the contact at the root time T, with its release function."""
         return self._followed(tau, u, amplitude, gravity, T)[1]
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
-        """T of the first releases; NaN for balls that stay in contact."""
-        return self._followed(tau, u, amplitude, gravity)[0]
-
-    def early_release(self, tau, u, amplitude, periods):
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=PERIODS):
         """T of the first releases; NaN for balls that stay in contact for so many periods."""
-        return self._followed(tau, u, amplitude, 1.0, longest=periods)[0]
+        return self._followed(tau, u, amplitude, gravity, longest=periods)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases, and the impacts."""

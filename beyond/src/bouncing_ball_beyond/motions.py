@@ -736,9 +736,8 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
         "motion": np.arange(share.size),
     }
     found = dataset(grid, {"destination": which}, OF_MOTIONS)
-    of_motions = {name: ("motion", value) for name, value in values.items()}
-    found = found.assign(of_motions).assign_attrs(impacts=impacts)
-    return described(found, OF_MOTIONS)
+    found = found.assign({name: ("motion", value) for name, value in values.items()})
+    return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
 
 
 def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
@@ -793,8 +792,9 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         for name in passes[0]
     }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)
-    state = np.zeros(value.size), ends["end_phase"], ends["end_speed"]
-    balls = Balls(ball.rows(value), amplitude[value], *state)
+    balls = Balls(
+        ball.rows(value), amplitude[value], 0.0 * value, ends["end_phase"], ends["end_speed"]
+    )
     (moving,) = np.isfinite(balls.phase).nonzero()
     recorded = np.full((2, value.size, samples), np.nan)
     recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)

@@ -604,7 +604,7 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
         if ball.lasts:
             # Contacts of an orbit are shorter than its period.
             periods = np.broadcast_to(equations.periods, len(amplitude))[row]
-            columns.insert(2, ball.early_release(*columns, periods))
+            columns.insert(2, ball.first_release(*columns, periods=periods))
         return np.stack(columns, axis=-1)
 
     row = np.repeat(np.arange(len(amplitude)), tau[0].size)

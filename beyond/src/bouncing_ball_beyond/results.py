@@ -124,8 +124,8 @@ def to_dataset(found: Found) -> xr.Dataset:
     for name in first.parameters:
         data[name] = "point", np.array([each.parameters[name] for each in orbits])
     texts = OF_IMPACTS | OF_ORBITS | OF_EQUATIONS | PARAMETERS
-    for name, variable in data.items():
-        text = texts.get(name, (name.replace("_", " "), "", "1"))
+    for label, variable in data.items():
+        text = texts.get(str(label), (str(label).replace("_", " "), "", "1"))
         variable.attrs.update(zip(("long_name", "symbol", "units"), text, strict=True))
     return data.set_coords(along)
 

@@ -86,8 +86,12 @@ def output(*suffixes: str) -> Callable:
             raise click.BadParameter(f"{value!r} must end with one of {', '.join(suffixes)}")
         return value
 
-    text = f"Also write a file: {', '.join(suffixes)}."
-    return click.option("--output", callback=check, metavar="FILE", help=text)
+    return click.option(
+        "--output",
+        callback=check,
+        metavar="FILE",
+        help=f"Also write a file: {', '.join(suffixes)}.",
+    )
 
 
 AMPLITUDE = click.option("--amplitude", type=float, required=True, help="Amplitude Λ of the table.")

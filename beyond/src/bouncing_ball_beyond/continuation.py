@@ -163,12 +163,15 @@ class FollowedBranch:
         OrbitNotFound
             If the branch has none.
         """
-        name = kind_named(kind)
+        return self._first(kind_named(kind), "this branch; its special orbits are")
+
+    def _first(self, kind: str, where: str) -> PeriodicOrbit:
+        """The first special orbit of a kind, with spaces or hyphens in its name."""
         for each in self.special:
-            if each.kind == name:
+            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {name} on this branch; its special orbits are: {others}")
+        raise OrbitNotFound(f"no {kind} on {where}: {others}")
 
 
 class _Start(NamedTuple):
@@ -189,8 +192,7 @@ class _Start(NamedTuple):
 
     def take(self, which) -> "_Start":
         """Some of the rows."""
-        arrays = {name: each for name, each in self._asdict().items() if np.ndim(each)}
-        taken = {name: each[which] for name, each in arrays.items()}
+        taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
         return self._replace(equations=self.equations.rows(which), **taken)
 
 
@@ -555,8 +557,8 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
-    most = whole_number("points", points, 2)
-    found = _follow_all(orbits, along, to, most, np.full(len(orbits), None))
+    points = whole_number("points", points, 2)
+    found = _follow_all(orbits, along, to, points, np.full(len(orbits), None))
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]
@@ -601,8 +603,11 @@ def cascade(doubling, *, to, impacts: int = 64):
             raise branches
         return branches
     impacts = whole_number("impacts", impacts, 2)
-    wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
-    latest = _listed(doubling, "doubling", wanted)
+    latest = _listed(
+        doubling,
+        "doubling",
+        "a period doubling, such as branch.first('period doubling'), or a list of them",
+    )
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and len(to) != len(latest):
         raise ValueError(f"to: has {len(to)} values for {len(latest)} orbits")
@@ -640,26 +645,25 @@ def _follow_all(orbits, along, to, points, until) -> list:
         raise ValueError(
             f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
         )
-    tasks = {}
     groups: list = []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
         path = each.equations.along[-1] if along is None else path_of(along, each.ball)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
-        tasks[i] = _task(each, path, goal, until[[i]])
+        task = _task(each, path, goal, until[[i]])
         same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
         key = each.kind, path, each.impacts, same_ball
         same = next((rows for other, rows in groups if other == key), None)
         if same is None:
             groups.append((key, same := []))
-        same.append(i)
+        same.append((i, task))
     for (kind, *_), rows in groups:
-        together = _stacked([tasks[i] for i in rows])
+        together = _stacked([task for _, task in rows])
         ways = range(together.goals.shape[1])
         parts = [_from_special(together, way, kind, points) for way in ways]
-        for place, i in enumerate(rows):
-            found[i] = _joined([part[place] for part in parts])
+        for (i, _), *branches in zip(rows, *parts, strict=True):
+            found[i] = _joined(branches)
     return found
 
 
@@ -685,8 +689,7 @@ def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     ValueError
         If a goal is out of its range, or the orbit not on the path.
     """
-    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
-    equations = OrbitEquations(*given, along=(path,))
+    equations = OrbitEquations(orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude, (path,))
     value = float(path.place(orbit.ball, orbit.amplitude))
     z = np.append(orbit.z[: equations.size], value)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))

@@ -40,7 +40,6 @@ from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.equations import OrbitEquations, dense
 from bouncing_ball_beyond.forms import (
     MULTIPLIERS,
-    Curvature,
     closed,
     coefficient,
     curvature,
@@ -113,11 +112,7 @@ class SpecialCurve(FollowedBranch):
         OrbitNotFound
             If the curve has none.
         """
-        for each in self.special:
-            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
-                return each
-        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {kind} on this curve; its orbits of codimension two are: {others}")
+        return self._first(kind, "this curve; its orbits of codimension two are")
 
     @cached_property
     def orbits(self) -> tuple[PeriodicOrbit, ...]:
@@ -134,8 +129,8 @@ class _Point(NamedTuple):
 
     z: NDArray
     tangent: NDArray
-    border: tuple[NDArray, NDArray] | None
-    bent: Curvature | None
+    border: Any
+    bent: Any
 
 
 @dataclass(frozen=True)
@@ -236,14 +231,14 @@ class _System:
             elif "resonance" in name:
                 tests[name] = self.equations.trace_and_determinant(linear)[1] - 1
             else:
-                tests[name] = np.array([self.coefficient(point) for point in points])
+                # a or b, with the lengths of v and w.
+                multiplier = MULTIPLIERS[self.kind]
+                values = [
+                    coefficient(each.bent, each.border[0], each.border[1], multiplier)
+                    for each in points
+                ]
+                tests[name] = np.array(values)
         return tests
-
-    def coefficient(self, point: _Point) -> float:
-        """a or b, with the lengths of v and w."""
-        assert point.border is not None
-        assert point.bent is not None
-        return coefficient(point.bent, *point.border, MULTIPLIERS[self.kind])
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -343,8 +338,9 @@ def _start(special: Any, along) -> tuple[_System, NDArray]:
     paths = tuple(path_of(each, special.ball) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    given = special.ball, special.impacts, special.periods, special.amplitude
-    equations = OrbitEquations(*given, paths)
+    equations = OrbitEquations(
+        special.ball, special.impacts, special.periods, special.amplitude, paths
+    )
     values = [float(path.place(special.ball, special.amplitude)) for path in paths]
     z = np.append(special.z[: equations.size], values)
     if special.kind == "grazing of an impact":

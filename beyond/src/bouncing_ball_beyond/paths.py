@@ -177,8 +177,9 @@ def path_of(along: str | Path, ball: Ball) -> Path:
         allowed = ["amplitude", *ball.parameters]
         for name in along.functions:
             if name not in allowed:
-                one_of = ", ".join(allowed)
-                raise ValueError(f"the path {along.name} has {name!r}: must be one of {one_of}")
+                raise ValueError(
+                    f"the path {along.name} has {name!r}: must be one of {', '.join(allowed)}"
+                )
     if not isinstance(along, str):
         return along
     allowed = ["amplitude", "frequency", *ball.parameters]

@@ -467,8 +467,7 @@ def shortest_contacts(
     for i, z in enumerate(_all_orbits(equations, amplitude)):
         orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
         on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
-        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
-        found.append(on_side)
+        found.append(sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration)))
     return found
 
 

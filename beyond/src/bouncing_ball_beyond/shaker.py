@@ -139,8 +139,10 @@ class ShakerAnswer:
         """Why a restitution coefficient is not good enough; empty if it is."""
         no_orbit = [value > self.amplitude for value in self.saddle_node[:2]]
         if any(no_orbit):
-            where = _where(no_orbit)
-            return f"the ball does not bounce, {where}, so that there is no height to compare"
+            return (
+                f"the ball does not bounce, {_where(no_orbit)}, so that there is no height to"
+                " compare"
+            )
         unstable = [value < self.amplitude for value in self.period_doubling[:2]]
         if any(unstable):
             return f"the orbit is unstable {_where(unstable)}, so that the height means nothing"
@@ -199,8 +201,10 @@ class ShakerAnswer:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
         if begun == 0 or doubled == 2:
-            question = "Whether a restitution coefficient is good enough has no answer"
-            return [*sentences, f"{question}: {reason}."]
+            return [
+                *sentences,
+                f"Whether a restitution coefficient is good enough has no answer: {reason}.",
+            ]
         verdict = f"is not good enough: {reason}" if reason else "is good enough"
         return [*sentences, f"A restitution coefficient {verdict}."]
 
@@ -368,11 +372,10 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
         )
     longest = np.nan
     # Of heights of unstable orbits and below a saddle-node nothing is said.
-    stable = all(
+    if all(
         values["saddle_node"] <= amplitude <= values["period_doubling"]
         for values in (simple, exact)
-    )
-    if stable:
+    ):
         low = duration / np.pi
         threshold = error_thresholds(
             contacts,

@@ -335,7 +335,7 @@ def needed_ratios(ball, amplitude, n, tolerance):
     ]
     for simple in models.values():
         found = bb.error_thresholds(contacts, simple=simple, **known)
-        # The status is there if no threshold is.
+        # Where there is no threshold, its status says why.
         columns.append(
             {
                 name: f"{ratio:.6g}" if status == "found" else str(status)

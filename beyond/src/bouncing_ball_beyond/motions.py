@@ -240,8 +240,11 @@ def _follow_to_end(found, balls, lane, impacts, section):
     }
     seen = 0
     while track["lane"].size and seen < impacts:
-        count = min(max(seen // section, 1), -(-(impacts - seen) // section))
-        count = min(count, max(ROWS // track["lane"].size // section, 1))
+        count = min(
+            max(seen // section, 1),
+            -(-(impacts - seen) // section),
+            max(ROWS // track["lane"].size // section, 1),
+        )
         record, going, after = follow(balls, count * section)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)

@@ -172,14 +172,14 @@ class ShakerAnswer:
         return "\n".join([*lines, "", *self._sentences()])
 
     def _sentences(self) -> list[str]:
-        share = self.contact_duration * self.frequency
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
             f" with an acceleration of Λ = {self.amplitude:.4g} times gravity."
-            f" A contact lasts {in_words(self.contact_duration, 's')}, {share:.2%} of a period.",
+            f" A contact lasts {in_words(self.contact_duration, 's')},"
+            f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
         if self.bounces:

@@ -76,7 +76,11 @@ class Ball:
     @property
     def parameters(self):
         """Names and values of the parameters that can be varied."""
-        return {name: value for name, value in vars(self).items() if _varies(value)}
+        return {
+            name: value
+            for name, value in vars(self).items()
+            if not (value is None or callable(value) or isinstance(value, str))
+        }
 
     def at(self, **values):
         """The same ball with other values of parameters: numbers or arrays, real or complex.
@@ -109,20 +113,19 @@ class Ball:
         return {}
 
     def start(self, u):
-        """The gap at which impacts of the closing speed u start."""
-        return 0.0 * u
+        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
+        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
 
     def free(self, u):
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
-        """T of impacts: 0 for impacts without a duration."""
-        return 0.0 * (tau + u + amplitude)
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
+        """T of impacts: 0 for impacts without a duration.
 
-    def early_release(self, tau, u, amplitude, periods):
-        """As :meth:`first_release`; those after so many periods may be left out."""
-        return self.first_release(tau, u, amplitude)
+        Contacts that last longer than a number of periods of the table may be left out, as NaN.
+        """
+        return 0.0 * (tau + u + amplitude)
 
     def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
@@ -136,10 +139,6 @@ class Ball:
         """T of the first release, and the impact up to it."""
         T = self.first_release(tau, u, amplitude, gravity)
         return T, self.contact(tau, u, T, amplitude, gravity)
-
-
-def _varies(value):
-    return not (value is None or callable(value) or isinstance(value, str))
 
 
 def brief(value):
@@ -469,10 +468,6 @@ class SpringDamper(Ball):
         """ϖ is proportional to 1/Ω."""
         return {"frequency_ratio": -1.0}
 
-    def start(self, u):
-        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
-        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
-
     def contact(self, tau, u, T, amplitude, gravity=1.0):
         """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""
         ratio = self.frequency_ratio
@@ -498,7 +493,7 @@ class SpringDamper(Ball):
         loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
         return Signature(r, duration, r * through / (1 + r), loss)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
         It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.

@@ -86,8 +86,12 @@ def output(*suffixes: str) -> Callable:
             raise click.BadParameter(f"{value!r} must end with one of {', '.join(suffixes)}")
         return value
 
-    text = f"Also write a file: {', '.join(suffixes)}."
-    return click.option("--output", callback=check, metavar="FILE", help=text)
+    return click.option(
+        "--output",
+        callback=check,
+        metavar="FILE",
+        help=f"Also write a file: {', '.join(suffixes)}.",
+    )
 
 
 AMPLITUDE = click.option("--amplitude", type=float, required=True, help="Amplitude Λ of the table.")
@@ -144,11 +148,6 @@ def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> A
     return bb.named_law(law, **values)
 
 
-def underscored(name: str) -> str:
-    """The name of a parameter in Python."""
-    return name.replace("-", "_")
-
-
 def given(phase: float | None, velocity: float | None) -> dict[str, float]:
     """The arguments of a first impact, without those that are not given."""
     start = {"phase": phase, "velocity": velocity}
@@ -165,7 +164,7 @@ def with_branch(function: Callable) -> Callable:
             start = bb.orbit_of_motion(ball, amplitude=amplitude, **motion)
         else:
             start = bb.orbit(ball, amplitude=amplitude, n=n)
-        goal = {"along": underscored(along), "to": to}
+        goal = {"along": along.replace("-", "_"), "to": to}
         branch = bb.follow(start, **goal)
         for _ in range(doublings):
             branch = bb.follow(branch.first("period doubling"), **goal)
@@ -231,7 +230,7 @@ def orbit(ball, amplitude, n, side, output):
 @DATA
 def limits(ball, n, output):
     """The saddle-node and the period doubling of n-T orbits."""
-    found = [special for special in bb.limits(ball, n=n) if special is not None]
+    found = list(bb.limits(ball, n=n))
     for special in found:
         click.echo(special)
     write(found, output)
@@ -258,8 +257,8 @@ def follow_special(branch, kind, across, ranges, output):
     """The curve in two parameters of the first special orbit of a kind on a branch."""
     found = bb.special_curve(
         branch.first(kind),
-        along=(branch.along, underscored(across)),
-        ranges={underscored(name): (low, high) for name, low, high in ranges},
+        along=(branch.along, across.replace("-", "_")),
+        ranges={name.replace("-", "_"): (low, high) for name, low, high in ranges},
     )
     click.echo(found)
     write(found, output)
@@ -336,7 +335,13 @@ def needed_ratios(ball, amplitude, n, tolerance):
     ]
     for simple in models.values():
         found = bb.error_thresholds(contacts, simple=simple, **known)
-        columns.append({name: _ratio(threshold) for name, threshold in found.items()})
+        # Where there is no threshold, its status says why.
+        columns.append(
+            {
+                name: f"{ratio:.6g}" if status == "found" else str(status)
+                for name, (ratio, status) in found.items()
+            }
+        )
     click.echo(in_columns(["error law", *models], columns))
 
 
@@ -345,11 +350,6 @@ def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
     if isinstance(ball, bb.Corrected):
         return ball.of, {"restitution model": None, "corrected model": bb.Corrected}
     return ball, {"restitution model": None}
-
-
-def _ratio(threshold: Any) -> str:
-    """A threshold, or its status where there is none."""
-    return f"{threshold.ratio:.6g}" if threshold.status == "found" else str(threshold.status)
 
 
 @commands.command("error-law")

@@ -163,20 +163,23 @@ class FollowedBranch:
         OrbitNotFound
             If the branch has none.
         """
-        name = kind_named(kind)
+        return self._first(kind_named(kind), "this branch; its special orbits are")
+
+    def _first(self, kind: str, where: str) -> PeriodicOrbit:
+        """The first special orbit of a kind, with spaces or hyphens in its name."""
         for each in self.special:
-            if each.kind == name:
+            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {name} on this branch; its special orbits are: {others}")
+        raise OrbitNotFound(f"no {kind} on {where}: {others}")
 
 
 class _Start(NamedTuple):
     """Where branches start, by rows.
 
     The orbits z and the directions from there, the values of the parameter that are to be reached,
-    and the reasons for no branch, "" if there is one; the first steps, and the special orbits
-    before z, if there are any.
+    and the reasons for no branch, "" if there is one; the length of the first steps, and the
+    special orbits before z, if there are any.
     """
 
     equations: OrbitEquations
@@ -184,13 +187,12 @@ class _Start(NamedTuple):
     direction: NDArray
     goal: NDArray
     reasons: NDArray
-    step: NDArray
+    step: float | NDArray = FIRST_STEP
     origin: NDArray | None = None
 
     def take(self, which) -> "_Start":
         """Some of the rows."""
-        arrays = {name: each for name, each in self._asdict().items() if np.ndim(each)}
-        taken = {name: each[which] for name, each in arrays.items()}
+        taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
         return self._replace(equations=self.equations.rows(which), **taken)
 
 
@@ -225,15 +227,6 @@ class _Points(NamedTuple):
         """Some of the rows."""
         return _Points(*(each[which] for each in self))
 
-    def replaced(self, which, others) -> "_Points":
-        """With the rows of others where `which` is true."""
-        return _Points(
-            *(
-                np.where(which[:, np.newaxis], new, old)
-                for new, old in zip(others, self, strict=True)
-            )
-        )
-
 
 def _points_at(equations, z, tangents, linear: Linear) -> _Points:
     """Orbits with their tests; that of a period halving is the distance from one."""
@@ -258,24 +251,12 @@ def _same_sign(before: _Points, after: _Points) -> _Points:
     return after._replace(tests=tests)
 
 
-class _Steps(NamedTuple):
-    """The accepted points of one row, one after the other, and why it stopped."""
+def _predicted(here: _Points, step, units, low, high) -> tuple:
+    """Steps along the tangents; one that would leave its window ends there, at this parameter.
 
-    points: _Points
-    end: str
-
-
-class _Predicted(NamedTuple):
-    """Where steps lead: lengths, predicted orbits, normals, and which end where the window ends."""
-
-    length: NDArray
-    z: NDArray
-    normal: NDArray
-    last: NDArray
-
-
-def _predicted(here: _Points, step, units, low, high) -> _Predicted:
-    """Steps along the tangents; one that would leave its window ends there, at this parameter."""
+    Returns the lengths of the steps, the predicted orbits, the normals of the planes of the
+    corrector, and which steps end where the window ends.
+    """
     ahead = _unit(here.tangents / units)
     rate = ahead[:, -1] * units[:, -1]
     target = np.where(rate > 0, high, low)
@@ -288,16 +269,11 @@ def _predicted(here: _Points, step, units, low, high) -> _Predicted:
     normal = ahead / units
     normal[last] = 0.0
     normal[last, -1] = np.sign(rate[last])
-    return _Predicted(length, z, normal, last)
+    return length, z, normal, last
 
 
-def _angle(points: _Points) -> NDArray:
-    """arctan(tr/(1 + det)), by the test of a period doubling."""
-    return np.arctan(points.tests[:, 1] - 1)
-
-
-def _march(start: _Start, window, until, points: int) -> list[_Steps]:
-    """Accepted steps of branches, until they end or their parameter is at an end of its window.
+def _march(start: _Start, window, until, points: int) -> list[tuple[_Points, str]]:
+    """The accepted points of each branch, and why it ends: its window, or another reason.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
     too much. Where an impact or a release ends a branch, the multipliers beyond it tell nothing of
@@ -309,14 +285,14 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
     rows = np.arange(len(start.z))
     paths = [[here.take([row])] for row in rows]
     ends = [""] * len(rows)
-    step = start.step
+    step = np.broadcast_to(start.step, len(rows))
     farthest = np.zeros(len(rows))
     while rows.size:
         low, high = window[rows].T
         units = scales(equations, here.z)
-        ahead = _predicted(here, step, units, low, high)
-        solution = newton(equations, ahead.z, ahead.normal, iterations=7)
-        solution.z[ahead.last, -1] = ahead.z[ahead.last, -1]
+        length, guess, normal, last = _predicted(here, step, units, low, high)
+        solution = newton(equations, guess, normal, iterations=7)
+        solution.z[last, -1] = guess[last, -1]
         with np.errstate(all="ignore"):
             there = _points_at(equations, solution.z, solution.tangent, solution.linear)
             there = _same_sign(here, there)
@@ -324,18 +300,20 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
             ending = crossed[:, SINGULAR].any(axis=1)
             inner = there
             if ending.any():
-                inner = _before_end(equations, here, there, ahead.normal)
+                inner = _before_end(equations, here, there, normal)
             # The determinant is positive up to there, so that tr/(1 + det) has no pole.
-            turned = np.abs(_angle(inner) - _angle(here))
+            angles = np.arctan([each.tests[:, 1] - 1 for each in (here, inner)])
+            turned = np.abs(angles[1] - angles[0])
             cosine = _cosine(there, here, units)
-            missed = np.linalg.norm((there.z - ahead.z) / units, axis=1)
+            missed = np.linalg.norm((there.z - guess) / units, axis=1)
             inside = (there.z[:, -1] >= low) & (there.z[:, -1] <= high)
-        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * ahead.length)
-        good &= (turned < TURN) | (ahead.length < 1e-6)
+        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
+        good &= (turned < TURN) | (length < 1e-6)
         easy = (cosine > 0.99) & (turned < TURN / 2)
-        here = here.replaced(good, there)
+        moved = zip(here, there, strict=True)
+        here = _Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
         longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
-        step = np.where(good, longer, ahead.length / 2)
+        step = np.where(good, longer, length / 2)
         away = _from_start(equations, first, here, units)
         back = (away < step / 2) & (farthest > 2 * step)
         back &= _cosine(here, first, units) > STRAIGHT
@@ -345,7 +323,7 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
                 paths[rows[j]].append(inner.take([j]))
             paths[rows[j]].append(here.take([j]))
             kind = until[rows[j]]
-            ends[rows[j]] = _end_of_step(crossed[j], ahead.last[j], back[j], kind)
+            ends[rows[j]] = _end_of_step(crossed[j], last[j], back[j], kind)
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"all {points} points are used"
         for j in np.flatnonzero(step < SHORTEST_STEP):
@@ -360,7 +338,7 @@ def _march(start: _Start, window, until, points: int) -> list[_Steps]:
             farthest = farthest[going]
     units = scales(start.equations, start.z)
     whole = zip(paths, ends, units, strict=True)
-    return [_Steps(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
+    return [(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
 
 
 def _before_end(equations, here: _Points, there: _Points, normal) -> _Points:
@@ -424,8 +402,9 @@ def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]
     ``own`` is the kind of the special orbits at the starts, which are not listed.
     """
     steps = _march(start, window, until, points)
-    row = np.repeat(np.arange(len(steps)), [len(each.points.z) for each in steps])
-    z, slopes, tests, _ = (np.concatenate(e) for e in zip(*(s.points for s in steps), strict=True))
+    row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
+    every = zip(*(points for points, _ in steps), strict=True)
+    z, slopes, tests, _ = (np.concatenate(each) for each in every)
     crossings = crossings_of(start.equations, row, z, slopes, tests)
     z, found = np.empty((2, 0))
     if len(crossings.row):
@@ -578,8 +557,8 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted) if many else [orbit]
-    most = whole_number("points", points, 2)
-    found = _follow_all(orbits, along, to, most, np.full(len(orbits), None))
+    points = whole_number("points", points, 2)
+    found = _follow_all(orbits, along, to, points, np.full(len(orbits), None))
     if not many and isinstance(found[0], OrbitNotFound):
         raise found[0]
     return found if many else found[0]
@@ -624,8 +603,11 @@ def cascade(doubling, *, to, impacts: int = 64):
             raise branches
         return branches
     impacts = whole_number("impacts", impacts, 2)
-    wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
-    latest = _listed(doubling, "doubling", wanted)
+    latest = _listed(
+        doubling,
+        "doubling",
+        "a period doubling, such as branch.first('period doubling'), or a list of them",
+    )
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and len(to) != len(latest):
         raise ValueError(f"to: has {len(to)} values for {len(latest)} orbits")
@@ -663,26 +645,25 @@ def _follow_all(orbits, along, to, points, until) -> list:
         raise ValueError(
             f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
         )
-    tasks = {}
     groups: list = []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
         path = each.equations.along[-1] if along is None else path_of(along, each.ball)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
-        tasks[i] = _task(each, path, goal, until[[i]])
+        task = _task(each, path, goal, until[[i]])
         same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
         key = each.kind, path, each.impacts, same_ball
         same = next((rows for other, rows in groups if other == key), None)
         if same is None:
             groups.append((key, same := []))
-        same.append(i)
+        same.append((i, task))
     for (kind, *_), rows in groups:
-        together = _stacked([tasks[i] for i in rows])
+        together = _stacked([task for _, task in rows])
         ways = range(together.goals.shape[1])
         parts = [_from_special(together, way, kind, points) for way in ways]
-        for place, i in enumerate(rows):
-            found[i] = _joined([part[place] for part in parts])
+        for (i, _), *branches in zip(rows, *parts, strict=True):
+            found[i] = _joined(branches)
     return found
 
 
@@ -700,21 +681,6 @@ class _Task(NamedTuple):
     until: NDArray
 
 
-def along_path(orbit: PeriodicOrbit, path: Path) -> tuple[OrbitEquations, NDArray]:
-    """The equations of an orbit along a path, and the orbit there, shape (N,).
-
-    Raises
-    ------
-    ValueError
-        If the orbit is not on the path.
-    """
-    value = float(path.place(orbit.ball, orbit.amplitude))
-    equations = OrbitEquations(
-        orbit.ball, orbit.impacts, orbit.periods, amplitude=orbit.amplitude, along=(path,)
-    )
-    return equations, np.append(orbit.z[: orbit.equations.size], value)
-
-
 def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     """What is to be followed from one orbit, as one row.
 
@@ -723,11 +689,12 @@ def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     ValueError
         If a goal is out of its range, or the orbit not on the path.
     """
-    equations, z = along_path(orbit, path)
+    equations = OrbitEquations(orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude, (path,))
+    value = float(path.place(orbit.ball, orbit.amplitude))
+    z = np.append(orbit.z[: equations.size], value)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
-    value = z[-1]
     if to is None:
-        to = high if high <= 10 else min(high, max(10.0, 10 * value))
+        to = min(high, max(10.0, 10 * value))
     goals = np.atleast_1d(np.asarray(to, float))
     for goal in goals:
         if not low <= goal <= high:
@@ -753,21 +720,19 @@ def _stacked(tasks: list[_Task]) -> _Task:
     return _Task(equations, *(np.concatenate(rows) for rows in columns))
 
 
-def _windows(z, goal, limits) -> NDArray:
-    """Where the parameter stays: between the goal and a value as far behind z; shape (rows, 2)."""
-    behind = np.clip(2 * z[:, -1] - goal, *limits.T)
-    return np.sort(np.stack([goal, behind], axis=-1), axis=-1)
-
-
 def _from_special(task: _Task, way: int, kind, points) -> list:
     """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
-    start = _STARTS.get(kind, _no_start)(task, way)
+    if kind not in _STARTS:
+        return [OrbitNotFound("branches end at a special orbit of this kind")] * len(task.z)
+    start = _STARTS[kind](task, way)
     name = task.equations.along[-1].name
     found: list = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
         return found
-    window = _windows(task.z, start.goal, task.limits)[going]
+    # The parameter stays between the goal and a value as far behind the start.
+    behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
+    window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going]
     until = task.until[going]
     branches = _followed(start.take(going), window, until, points, kind)
     for i, branch in zip(going, branches, strict=True):
@@ -801,8 +766,7 @@ def _ordinary_start(task: _Task, way: int) -> _Start:
     for i in np.flatnonzero(ahead == 0):
         name = task.equations.along[-1].name
         reasons[i] = f"{name} = {goal[i]:.10g} is that of the orbit already"
-    step = np.full(len(goal), FIRST_STEP)
-    return _Start(task.equations, task.z, direction, goal, reasons, step)
+    return _Start(task.equations, task.z, direction, goal, reasons)
 
 
 def _fold_start(task: _Task, way: int) -> _Start:
@@ -821,8 +785,7 @@ def _fold_start(task: _Task, way: int) -> _Start:
     reasons = _none(task)
     reasons[~near.found] = "no orbit is found beside the saddle-node"
     _on_side(reasons, away, task, goal, "the orbits of the saddle-node at {place} are {side} it")
-    step = np.full(len(goal), FIRST_STEP)
-    return _Start(task.equations, task.z, direction, goal, reasons, step)
+    return _Start(task.equations, task.z, direction, goal, reasons)
 
 
 def _grazing_start(task: _Task, way: int) -> _Start:
@@ -845,22 +808,13 @@ def _grazing_start(task: _Task, way: int) -> _Start:
     away = start.z[:, -1] - origin[:, -1]
     what = "the orbits with one impact more are {side} the grazing at {place}"
     _on_side(reasons, away, task, goal, what)
-    step = np.full(len(goal), 1e-3)
-    away = start.z - origin
-    return _Start(more, start.z, away, goal, reasons, step=step, origin=origin)
+    return _Start(more, start.z, start.z - origin, goal, reasons, step=1e-3, origin=origin)
 
 
 def _halved_start(task: _Task, way: int) -> _Start:
     """The branch of half the period."""
     equations, z = halves_of(task.equations, task.z)
     return _ordinary_start(task._replace(equations=equations, z=z), way)
-
-
-def _no_start(task: _Task, way: int) -> _Start:
-    """No branch goes on from this kind of special orbit."""
-    reasons = np.full(len(task.z), "branches end at a special orbit of this kind", object)
-    goal = task.goals[:, way]
-    return _Start(task.equations, task.z, task.z, goal, reasons, goal)
 
 
 def _doubled_start(task: _Task, way: int) -> _Start:

@@ -40,7 +40,6 @@ from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.equations import OrbitEquations, dense
 from bouncing_ball_beyond.forms import (
     MULTIPLIERS,
-    Curvature,
     closed,
     coefficient,
     curvature,
@@ -113,11 +112,7 @@ class SpecialCurve(FollowedBranch):
         OrbitNotFound
             If the curve has none.
         """
-        for each in self.special:
-            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
-                return each
-        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {kind} on this curve; its orbits of codimension two are: {others}")
+        return self._first(kind, "this curve; its orbits of codimension two are")
 
     @cached_property
     def orbits(self) -> tuple[PeriodicOrbit, ...]:
@@ -125,24 +120,17 @@ class SpecialCurve(FollowedBranch):
         return tuple(PeriodicOrbit(self.equations, row, self.kind) for row in self.z)
 
 
-class _Border(NamedTuple):
-    """Vectors v and w of length 1 near the null vectors of the chain, shape (kq,)."""
-
-    v: NDArray
-    w: NDArray
-
-
 class _Point(NamedTuple):
     """A special orbit of a curve: z, and the tangent with normal · tangent = 1, shape (N,).
 
-    ``border`` are its null vectors and ``bent`` the derivatives of the legs along v; both are None
-    for kinds without a multiplier.
+    ``border`` are the vectors v and w of length 1 near its null vectors, shape (kq,), and ``bent``
+    the derivatives of the legs along v; both are None for kinds without a multiplier.
     """
 
     z: NDArray
     tangent: NDArray
-    border: _Border | None
-    bent: Curvature | None
+    border: Any
+    bent: Any
 
 
 @dataclass(frozen=True)
@@ -152,17 +140,12 @@ class _System:
     equations: OrbitEquations
     kind: str
 
-    @cached_property
-    def multiplier(self) -> int:
-        """Of saddle-nodes and period doublings: 1 or -1."""
-        return MULTIPLIERS[self.kind]
-
-    def border(self, z: NDArray) -> _Border | None:
-        """The null vectors at a special orbit."""
+    def border(self, z: NDArray) -> tuple[NDArray, NDArray] | None:
+        """The null vectors v and w at a special orbit."""
         if self.kind not in MULTIPLIERS:
             return None
         derivatives = self.equations.linear(z[np.newaxis]).derivatives[0]
-        return _Border(*null_vectors(closed(derivatives, self.multiplier)))
+        return null_vectors(closed(derivatives, MULTIPLIERS[self.kind]))
 
     def condition(self, z, derivatives, border):
         """g at z, the gradient of g/∏ρ times ∏ρ, the null vectors, and the derivatives along v.
@@ -172,19 +155,20 @@ class _System:
         if border is None:
             value, gradient, _ = value_and_gradient(self.equations, self.kind, z[np.newaxis])
             return value[0], gradient[0], None, None
-        size = len(border.v)
+        c, b = border
+        size = len(c)
         matrix = np.zeros((size + 1, size + 1))
-        matrix[:-1, :-1] = closed(derivatives[0], self.multiplier)
-        matrix[:-1, -1] = border.w
-        matrix[-1, :-1] = border.v
+        matrix[:-1, :-1] = closed(derivatives[0], MULTIPLIERS[self.kind])
+        matrix[:-1, -1] = b
+        matrix[-1, :-1] = c
         right = np.zeros(size + 1)
         right[-1] = 1.0
         *v, value = np.linalg.solve(matrix, right)
         *w, _ = np.linalg.solve(matrix.T, right)
-        new = _Border(np.array(v), np.array(w))
-        step = longest_step(self.equations, z, new.v)
-        bent = curvature(self.equations, z, new.v, self.multiplier, step)
-        gradient = -new.w @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
+        new = np.array(v), np.array(w)
+        step = longest_step(self.equations, z, new[0])
+        bent = curvature(self.equations, z, new[0], MULTIPLIERS[self.kind], step)
+        gradient = -new[1] @ dense(bent.first[np.newaxis])[0].reshape(size, -1)
         if len(derivatives) > 1:
             rates = np.zeros((len(derivatives[0]), 3))
             rates[:, 0] = derivatives[0, :, 0, 2]
@@ -247,14 +231,14 @@ class _System:
             elif "resonance" in name:
                 tests[name] = self.equations.trace_and_determinant(linear)[1] - 1
             else:
-                tests[name] = np.array([self.coefficient(point) for point in points])
+                # a or b, with the lengths of v and w.
+                multiplier = MULTIPLIERS[self.kind]
+                values = [
+                    coefficient(each.bent, each.border[0], each.border[1], multiplier)
+                    for each in points
+                ]
+                tests[name] = np.array(values)
         return tests
-
-    def coefficient(self, point: _Point) -> float:
-        """a or b, with the lengths of v and w."""
-        assert point.border is not None
-        assert point.bent is not None
-        return coefficient(point.bent, point.border.v, point.border.w, self.multiplier)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -319,26 +303,17 @@ def special_curve(
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
         raise OrbitNotFound(f"the orbit is no {system.kind}: the nearest one is elsewhere")
     direction = first.tangent / np.linalg.norm(first.tangent)
-    forth = _half(system, *_march(system, first, direction, limits, points))
-    if forth.end == CLOSED:
-        back = _Half(first.z[np.newaxis], (), CLOSED)
-    else:
-        back = _half(system, *_march(system, first, -direction, limits, points))
-    z = np.concatenate([back.z[:0:-1], forth.z])
-    found = (*back.special[::-1], *forth.special)
-    return SpecialCurve(system.equations, z, found, back.end, forth.end, system.kind)
+    z, found, end = _half(system, *_march(system, first, direction, limits, points))
+    start = CLOSED
+    if end != CLOSED:
+        back, before, start = _half(system, *_march(system, first, -direction, limits, points))
+        z = np.concatenate([back[:0:-1], z])
+        found = (*before[::-1], *found)
+    return SpecialCurve(system.equations, z, found, start, end, system.kind)
 
 
 CLOSED = "the curve is closed"
 SUCH = "such as branch.first('period doubling')"
-
-
-class _Half(NamedTuple):
-    """One direction of a curve from its start."""
-
-    z: NDArray
-    special: tuple[PeriodicOrbit, ...]
-    end: str
 
 
 def _start(special: Any, along) -> tuple[_System, NDArray]:
@@ -363,8 +338,9 @@ def _start(special: Any, along) -> tuple[_System, NDArray]:
     paths = tuple(path_of(each, special.ball) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    given = special.ball, special.impacts, special.periods, special.amplitude
-    equations = OrbitEquations(*given, paths)
+    equations = OrbitEquations(
+        special.ball, special.impacts, special.periods, special.amplitude, paths
+    )
     values = [float(path.place(special.ball, special.amplitude)) for path in paths]
     z = np.append(special.z[: equations.size], values)
     if special.kind == "grazing of an impact":
@@ -388,8 +364,8 @@ def _limits(equations, z, special, ranges) -> NDArray:
     ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
         least, greatest = path.limits(special.ball, special.amplitude)
-        usual = greatest if greatest <= 10 else min(greatest, max(10.0, 10 * value))
-        low, high = wanted.pop(path.name, (least, usual))
+        usual = least, min(greatest, max(10.0, 10 * value))
+        low, high = wanted.pop(path.name, usual)
         if not max(low, least) <= value <= min(high, greatest):
             raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")
         ends.append((max(low, least), min(high, greatest)))
@@ -477,8 +453,11 @@ class _Passed(NamedTuple):
     z: NDArray | None
 
 
-def _half(system: _System, points: list[_Point], end: str) -> _Half:
-    """One direction of a curve with its points of codimension two, up to one where it ends."""
+def _half(system: _System, points: list[_Point], end: str) -> tuple:
+    """One direction of a curve, up to a point of codimension two where it ends.
+
+    Returns the special orbits, shape (points, N), those of codimension two, and why it ends.
+    """
     tests = system.tests(points, system.names)
     none = _Passed(len(points), 0.0, "", None)
     ends = [
@@ -508,7 +487,7 @@ def _half(system: _System, points: list[_Point], end: str) -> _Half:
         rows.append(last.z)
     if last.name:
         end = f"{last.name}: {KINDS[last.name].end}"
-    return _Half(np.array(rows), tuple(special), end or _lost(system, points[-1]))
+    return np.array(rows), tuple(special), end or _lost(system, points[-1])
 
 
 def _lost(system: _System, point: _Point) -> str:

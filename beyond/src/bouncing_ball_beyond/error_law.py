@@ -515,8 +515,7 @@ def exact_errors(
     if simple is None or isinstance(simple, FreeImpact):
         reference = restitution_values(simple or free_impact(ball, n), amplitude)
     else:
-        other = simple(ball)
-        reference = contact_values(other, amplitude=amplitude, n=n, quantities=quantities)
+        reference = contact_values(simple(ball), amplitude=amplitude, n=n, quantities=quantities)
     with np.errstate(invalid="ignore", divide="ignore"):
         return {name: exact[name] / reference[name] - 1 for name in quantities}
 

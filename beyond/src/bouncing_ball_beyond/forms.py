@@ -393,8 +393,9 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     """
     # On a curve two parameters change, of which the first one counts.
     path = orbit.equations.along[0]
-    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
-    equations = OrbitEquations(*given, (path,))
+    equations = OrbitEquations(
+        orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude, along=(path,)
+    )
     z = orbit.z[: equations.length]
     at = _grazing(equations, z)
     _, _, direction = one_impact_more(equations, z)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief, together
+from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
     PERIODS,
@@ -22,9 +23,6 @@ from bouncing_ball_beyond.root_time import (
     load_of,
     values_by_row,
 )
-
-SLOWEST = 1e-12
-"""The speed that a ball without one is given, because p would stay zero."""
 
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 """Names that parameters must not have."""
@@ -114,7 +112,8 @@ class ForceLaw(Ball):
         if self.root != 1 and (self.root < 1 or self.root % 2):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number")
         for name in self.units.keys() - self.values.keys():
-            raise ValueError(f"units: {name} is no parameter of the law, which has {self._names}")
+            known = ", ".join(self.values)
+            raise ValueError(f"units: {name} is no parameter of the law, which has {known}")
         for name, powers in self.units.items():
             if np.shape(powers) != (3,) or np.asarray(powers).dtype.kind not in "iuf":
                 raise ValueError(
@@ -128,10 +127,6 @@ class ForceLaw(Ball):
     def __repr__(self):
         values = ", ".join(f"{name}={value}" for name, value in self.values.items())
         return f"{self.force.__name__.lstrip('_')}({values})"
-
-    @property
-    def _names(self):
-        return ", ".join(self.values)
 
     @property
     def known_units(self):
@@ -154,7 +149,8 @@ class ForceLaw(Ball):
         unknown = values.keys() - self.values.keys()
         if unknown:
             raise ValueError(
-                f"{', '.join(sorted(unknown))}: no parameter of the law, which has {self._names}"
+                f"{', '.join(sorted(unknown))}: no parameter of the law, which has"
+                f" {', '.join(self.values)}"
             )
         if not values:
             return self
@@ -184,21 +180,13 @@ class ForceLaw(Ball):
             for name, (of_mass, of_length, of_time) in self.known_units.items()
         }
 
-    def start(self, u):
-        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
-        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
-
     def contact(self, tau, u, T, amplitude, gravity=1.0):
         """The state of the contact at the root time T, with its release function."""
         return self._followed(tau, u, amplitude, gravity, T)[1]
 
-    def first_release(self, tau, u, amplitude, gravity=1.0):
-        """T of the first releases; NaN for balls that stay in contact."""
-        return self._followed(tau, u, amplitude, gravity)[0]
-
-    def early_release(self, tau, u, amplitude, periods):
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=PERIODS):
         """T of the first releases; NaN for balls that stay in contact for so many periods."""
-        return self._followed(tau, u, amplitude, 1.0, longest=periods)[0]
+        return self._followed(tau, u, amplitude, gravity, longest=periods)[0]
 
     def first_impact(self, tau, u, amplitude, gravity=1.0):
         """T of the first releases, and the impacts."""

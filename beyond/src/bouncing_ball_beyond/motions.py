@@ -240,8 +240,11 @@ def _follow_to_end(found, balls, lane, impacts, section):
     }
     seen = 0
     while track["lane"].size and seen < impacts:
-        count = min(max(seen // section, 1), -(-(impacts - seen) // section))
-        count = min(count, max(ROWS // track["lane"].size // section, 1))
+        count = min(
+            max(seen // section, 1),
+            -(-(impacts - seen) // section),
+            max(ROWS // track["lane"].size // section, 1),
+        )
         record, going, after = follow(balls, count * section)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)
@@ -294,10 +297,8 @@ def stretch(track, record, after, maps, lifts, section):
     climb = sums - np.minimum(np.minimum.accumulate(sums, axis=0), -track["climb"])
     most, lap = (np.where(number == number[-1] - k, climb, 0.0).max(axis=0) for k in (0, 1))
     lap = np.where(number[-1] == 1, np.maximum(lap, track["most"]), lap)
-    areas = contraction(maps)
-    sums = np.stack(
-        [growth, np.diff(times(record, after), axis=0), np.nan_to_num(areas, neginf=0.0)]
-    )
+    areas = np.nan_to_num(contraction(maps), neginf=0.0)
+    sums = np.stack([growth, np.diff(times(record, after), axis=0), areas])
     sums = sums.reshape(3, len(record) // section, section, lifts.shape[1]).sum(axis=2)
     track["vector"] = vectors[:, -1] / length[-1]
     track["most"] = np.where(number[-1] == 0, np.maximum(most, track["most"]), most)
@@ -384,8 +385,14 @@ def _store_resting(found, lane, record, going, seen):
     resting = np.delete(np.arange(lane.size), going)
     count = np.isfinite(record[:, 0, resting]).sum(axis=0)
     stays = np.isinf(record[count - 1, 4, resting])
-    _store(found, lane[resting], kind=np.where(stays, PERMANENT, UNDECIDED), periods=stays)
-    _store(found, lane[resting], reason=np.where(stays, "", RESUMES), followed=seen + count)
+    _store(
+        found,
+        lane[resting],
+        kind=np.where(stays, PERMANENT, UNDECIDED),
+        periods=stays,
+        reason=np.where(stays, "", RESUMES),
+        followed=seen + count,
+    )
 
 
 def _store_end(found, lane, after, which, **values):
@@ -639,8 +646,14 @@ def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
     neighbours = ends_of(replace(balls.take(beside), **states), impacts)
     kinds = neighbours["kind"].reshape(-1, NEIGHBOURS)
     leaves = chaotic[np.isin(kinds, [CHAOTIC, UNDECIDED], invert=True).any(axis=1)]
-    _store(ends, leaves, kind=UNDECIDED, reason=TRANSIENT)
-    _store(ends, leaves, lyapunov_exponent=np.nan, lyapunov_error=np.nan)
+    _store(
+        ends,
+        leaves,
+        kind=UNDECIDED,
+        reason=TRANSIENT,
+        lyapunov_exponent=np.nan,
+        lyapunov_error=np.nan,
+    )
     return dataset_of(grid, balls.amplitude, ends)
 
 
@@ -708,29 +721,26 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
     amplitude = float(table)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
-    fast = relative_velocity_max
-    if fast is None:
-        fast = fastest(ball, amplitude)
+    fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
     checked("relative_velocity_max", fast, 0, np.inf, low_allowed=False)
-    phase = TURN * middle - np.pi
-    speed = fast * middle
-    given = {"amplitude": amplitude, "speed": speed, "phase": phase}
-    grid, ball, (amplitude, u, tau) = grid_of(ball, **given)
+    grid, ball, (amplitude, u, tau) = grid_of(
+        ball, amplitude=amplitude, speed=fast * middle, phase=TURN * middle - np.pi
+    )
     ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u), impacts)
-    names = {name: ends[name] for name in ("kind", "impacts", "periods")}
-    names["kind"] = names["kind"].astype(str)
-    keys = np.rec.fromarrays(list(names.values()), names=list(names))
+    names = ["kind", "impacts", "periods"]
+    keys = np.rec.fromarrays(
+        [ends["kind"].astype(str), ends["impacts"], ends["periods"]], names=names
+    )
     motions, which, count = np.unique(keys, return_inverse=True, return_counts=True)
     share = count / which.size
-    names = {name: motions[name] for name in names} | {
+    values = {name: motions[name] for name in names} | {
         "share": share,
         "share_error": np.sqrt(share * (1 - share) / which.size),
         "motion": np.arange(share.size),
     }
     found = dataset(grid, {"destination": which}, OF_MOTIONS)
-    of_motions = {name: ("motion", value) for name, value in names.items()}
-    found = found.assign(of_motions).assign_attrs(impacts=impacts)
-    return described(found, OF_MOTIONS)
+    found = found.assign({name: ("motion", value) for name, value in values.items()})
+    return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
 
 
 def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
@@ -785,8 +795,9 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         for name in passes[0]
     }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)
-    state = np.zeros(value.size), ends["end_phase"], ends["end_speed"]
-    balls = Balls(ball.rows(value), amplitude[value], *state)
+    balls = Balls(
+        ball.rows(value), amplitude[value], 0.0 * value, ends["end_phase"], ends["end_speed"]
+    )
     (moving,) = np.isfinite(balls.phase).nonzero()
     recorded = np.full((2, value.size, samples), np.nan)
     recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)

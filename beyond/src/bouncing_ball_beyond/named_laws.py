@@ -21,7 +21,6 @@ Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p
 0 at the surface to 1 at the depth d.
 """
 
-from functools import partial
 from inspect import signature
 
 import numpy as np
@@ -37,17 +36,18 @@ NUMBER = (0, 0, 0)
 """Powers of mass, length and time in N/m^{3/2}, N/m, N s/m and 1."""
 
 RANGES = {
-    "frequency_ratio": (0, np.inf, False),
-    "stiffness": (0, np.inf, False),
-    "depth": (0, np.inf, False),
-    "damping_ratio": (0, np.inf, True),
-    "damping": (0, np.inf, True),
-    "nominal_restitution": (0, 1, False),
+    "frequency_ratio": {"low": 0, "high": np.inf, "low_allowed": False},
+    "stiffness": {"low": 0, "high": np.inf, "low_allowed": False},
+    "depth": {"low": 0, "high": np.inf, "low_allowed": False},
+    "damping_ratio": {"low": 0, "high": np.inf, "low_allowed": True},
+    "damping": {"low": 0, "high": np.inf, "low_allowed": True},
+    "nominal_restitution": {"low": 0, "high": 1, "low_allowed": False},
 }
 """The least and the largest value of a parameter, and whether the least one is allowed."""
 
-RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
-"""The units of ϖ and ζ."""
+UNITS_OF_RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
+UNITS_OF_NOMINAL = {"stiffness": HERTZ, "nominal_restitution": NUMBER}
+"""The units of ϖ and ζ, and of K and e."""
 
 STEPPED = 0.1
 """The depth d of a law that is given by an impact, over the scale of the penetration."""
@@ -81,10 +81,11 @@ def law_of_impact(law_of, restitution, duration, speed):
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
-    restitution = checked("restitution", restitution, 0, 1, low_allowed=False)
-    duration = checked("duration", duration, 0, np.inf, low_allowed=False)
-    speed = checked("speed", speed, 0, np.inf, low_allowed=False)
-    r, lasts, v = np.broadcast_arrays(restitution, duration, speed)
+    r, lasts, v = np.broadcast_arrays(
+        checked("restitution", restitution, 0, 1, low_allowed=False),
+        checked("duration", duration, 0, np.inf, low_allowed=False),
+        checked("speed", speed, 0, np.inf, low_allowed=False),
+    )
     found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
     damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
     length = lasts * v / unit.reshape(r.shape)
@@ -117,28 +118,24 @@ def _damping_and_duration(law_of, restitution):
     return damping, duration
 
 
-def _given(law, values, impact, of_scales):
-    """The law with the given values of its parameters, or that of an impact.
+def _given(values, impact, of_scales, **kind):
+    """The law of a kind with the given values of its parameters, or that of an impact.
 
-    ``law`` makes it of values, and ``of_scales(g, P, v)`` has the values at the scales P and v.
+    ``impact`` has restitution, duration and speed, and ``of_scales(g, P, v)`` the values of the
+    parameters at the scales P and v. ``kind`` are the other arguments of :class:`.ForceLaw`.
     """
     without = [name for name, value in values.items() if value is None]
     lacking = [name for name, value in impact.items() if value is None]
     if not lacking and len(without) == len(values):
-        return law_of_impact(lambda *scales: law(of_scales(*scales)), **impact)
+        return law_of_impact(lambda *scales: ForceLaw(values=of_scales(*scales), **kind), **impact)
     if without or len(lacking) < len(impact):
         present = [name for name, value in (values | impact).items() if value is not None]
         raise ValueError(
             f"a law is given by {' and '.join(values)}, or by restitution, duration and speed,"
             f" and not by {', '.join(present) or 'nothing'}"
         )
-    return law({name: _parameter(name, value) for name, value in values.items()})
-
-
-def _parameter(name, value):
-    """A parameter that is in its range."""
-    low, high, low_allowed = RANGES[name]
-    return checked(name, value, low, high, low_allowed=low_allowed)
+    values = {name: checked(name, value, **RANGES[name]) for name, value in values.items()}
+    return ForceLaw(values=values, **kind)
 
 
 def linear(
@@ -175,14 +172,13 @@ def linear(
     }
     if release not in kinds:
         raise ValueError(f"release = {release!r}: must be 'displacement', 'force' or 'approach'")
-    law = partial(_of_kind, kinds[release])
-    values = {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(law, values, impact, _of_ratios)
-
-
-def _of_kind(kind, values):
-    return ForceLaw(values=values, units=RATIOS, **kind)
+    return _given(
+        {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        _of_ratios,
+        units=UNITS_OF_RATIOS,
+        **kinds[release],
+    )
 
 
 def _of_ratios(g, P, v):
@@ -220,17 +216,16 @@ def elasto_backlash(
     restitution, duration, speed : float or array
         In place of ϖ and ζ: r and D of a free impact of a speed.
     """
-    law = partial(
-        ForceLaw,
-        _limited_damper,
+    return _given(
+        {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        _of_ratios,
+        force=_limited_damper,
         release="force",
         lag=_lag_of_ratios,
         kinks=(_equal_forces,),
-        units=RATIOS,
+        units=UNITS_OF_RATIOS,
     )
-    values = {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(law, values, impact, _of_ratios)
 
 
 def _equal_forces(p, v, frequency_ratio, damping_ratio):
@@ -261,13 +256,13 @@ def hunt_crossley(stiffness=None, damping=None, *, restitution=None, duration=No
     K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as quoted by
     Simbody (``HuntCrossleyContact.h``).
     """
-    law = partial(
-        ForceLaw, _hunt_crossley, root=2, units={"stiffness": HERTZ, "damping": (0, -1, 1)}
-    )
-    values = {"stiffness": stiffness, "damping": damping}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
     return _given(
-        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g / v}
+        {"stiffness": stiffness, "damping": damping},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g / v},
+        force=_hunt_crossley,
+        root=2,
+        units={"stiffness": HERTZ, "damping": (0, -1, 1)},
     )
 
 
@@ -282,13 +277,12 @@ def hunt_crossley_linear(
 
     The parameters are those of :func:`hunt_crossley`, and r is the same function of C v.
     """
-    law = partial(
-        ForceLaw, _linear_hunt_crossley, units={"stiffness": SPRING, "damping": (0, -1, 1)}
-    )
-    values = {"stiffness": stiffness, "damping": damping}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
     return _given(
-        law, values, impact, lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g / v}
+        {"stiffness": stiffness, "damping": damping},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g / v},
+        force=_linear_hunt_crossley,
+        units={"stiffness": SPRING, "damping": (0, -1, 1)},
     )
 
 
@@ -321,11 +315,13 @@ def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, spee
     >>> round(float(ball.signature(0.5).restitution), 12)
     0.85
     """
-    law = partial(ForceLaw, _tsuji, root=4, units={"stiffness": HERTZ, "damping": NUMBER})
-    values = {"stiffness": stiffness, "damping": damping}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
     return _given(
-        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g + 0 * v}
+        {"stiffness": stiffness, "damping": damping},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g + 0 * v},
+        force=_tsuji,
+        root=4,
+        units={"stiffness": HERTZ, "damping": NUMBER},
     )
 
 
@@ -355,18 +351,15 @@ def kuwabara_kono(stiffness=None, damping=None, *, restitution=None, duration=No
     53 (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T. Pöschel, Physical
     Review E 78 (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
     """
-    law = partial(
-        ForceLaw,
-        _kuwabara_kono,
+    return _given(
+        {"stiffness": stiffness, "damping": damping},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * P / v},
+        force=_kuwabara_kono,
         root=2,
         release="force",
         lag=_lag_of_damping,
         units={"stiffness": HERTZ, "damping": (0, 0, 1)},
-    )
-    values = {"stiffness": stiffness, "damping": damping}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(
-        law, values, impact, lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * P / v}
     )
 
 
@@ -399,29 +392,17 @@ def lankarani_nikravesh(
     H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical Design 112 (1990) 369-376, as quoted
     by public code for multibody contacts.
     """
-    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-
-    def nominal(c):
-        return np.sqrt(np.maximum(1 - 4 * c / 3, 0))
-
-    return _of_start_speed(_lankarani_nikravesh, nominal, values, impact)
-
-
-def _of_start_speed(force, nominal, values, impact):
-    """The law of Hunt and Crossley with C = c/v₀ by its force; ``nominal(c)`` is e."""
-    law = partial(
-        ForceLaw,
-        force,
+    return _given(
+        {"stiffness": stiffness, "nominal_restitution": nominal_restitution},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda c, P, v: {
+            "stiffness": v**2 / P**2.5,
+            "nominal_restitution": np.sqrt(np.maximum(1 - 4 * c / 3, 0)) + 0 * v,
+        },
+        force=_lankarani_nikravesh,
         root=2,
         needs=("start_speed",),
-        units={"stiffness": HERTZ, "nominal_restitution": NUMBER},
-    )
-    return _given(
-        law,
-        values,
-        impact,
-        lambda c, P, v: {"stiffness": v**2 / P**2.5, "nominal_restitution": nominal(c) + 0 * v},
+        units=UNITS_OF_NOMINAL,
     )
 
 
@@ -449,9 +430,18 @@ def flores(
     >>> round(float(flores(2000.0, 0.5).signature(3.0).restitution), 3)
     0.47
     """
-    values = {"stiffness": stiffness, "nominal_restitution": nominal_restitution}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _of_start_speed(_flores, lambda c: 8 / (8 + 5 * c), values, impact)
+    return _given(
+        {"stiffness": stiffness, "nominal_restitution": nominal_restitution},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda c, P, v: {
+            "stiffness": v**2 / P**2.5,
+            "nominal_restitution": 8 / (8 + 5 * c) + 0 * v,
+        },
+        force=_flores,
+        root=2,
+        needs=("start_speed",),
+        units=UNITS_OF_NOMINAL,
+    )
 
 
 def _flores(p, v, stiffness, nominal_restitution, start_speed):
@@ -478,20 +468,14 @@ def adams_impact(
     ----------
     The manuals of SolidWorks Motion and Altair MotionSolve.
     """
-    law = partial(
-        ForceLaw,
-        _adams,
+    return _given(
+        {"stiffness": stiffness, "damping": damping, "depth": depth},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * v / P, "depth": STEPPED * P},
+        force=_adams,
         root=2,
         kinks=(_full_depth, _pulls),
         units={"stiffness": HERTZ, "damping": DAMPER, "depth": (0, 1, 0)},
-    )
-    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(
-        law,
-        values,
-        impact,
-        lambda g, P, v: {"stiffness": v**2 / P**2.5, "damping": g * v / P, "depth": STEPPED * P},
     )
 
 
@@ -502,19 +486,13 @@ def adams_impact_linear(
 
     The parameters are those of :func:`adams_impact`. If an impact is given, d is a tenth of v/√K.
     """
-    law = partial(
-        ForceLaw,
-        _linear_adams,
+    return _given(
+        {"stiffness": stiffness, "damping": damping, "depth": depth},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
+        force=_linear_adams,
         kinks=(_full_depth, _linear_pulls),
         units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
-    )
-    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(
-        law,
-        values,
-        impact,
-        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
     )
 
 
@@ -570,21 +548,15 @@ def simscape_contact(
     restitution, duration, speed : float or array
         In place of them: r and D of a free impact of a speed. Then d is a tenth of v/√K.
     """
-    law = partial(
-        ForceLaw,
-        _simscape,
+    return _given(
+        {"stiffness": stiffness, "damping": damping, "depth": depth},
+        {"restitution": restitution, "duration": duration, "speed": speed},
+        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
+        force=_simscape,
         release="force",
         lag=_lag_of_force,
         kinks=(_full_depth,),
         units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
-    )
-    values = {"stiffness": stiffness, "damping": damping, "depth": depth}
-    impact = {"restitution": restitution, "duration": duration, "speed": speed}
-    return _given(
-        law,
-        values,
-        impact,
-        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
     )
 
 
@@ -596,20 +568,22 @@ def _lag_of_force(stiffness, damping, depth):
     return damping / stiffness
 
 
-_LAWS = (
-    linear,
-    hunt_crossley,
-    hunt_crossley_linear,
-    tsuji,
-    lankarani_nikravesh,
-    flores,
-    kuwabara_kono,
-    elasto_backlash,
-    adams_impact,
-    adams_impact_linear,
-    simscape_contact,
-)
-LAWS = {law.__name__: law for law in _LAWS}
+LAWS = {
+    law.__name__: law
+    for law in (
+        linear,
+        hunt_crossley,
+        hunt_crossley_linear,
+        tsuji,
+        lankarani_nikravesh,
+        flores,
+        kuwabara_kono,
+        elasto_backlash,
+        adams_impact,
+        adams_impact_linear,
+        simscape_contact,
+    )
+}
 """The named laws by their names."""
 
 

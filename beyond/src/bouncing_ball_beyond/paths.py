@@ -6,20 +6,17 @@ variable may be an array and complex: derivatives along a path are complex steps
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 
 import numpy as np
 
 from bouncing_ball_beyond.balls import Ball, H
 
-LIMITS = MappingProxyType(
-    {
-        "amplitude": (1e-12, 1e8),
-        "restitution": (0.0, 1.0),
-        "frequency_ratio": (0.0, 1e8),
-        "damping_ratio": (0.0, 1e4),
-    }
-)
+LIMITS = {
+    "amplitude": (1e-12, 1e8),
+    "restitution": (0.0, 1.0),
+    "frequency_ratio": (0.0, 1e8),
+    "damping_ratio": (0.0, 1e4),
+}
 """The least and the greatest value of parameters; of all others, they are 0 and infinite."""
 
 
@@ -67,8 +64,7 @@ class Frequency:
 
     def limits(self, ball: Ball, amplitude):
         """The frequencies at which Λ is within its limits."""
-        low, high = np.sqrt(LIMITS["amplitude"])
-        return low, high
+        return np.sqrt(LIMITS["amplitude"])
 
 
 @dataclass(frozen=True, init=False)
@@ -181,8 +177,9 @@ def path_of(along: str | Path, ball: Ball) -> Path:
         allowed = ["amplitude", *ball.parameters]
         for name in along.functions:
             if name not in allowed:
-                one_of = ", ".join(allowed)
-                raise ValueError(f"the path {along.name} has {name!r}: must be one of {one_of}")
+                raise ValueError(
+                    f"the path {along.name} has {name!r}: must be one of {', '.join(allowed)}"
+                )
     if not isinstance(along, str):
         return along
     allowed = ["amplitude", "frequency", *ball.parameters]

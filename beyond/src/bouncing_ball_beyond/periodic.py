@@ -375,8 +375,10 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     >>> round(orbit(Rigid(0.5), amplitude=1.2).phase, 6)
     0.510164
     """
-    _check_amplitude(amplitude)
-    _check_periods(n)
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    counts = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
+    for count in counts[counts % 1 != 0]:
+        raise ValueError(f"n = {count:g}: must be a whole number")
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
@@ -445,9 +447,12 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
             continue
         elif not ends[i]:
             why = "none is found, and without a table its impacts do not end"
-        ball = _described(equations.ball.rows(i))
-        n = np.ravel(equations.periods)[i]
-        found[i] = OrbitNotFound(f"no {n}-T orbit at Λ = {where} for {ball}: {why}")
+        ball = equations.ball.rows(i)
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
+        found[i] = OrbitNotFound(
+            f"no {np.ravel(equations.periods)[i]}-T orbit at Λ = {where} for"
+            f" {type(ball).__name__}({values}): {why}"
+        )
     return found
 
 
@@ -462,8 +467,7 @@ def shortest_contacts(
     for i, z in enumerate(_all_orbits(equations, amplitude)):
         orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
         on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
-        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
-        found.append(on_side)
+        found.append(sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration)))
     return found
 
 
@@ -477,24 +481,12 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def _check_amplitude(amplitude):
-    """Raise ValueError with one line unless amplitudes are positive numbers."""
-    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
-
-
 def _one_amplitude(amplitude) -> float:
     """The amplitude as a number; ValueError unless it is a positive one."""
-    _check_amplitude(amplitude)
-    if np.ndim(amplitude):
+    value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    if np.ndim(value):
         raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
-    return float(amplitude)
-
-
-def _check_periods(n):
-    """Raise ValueError with one line unless all are whole numbers from 1 to 1000."""
-    values = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
-    for value in values[values % 1 != 0]:
-        raise ValueError(f"n = {value:g}: must be a whole number")
+    return value
 
 
 def apart(first: float, second: float) -> tuple[str, str]:
@@ -504,12 +496,6 @@ def apart(first: float, second: float) -> tuple[str, str]:
         if texts[0] != texts[1]:
             break
     return texts
-
-
-def _described(ball: Ball) -> str:
-    """A ball in an error message: its model and its parameters."""
-    values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
-    return f"{type(ball).__name__}({values})"
 
 
 def orbits(
@@ -617,7 +603,7 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
         if ball.lasts:
             # Contacts of an orbit are shorter than its period.
             periods = np.broadcast_to(equations.periods, len(amplitude))[row]
-            columns.insert(2, ball.early_release(*columns, periods))
+            columns.insert(2, ball.first_release(*columns, periods=periods))
         return np.stack(columns, axis=-1)
 
     row = np.repeat(np.arange(len(amplitude)), tau[0].size)

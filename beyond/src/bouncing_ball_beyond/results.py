@@ -48,6 +48,14 @@ OF_ORBITS = {
 }
 """Quantities of whole orbits."""
 
+OF_EQUATIONS = {
+    "multiplier_real": ("real part of the Floquet multiplier", "μ", "1"),
+    "multiplier_imag": ("imag part of the Floquet multiplier", "μ", "1"),
+    "impact_time": ("time of the impact", "τ", "1"),
+    "scaled_duration": ("duration of the contact in the time of its equations", "T", "1"),
+}
+"""Unknowns and multipliers."""
+
 PARAMETERS = {
     "amplitude": ("amplitude of the table", "Λ", "1"),
     "restitution": ("restitution coefficient", "r", "1"),
@@ -100,33 +108,26 @@ def to_dataset(found: Found) -> xr.Dataset:
         data.attrs |= {"start": found.start, "end": found.end}
     if isinstance(found, SpecialCurve):
         data.attrs["kind"] = found.kind
-    for name, text in OF_IMPACTS.items():
+    for name in OF_IMPACTS:
         values = np.array([np.atleast_1d(getattr(each, name)) for each in orbits])
-        data[name] = ("point", "impact"), values, _attributes(text)
-    for name, text in OF_ORBITS.items():
-        values = np.array([getattr(each, name) for each in orbits])
-        data[name] = "point", values, _attributes(text)
+        data[name] = ("point", "impact"), values
+    for name in OF_ORBITS:
+        data[name] = "point", np.array([getattr(each, name) for each in orbits])
     multipliers = np.array([each.multipliers for each in orbits])
-    for part, values in (("real", multipliers.real), ("imag", multipliers.imag)):
-        text = f"{part} part of the Floquet multiplier", "μ", "1"
-        data[f"multiplier_{part}"] = ("point", "multiplier"), values, _attributes(text)
+    data["multiplier_real"] = ("point", "multiplier"), multipliers.real
+    data["multiplier_imag"] = ("point", "multiplier"), multipliers.imag
     unknowns = np.array([each.z[: each.equations.size] for each in orbits])
     unknowns = unknowns.reshape(len(orbits), first.impacts, -1)
-    text = "time of the impact", "τ", "1"
-    data["impact_time"] = ("point", "impact"), unknowns[..., 0], _attributes(text)
+    data["impact_time"] = ("point", "impact"), unknowns[..., 0]
     if first.ball.lasts:
-        text = "duration of the contact in the time of its equations", "T", "1"
-        data["scaled_duration"] = ("point", "impact"), unknowns[..., 2], _attributes(text)
+        data["scaled_duration"] = ("point", "impact"), unknowns[..., 2]
     for name in first.parameters:
-        values = np.array([each.parameters[name] for each in orbits])
-        text = PARAMETERS.get(name, (name.replace("_", " "), "", "1"))
-        data[name] = "point", values, _attributes(text)
+        data[name] = "point", np.array([each.parameters[name] for each in orbits])
+    texts = OF_IMPACTS | OF_ORBITS | OF_EQUATIONS | PARAMETERS
+    for label, variable in data.items():
+        text = texts.get(str(label), (str(label).replace("_", " "), "", "1"))
+        variable.attrs.update(zip(("long_name", "symbol", "units"), text, strict=True))
     return data.set_coords(along)
-
-
-def _attributes(text: tuple[str, str, str]) -> dict[str, str]:
-    """Attributes of a variable."""
-    return dict(zip(("long_name", "symbol", "units"), text, strict=True))
 
 
 def _listed(found: Found) -> list[PeriodicOrbit]:

@@ -139,8 +139,10 @@ class ShakerAnswer:
         """Why a restitution coefficient is not good enough; empty if it is."""
         no_orbit = [value > self.amplitude for value in self.saddle_node[:2]]
         if any(no_orbit):
-            where = _where(no_orbit)
-            return f"the ball does not bounce, {where}, so that there is no height to compare"
+            return (
+                f"the ball does not bounce, {_where(no_orbit)}, so that there is no height to"
+                " compare"
+            )
         unstable = [value < self.amplitude for value in self.period_doubling[:2]]
         if any(unstable):
             return f"the orbit is unstable {_where(unstable)}, so that the height means nothing"
@@ -170,16 +172,14 @@ class ShakerAnswer:
         return "\n".join([*lines, "", *self._sentences()])
 
     def _sentences(self) -> list[str]:
-        duration = in_words(self.contact_duration, "s")
-        share = self.contact_duration * self.frequency
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
-        tolerance = f"{100 * self.tolerance:.3g}%"
         sentences = [
             f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
             f" with an acceleration of Λ = {self.amplitude:.4g} times gravity."
-            f" A contact lasts {duration}, {share:.2%} of a period.",
+            f" A contact lasts {in_words(self.contact_duration, 's')},"
+            f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
         if self.bounces:
@@ -189,18 +189,22 @@ class ShakerAnswer:
             by_law = self.max_height.by_law / self.max_height.by_restitution - 1
             sentences.append(
                 f"Its greatest height is {100 * abs(self.error):.3g}% {lower} than with a"
-                f" restitution coefficient, {beyond} the tolerance of {tolerance};"
+                f" restitution coefficient, {beyond} the tolerance of {100 * self.tolerance:.3g}%;"
                 f" the error law has {100 * by_law:+.3g}%."
             )
             if self.longest_contact > 0:
-                longest = in_words(self.longest_contact, "s")
-                sentences.append(f"Contacts of up to {longest} are within this tolerance.")
+                sentences.append(
+                    f"Contacts of up to {in_words(self.longest_contact, 's')} are within this"
+                    " tolerance."
+                )
         if self.amplitude < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
         if begun == 0 or doubled == 2:
-            question = "Whether a restitution coefficient is good enough has no answer"
-            return [*sentences, f"{question}: {reason}."]
+            return [
+                *sentences,
+                f"Whether a restitution coefficient is good enough has no answer: {reason}.",
+            ]
         verdict = f"is not good enough: {reason}" if reason else "is good enough"
         return [*sentences, f"A restitution coefficient {verdict}."]
 
@@ -368,11 +372,10 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
         )
     longest = np.nan
     # Of heights of unstable orbits and below a saddle-node nothing is said.
-    stable = all(
+    if all(
         values["saddle_node"] <= amplitude <= values["period_doubling"]
         for values in (simple, exact)
-    )
-    if stable:
+    ):
         low = duration / np.pi
         threshold = error_thresholds(
             contacts,

@@ -364,12 +364,8 @@ def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
         raise ValueError("velocity, relative_velocity: at most one of them may be given")
     velocity = -np.pi if velocity is None else velocity
     name = "velocity" if absolute else "relative_velocity"
-    given = {
-        "amplitude": amplitude,
-        "phase": phase,
-        name: velocity if absolute else relative_velocity,
-    }
-    grid, ball, (amplitude, phase, value) = grid_of(ball, **given)
+    given = {name: velocity if absolute else relative_velocity}
+    grid, ball, (amplitude, phase, value) = grid_of(ball, amplitude=amplitude, phase=phase, **given)
     if (amplitude < 0).any():
         raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
     speed = amplitude * np.cos(phase) * absolute - value
@@ -559,8 +555,9 @@ def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
     >>> found.ball.sel(time=0).values.tolist()
     [2.0, 8.0]
     """
-    given = {"height": height, "amplitude": amplitude, "phase": phase}
-    grid, ball, (height, amplitude, phase) = grid_of(ball, **given)
+    grid, ball, (height, amplitude, phase) = grid_of(
+        ball, height=height, amplitude=amplitude, phase=phase
+    )
     gap = height - amplitude * np.sin(phase)
     if (gap < 0).any():
         raise ValueError(f"height = {height[np.argmin(gap)]:g}: is below the table")

@@ -161,8 +161,8 @@ def whole_number(name, value, least=1):
     return int(number)
 
 
-def together(named):
-    """Arrays of one shape from pairs of a name and an array; ValueError if there are none."""
+def broadcast_named(named):
+    """Pairs of a name and an array as arrays of one shape; a ValueError names those that differ."""
     named = list(named)
     try:
         return np.broadcast_arrays(*(x for _, x in named))
@@ -443,7 +443,7 @@ class SpringDamper(Ball):
         else:
             zeta = checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
             object.__setattr__(self, "damping_ratio", zeta)
-        together(self.parameters.items())
+        broadcast_named(self.parameters.items())
 
     def at(self, **values):
         """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""

@@ -201,9 +201,7 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
-            "apparent_restitution": loaded
-            * load
-            / (impact.speed * reference["apparent_restitution"]),
+            "apparent_restitution": loaded * load / (r * impact.speed),
             "saddle_node": np.divide(-shift, reference["saddle_node"]),
             "period_doubling": doubling / reference["period_doubling"] ** 2,
         }

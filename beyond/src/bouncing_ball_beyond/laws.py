@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
 
-from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief, together
+from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief, broadcast_named
 from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
@@ -336,7 +336,7 @@ def check_force(law):
     analytic, nor over a kink. Of a row of balls those with an extreme parameter are checked.
     """
     # A force may have no parameters at all.
-    arrays = together([*law.values.items(), ("", 0.0)])
+    arrays = broadcast_named([*law.values.items(), ("", 0.0)])
     rows = np.stack([np.ravel(np.real(x)) for x in arrays], axis=-1)
     for row in np.unique(np.concatenate([rows.argmin(axis=0), rows.argmax(axis=0)])):
         given = dict(zip(law.values, rows[row, :-1], strict=True))

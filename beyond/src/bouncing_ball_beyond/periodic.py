@@ -14,9 +14,9 @@ from bouncing_ball_beyond.balls import (
     Corrected,
     Rigid,
     brief,
+    broadcast_named,
     check_ball,
     checked,
-    together,
     whole_number,
 )
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
@@ -335,7 +335,7 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
     """A ball and further numbers as rows of one length, and the shape which these had."""
     check_ball(ball)
     fields = ball.parameters
-    broadcast = together([*fields.items(), *others.items()])
+    broadcast = broadcast_named([*fields.items(), *others.items()])
     shape = broadcast[0].shape if broadcast else ()
     arrays = [np.array(each).reshape(-1) for each in broadcast]
     names = list(fields)

@@ -87,11 +87,17 @@ class Law:
         return False
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
-        """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s."""
+        """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s.
+
+        A contact that a solver gives has none: it is stepped by `OfSolver`.
+        """
         raise NotImplementedError(f"a force of {type(self).__name__}")
 
     def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
-        """Return v⁺ of an implicit step from z, if v is the velocity without the contact."""
+        """Return v⁺ of an implicit step from z, if v is the velocity without the contact.
+
+        The laws of engines that take explicit steps have none.
+        """
         raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:

@@ -37,10 +37,6 @@ def test_everything_in_json(typed):
     assert len(found["laws"]) == 3 and "changeDynamics" in found["design"]["snippet"]
 
 
-def test_a_cor_is_a_restitution(typed):
-    assert "restitution 0.8." in typed('design --mass "50 g" --cor 0.8')[1]
-
-
 def test_a_fit_names_its_own_options(typed):
     text = typed("fit croquet --engine mujoco")[1]
     named = set(re.findall(r"--[a-z-]+", text))

@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from bouncing_ball_contacts import Bounce, Refused, design, diagnose
+from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM, UNDISTURBED
 
 KILO = dict(mass="1 kg", radius="10 cm")
@@ -436,6 +436,39 @@ def test_the_step_is_needed():
         asked(0.8, "lammps", {"kn": 1e5, "gamma_n": 2}, None)
     with pytest.raises(Refused, match="not both"):
         asked(0.8, "drake", {}, "1 ms", one_body=True, other={"relaxation_time": 0.1})
+
+
+def test_what_would_be_ignored_is_refused():
+    """The other body of a pair counted for nothing, and a step for an error-controlled solver."""
+    with pytest.raises(Refused, match="sets the contact of a pair"):
+        asked(None, "lammps", {"kn": 1e5, "gamma_n": 2}, "1 ms", other={"kn": 2e5, "gamma_n": 2})
+    impact = {"stiffness": 1e6, "damping": 10, "penetration_depth": 1e-4}
+    with pytest.raises(Refused, match="chooses its steps itself"):
+        asked(None, "adams", impact, "1 ms")
+    # These were a traceback and a warning of NumPy.
+    for engine, name in (("genesis", "dampratio"), ("adams", "penetration_depth")):
+        numbers = dict.fromkeys(ENGINES[engine].rules, 1) | {name: 0}
+        with pytest.raises(Refused, match=f"{name} = 0 is not computed"):
+            asked(None, engine, numbers, "1 ms" if engine == "genesis" else None)
+
+
+def test_an_undamped_contact_has_the_limit_one_in_every_engine():
+    """Of implicit engines it was 0.995, which are the steps and not the limit."""
+    spring = {"contactStiffness": 1e6, "contactDamping": 0, **UNDISTURBED}
+    assert asked(None, "pybullet", spring, "1 ms").limit == pytest.approx(1, abs=1e-4)
+    relaxed = {"point_contact_stiffness": 1e6, "relaxation_time": 0}
+    assert asked(None, "drake", relaxed, "1 ms").limit == pytest.approx(1, abs=1e-4)
+
+
+def test_what_changes_r_is_named_with_r_without_it():
+    """ODE's soft_cfm beside a bounce of 0.9, and Genesis' time constant that it raises."""
+    found = asked(None, "ode", {"bounce": 0.9, "soft_cfm": 1e-3}, "10 ms")
+    hard = asked(None, "ode", {"bounce": 0.9}, "10 ms").outcome.restitution[1]
+    r = found.outcome.restitution[1]
+    said = f"soft_cfm = 0.001 lowers r from {hard:.3f} to {r:.3f}; designs have 1e-10"
+    assert said in found.reasons
+    raised = asked(None, "genesis", {"timeconst": 1e-5, "dampratio": 1}, "1 ms")
+    assert any("1e-05 s to 0.002 s, two steps" in reason for reason in raised.reasons)
 
 
 def test_an_engine_without_numbers_per_unit_of_mass_has_no_hint_of_them():

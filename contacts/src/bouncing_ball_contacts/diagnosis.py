@@ -130,8 +130,7 @@ class Contact:
         """Return the contact with another number for the damper of the first body."""
         number: Any = value
         if self.damper == "solref":
-            first = self.one["solref"][0]
-            number = (first, math.copysign(value, first))
+            number = (self.one["solref"][0], math.copysign(value, self.one["solref"][0]))
         return replace(self, one={**self.one, self.damper: number})
 
 
@@ -255,6 +254,8 @@ def diagnose(
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
     if not row.fixed_steps and time_step is not None:
         raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
+    if row.sets_pair and (one_body or other):
+        raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
     if one_body and other:
         raise Refused("give either the parameters of the other body or --one-body, not both")
     given = _given(row, parameters or {})
@@ -284,8 +285,7 @@ def diagnose(
         change=None,
     )
     reasons = [*_causes(contact, found), *_facts(contact, found)]
-    wanted = bounce.restitution
-    if wanted is None or found.outcome.deviation(wanted) <= TOLERANCE:
+    if bounce.restitution is None or found.outcome.deviation(bounce.restitution) <= TOLERANCE:
         return replace(found, reasons=tuple(reasons))
     reasons += _guesses(contact, found)
     change = _least_change(contact)
@@ -334,8 +334,9 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
 def _unknown(engine: Engine, typed: str) -> str:
     """Return what is said of a name that an engine does not have."""
     near = difflib.get_close_matches(typed, engine.rules, 1)
-    hints = [f"did you mean {name}?" for name in near]
-    hints = hints or [f"{row.name} has it" for row in ENGINES.values() if typed in row.rules]
+    hints = [f"did you mean {name}?" for name in near] or [
+        f"{row.name} has it" for row in ENGINES.values() if typed in row.rules
+    ]
     return "; ".join([f"{engine.name} has no {typed!r}: it has {', '.join(engine.rules)}", *hints])
 
 
@@ -359,7 +360,7 @@ def _vector(name: str, value: Any) -> tuple[float, ...]:
     """Return numbers that may be a text, with brackets, commas or quotes."""
     if isinstance(value, str):
         value = re.findall(r"[^\s,()\[\]\"']+", value)
-    numbers = tuple(in_si(name, each, "") for each in np.atleast_1d(value))
+    numbers = tuple(in_si(name, each, "") for each in np.atleast_1d(np.asarray(value, object)))
     least, most, words = _VECTORS[name]
     if not least <= len(numbers) <= most:
         raise Refused(f"{name} has {words}, not {len(numbers)}")
@@ -411,8 +412,8 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     scheme = contact.problem.engine.scheme
     explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     speed = contact.problem.bounce.impact_speed
-    step = law.duration(speed) / _SHORT
-    return float(drop(law, explicit, step, speed, gravity, exact(offsets(5))).mean)
+    step = np.minimum(law.duration(speed) / _SHORT, contact.step)
+    return float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
 
 
 def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
@@ -494,18 +495,20 @@ def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
     """Return what the numbers may have been meant to be, where r would then be the wanted one."""
     row = contact.problem.engine
     wanted = found.bounce.restitution
-    per_mass = [name for name in row.names if row.units.get(name) in ("1/s", "1/s^2")]
     # The numbers of solref are 1/s² and 1/s, if they are not a time constant and a ratio.
-    if contact.damper == "solref" and not contact.is_ratio:
-        per_mass = ["solref"]
-    divided = {name: np.divide(contact.one[name], found.bounce.mass) for name in per_mass}
+    units_of = {**row.units, "solref": "" if contact.is_ratio else "1/s"}
+    divided = {
+        name: np.divide(contact.one[name], found.bounce.mass)
+        for name in row.names
+        if units_of.get(name) in ("1/s", "1/s^2")
+    }
     r = replace(contact, one={**contact.one, **divided}).outcome().restitution[1]
     ratio = min(found.damping_ratio, 1 - 1e-9)
     pulled = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
     guesses = [
         (
-            per_mass and abs(r - wanted) < TOLERANCE,
-            f"{' and '.join(per_mass)} is per unit of mass in {row.name}: divided by "
+            abs(r - wanted) < TOLERANCE <= abs(found.outcome.restitution[1] - wanted),
+            f"{' and '.join(divided)} is per unit of mass in {row.name}: divided by "
             f"{found.bounce.mass:g} kg, r is {r:.3f}",
         ),
         (
@@ -524,12 +527,8 @@ def _nearest(contact: Contact) -> Change:
     It is found by bisection: a damping lowers r, and a number raises it.
     """
     raises = contact.damper in _SHARES
-    low = 1e-12
-    high = 1.0 if raises else 1e12
     # Ratios beyond these are springs that throw the body away, or hardly act.
-    if contact.is_ratio:
-        low = 1e-3
-        high = 1e2
+    low, high = (1e-3, 1e2) if contact.is_ratio else (1e-12, 1.0 if raises else 1e12)
     while high > (1 + 1e-4) * low:
         middle = math.sqrt(low * high)
         tried = contact.damped(middle)

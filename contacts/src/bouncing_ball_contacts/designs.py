@@ -308,8 +308,11 @@ class Outcome:
 
     @property
     def around(self) -> str:
-        """r as it is printed: mean ± largest distance from it."""
-        return f"{self.restitution[1]:.3f} ± {self.error:.3f}"
+        """r as it is printed: mean ± largest distance from it, or the range if r reaches 0."""
+        low, mean, high = self.restitution
+        if self.error > mean:
+            return f"{low:.3f} to {high:.3f}"
+        return f"{mean:.3f} ± {self.error:.3f}"
 
 
 @dataclass(frozen=True)
@@ -345,6 +348,14 @@ class Problem:
         """The depth in m from which on the engine loses the body, or two bodies change places."""
         of_engine = self.engine.deepest * self.bounce.size
         return min(of_engine, self.bounce.size + self.bounce.other_size)
+
+    @property
+    def lost(self) -> str:
+        """What happens beyond the deepest depth."""
+        deepest = show(self.deepest, "m")
+        if self.bounce.other_mass is None:
+            return f"{self.engine.name} loses a body that sinks more than {deepest}"
+        return f"bodies that sink more than {deepest} pass through each other"
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
@@ -722,15 +733,6 @@ def _too_long(
     return found
 
 
-def _lost(problem: Problem) -> str:
-    """Return what happens to a body that sinks too deep."""
-    if problem.bounce.other_mass is None:
-        return (
-            f"{problem.engine.name} loses a body that sinks more than {show(problem.deepest, 'm')}"
-        )
-    return f"bodies that sink more than {show(problem.deepest, 'm')} pass through each other"
-
-
 def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> list[str]:
     """Return what a user of a row has to know."""
     bounce = problem.bounce
@@ -754,7 +756,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
         found.append(f"r is up to {high:.3f}: at some instants the body gains energy")
     sinks = row.outcome.depth[1]
     if sinks > problem.deepest:
-        found.append(_lost(problem))
+        found.append(problem.lost)
     elif sinks > bounce.size and (bounce.stiffness or bounce.contact_time):
         found.append(f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}")
     if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:

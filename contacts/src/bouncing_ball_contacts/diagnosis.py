@@ -290,7 +290,7 @@ def diagnose(
     reasons += _guesses(contact, found)
     change = _least_change(contact)
     if change is None or change.step != contact.step:
-        reasons.append("; ".join(_at_this_step(contact)))
+        reasons += _at_this_step(contact)
     return replace(found, reasons=tuple(reasons), change=change)
 
 
@@ -476,9 +476,9 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
         ),
         (
             found.outcome.depth[1] > bounce.size,
-            f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}"
-            + (f", where {row.name} loses it" if math.isfinite(row.deepest) else ""),
+            f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
         ),
+        (found.outcome.depth[1] > contact.problem.deepest, contact.problem.lost),
         (
             bounce.load and impedance > _VISIBLE,
             f"with the impedance {impedance:g} a contact feels {1 - impedance:.2g} of gravity; a "
@@ -561,12 +561,12 @@ def _at_this_step(contact: Contact) -> Iterator[str]:
     """Yield that a step does not allow what is wanted, and what is the nearest that it allows."""
     row = contact.problem.engine
     what = row.number if contact.law.is_number else "damping of this contact"
-    yield f"no {what} keeps r within {TOLERANCE:g} at this step: {_nearest(contact)}"
+    yield f"no {what} keeps r within {TOLERANCE:g} at this step; the nearest: {_nearest(contact)}"
     try:
         found = design(contact.problem.bounce, row, contact.step if row.fixed_steps else None)
     except Refused:
         return
-    yield _gives(found.parameters, found.row.step, found.row.outcome)
+    yield f"what a design has: {_gives(found.parameters, found.row.step, found.row.outcome)}"
     if row.number and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
-        yield f"without a spring {_gives(impulse.parameters, impulse.step, impulse.outcome)}"
+        yield f"without a spring: {_gives(impulse.parameters, impulse.step, impulse.outcome)}"

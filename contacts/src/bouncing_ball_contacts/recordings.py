@@ -37,6 +37,7 @@ from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
 
 Lines = NDArray[np.intp]
+_Run = tuple[Array, Lines]
 _Layouts = tuple[tuple[str, tuple[str, ...]], ...]
 
 _USED = ("mass", "diameter", "contact time", "resolution")
@@ -177,8 +178,9 @@ def _sheet(data: bytes) -> str:
         first = min(each for each in names if each.startswith("xl/worksheets/sheet"))
         sheet = ElementTree.fromstring(book.read(first))
         texts = "xl/sharedStrings.xml"
-        items = ElementTree.fromstring(book.read(texts)) if texts in names else []
-        shared = ["".join(item.itertext()) for item in items]
+        shared = []
+        if texts in names:
+            shared = ["".join(each.itertext()) for each in ElementTree.fromstring(book.read(texts))]
     for row in sheet.iterfind(".//{*}row"):
         lines += [""] * (int(row.get("r", "1")) - len(lines))
         for cell in row:
@@ -207,10 +209,9 @@ def _columns_as_text(name: str, columns: Any) -> str:
 
 def _text_of(source: Any) -> tuple[str, str]:
     """Return the name of a source and its text."""
-    if isinstance(source, Mapping):
-        return "columns", _columns_as_text("columns", source)
     if not isinstance(source, str | Path):
-        raise Refused(f"{type(source).__name__} {_NO_RECORDING}")
+        name = "columns" if isinstance(source, Mapping) else type(source).__name__
+        return name, _columns_as_text(name, source)
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
@@ -252,8 +253,7 @@ class _Table:
 
     def refuse(self, is_bad: NDArray[np.bool_], lines: Lines, text: str, *numbers: Array) -> None:
         """Refuse the first number that is bad; the text has places for numbers of that line."""
-        if is_bad.any():
-            i = int(np.argmax(is_bad))
+        for i in np.flatnonzero(is_bad)[:1]:
             said = text.format(*(f"{each[i]:.6g}" for each in numbers))
             raise Refused(f"{self.name}, line {lines[i]}: {said}")
 
@@ -425,58 +425,41 @@ def _check(table: _Table, quantity: str, has_unit: bool, values: Array, lines: L
 # Numbers to series.
 
 
-@dataclass(frozen=True)
-class _Series:
-    """Numbers of all recordings, with their lines; those of one series have the same key."""
-
-    values: Array
-    lines: Lines
-    keys: NDArray[np.intp]
-
-    def steps(self) -> tuple[Array, Array, Lines]:
-        """Return the values before and after each step within a series, and their lines."""
-        same = np.diff(self.keys) == 0
-        return self.values[:-1][same], self.values[1:][same], self.lines[1:][same]
-
-    @property
-    def chains(self) -> tuple[Array, ...]:
-        return tuple(self.values[self.keys == key] for key in np.unique(self.keys))
+def _runs(values: Array, lines: Lines) -> list[_Run]:
+    """Return the numbers between missing ones, with their lines."""
+    pieces = np.ma.clump_unmasked(np.ma.masked_invalid(values))
+    return [(values[piece], lines[piece]) for piece in pieces]
 
 
-def _divided(values: Array, lines: Lines, labels: NDArray[np.intp]) -> _Series:
-    """Return the series of each label, which a missing number divides."""
-    order = np.argsort(labels, kind="stable")
-    is_there = ~np.isnan(values[order])
-    keys = np.cumsum(~is_there | (np.diff(labels[order], prepend=-1) != 0))
-    return _Series(values[order][is_there], lines[order][is_there], keys[is_there])
-
-
-def _labels(table: _Table, roles: dict[str, list[_Column]]) -> NDArray[np.intp]:
-    """Return the number of the recording of each row."""
+def _groups(table: _Table, roles: dict[str, list[_Column]]) -> list[Lines]:
+    """Return the rows of each recording."""
     if "recording" not in roles:
-        return np.zeros(len(table.lines), dtype=int)
+        return [np.arange(len(table.lines))]
     # Below a name empty cells stand for the same.
-    names = itertools.accumulate(roles["recording"][0].texts, lambda name, text: text or name)
-    return np.unique(list(names), return_inverse=True)[1]
+    name = ""
+    names = np.array([name := text or name for text in roles["recording"][0].texts])
+    return [np.flatnonzero(names == name) for name in dict.fromkeys(names)]
 
 
-def _series(table: _Table, columns: list[_Column], labels: NDArray[np.intp]) -> _Series:
+def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[_Run]:
     """Return series that run down columns, or along lines if only those make sense."""
     matrix = np.column_stack([_values(table, each) for each in columns])
-    height, width = matrix.shape
-    rows, places = np.indices(matrix.shape)
-    lines = table.lines[rows.T.ravel()]
-    down = _divided(matrix.T.ravel(), lines, (places * height + labels[rows]).T.ravel())
-    along = _divided(matrix.ravel(), table.lines[rows.ravel()], rows.ravel())
-    if width == 1:
+    lines = np.broadcast_to(table.lines[:, None], matrix.shape)
+    down = [
+        run
+        for i in range(len(columns))
+        for rows in groups
+        for run in _runs(matrix[rows, i], lines[rows, i])
+    ]
+    if len(columns) == 1:
         return down
-    ways = [along] if height == 1 or columns[0].role != columns[1].role else [down, along]
-    steps = [way.steps() for way in ways]
-    fitting = [way for way, (one, next_, _) in zip(ways, steps, strict=True) if (next_ < one).all()]
+    along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
+    # A drop and its rebounds are in a line.
+    if len(matrix) == 1 or columns[0].role != columns[1].role:
+        return along
+    fitting = [way for way in (down, along) if all((np.diff(x) < 0).all() for x, _ in way)]
     if columns[0].role == "time":
-        rising = [
-            way for way, (one, next_, _) in zip(ways, steps, strict=True) if (one < next_).all()
-        ]
+        rising = [way for way in (down, along) if all((np.diff(x) > 0).all() for x, _ in way)]
         fitting = rising or fitting
     if len(fitting) != 1:
         raise Refused(
@@ -486,34 +469,40 @@ def _series(table: _Table, columns: list[_Column], labels: NDArray[np.intp]) -> 
     return fitting[0]
 
 
-def _of_series(table: _Table, kind: str, columns: list[_Column], series: _Series) -> Recording:
-    """Return the recording of heights, of flights, or of times, which rise."""
-    quantity = "height" if kind == "heights" else "interval"
-    if columns[0].role == "time":
-        before, after, lines = series.steps()
-        if (after >= before).any():
-            table.refuse(after <= before, lines, f"the time is not after {_UNSORTED}")
-            keys = series.keys[1:][np.diff(series.keys) == 0]
-            series = _Series(after - before, lines, keys)
-        _check(table, quantity, bool(columns[0].unit), series.values, series.lines)
+def _flights(table: _Table, runs: list[_Run]) -> list[_Run]:
+    """Return the flights between times; times that fall are flights already."""
+    if all((np.diff(times) < 0).all() for times, _ in runs):
+        return runs
+    flights = [(np.diff(times), lines[1:]) for times, lines in runs]
+    for lasting, lines in flights:
+        table.refuse(lasting <= 0, lines, f"the time is not after {_UNSORTED}")
         # Flights get shorter, even if r is 0.997.
-        half = len(series.values) // 2
-        shortening = series.values[half:].mean() / series.values[:half].mean() if half else 0.0
-        if half >= 10 and shortening > 0.97:
+        half = len(lasting) // 2
+        if half >= 10 and lasting[half:].mean() > 0.97 * lasting[:half].mean():
             raise Refused(
                 f"{table.name}: evenly spaced times are those of samples: of what? write headings "
                 "such as t and y, or time and force"
             )
-    before, after, lines = series.steps()
-    said = (
-        f"a {_PLAUSIBLE[quantity][0]} of {{}} {_SI[quantity]} follows one of {{}} {_SI[quantity]}"
-    )
+    return flights
+
+
+def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recording:
+    """Return the recording of heights, of flights, or of times."""
+    quantity = columns[0].role.split()[0]
+    if quantity == "time":
+        quantity = "interval"
+        runs = _flights(table, runs)
+    said = f"a {_PLAUSIBLE[quantity][0]} of {{}} {_SI[quantity]}"
     grown = (
-        f"{said}: an impact is missing, or another recording begins (give a column 'recording', or "
-        "--leave-out its line)"
+        f"{said} follows one of {{}} {_SI[quantity]}: an impact is missing, or another recording "
+        "begins (give a column 'recording', or --leave-out its line)"
     )
-    table.refuse(after > _GROWTH * before, lines, grown, after, before)
-    return Recording(table.name, kind, series.chains)
+    for values, lines in runs:
+        _check(table, quantity, bool(columns[0].unit), values, lines)
+        is_grown = values[1:] > _GROWTH * values[:-1]
+        table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
+    kind = "heights" if quantity == "height" else "flights"
+    return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
 
 
 def _check_pairs(table: _Table, kind: str, pairs: Array, lines: Lines) -> None:
@@ -557,7 +546,8 @@ def _even(t: Array) -> Array:
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
     digits = next((d for d in range(9) if np.abs(np.round(t, d) - t).max() < 1e-10), 9)
-    return even if np.abs(t - even).max() <= 10.0**-digits else t
+    is_rounded = np.abs(t - even).max() <= 10.0**-digits
+    return np.where(is_rounded, even, t)
 
 
 def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
@@ -636,21 +626,20 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
         raise Refused(f"{name}: no impact between two flights of four positions in the track")
     down, rise, gravities = np.array(list(kept.values())).T
     pairs = np.column_stack([down, rise]) * (STANDARD_GRAVITY / gravities)[:, None]
-    notes = [f"{len(kept)} impacts were found where flights meet; gravity is the scale"]
-    if turn < 0:
-        notes.append("the positions grow downwards, as in a picture: they were turned")
-    gravity = float(gravities.mean())
-    if re.fullmatch("[cm]?m", unit):
-        gravity *= in_si("position", f"1 {unit}", "m")
-        slow = math.sqrt(STANDARD_GRAVITY / gravity)
-        if not 0.5 < slow**2 < 2:
-            notes.append(
-                f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} "
-                "times the true ones, as in slow motion, and so are the speeds, or the heights "
-                "have another unit"
-            )
+    # Without a scale, as of pixels, nothing contradicts gravity.
+    scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
+    gravity = scale * float(gravities.mean())
+    slow = math.sqrt(STANDARD_GRAVITY / gravity)
+    further = {
+        f"{len(kept)} impacts were found where flights meet; gravity is the scale": True,
+        "the positions grow downwards, as in a picture: they were turned": turn < 0,
+        f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
+        "the true ones, as in slow motion, and so are the speeds, or the heights have another "
+        "unit": max(slow, 1 / slow) > math.sqrt(2),
+    }
+    notes = tuple(text for text, holds in further.items() if holds)
     _check_pairs(table, "speeds", pairs, lines[list(kept)])
-    return Recording(name, "speeds", (pairs,), notes=tuple(notes))
+    return Recording(name, "speeds", (pairs,), notes=notes)
 
 
 def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -> Recording:
@@ -667,15 +656,14 @@ def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -
         raise Refused(
             f"{table.name}: {len(firsts)} impacts stand out of the signal: three are needed"
         )
-    starts, ends = [], []
+    starts = []
+    ends = []
     for first, until in itertools.pairwise([*firsts, len(t)]):
         peak = first + int(np.argmax(size[first:until]))
         quiet = np.flatnonzero(size <= max(size[peak] / 20, 4 * noise))
         starts.append(int(quiet[quiet < first].max(initial=-1)) + 1)
         ends.append(int(quiet[quiet > peak].min(initial=len(t) - 1)))
-    touches = _Series(t[starts], lines[starts], np.zeros(len(starts), dtype=int))
-    time = _Column("time", "s", "time", [], t)
-    found = _of_series(table, "flights", [time], touches)
+    found = _of_series(table, columns[:1], [(t[starts], lines[starts])])
     lasts = t[ends] - t[starts]
     # A force that lasts longer rings on.
     shows_contact = columns[1].role == "force" and lasts.max() < 0.1 * found.chains[0].min()
@@ -771,8 +759,8 @@ def read(
     elif kind == "track":
         recording = _of_track(table, columns, is_complete)
     elif kind in ("flights", "heights") or _are_successive(table, columns):
-        series = _series(table, columns, _labels(table, roles))
-        recording = _of_series(table, kind.replace("drops", "heights"), columns, series)
+        runs = _series(table, columns, _groups(table, roles))
+        recording = _of_series(table, columns, runs)
     else:
         recording = _of_pairs(table, kind, columns)
     if not sum(map(len, recording.chains)):
@@ -781,22 +769,19 @@ def read(
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
         durations = np.array([positive("contact time", head["contact time"], "s")])
-    notes = list(recording.notes)
-    if columns[0].role == "time" and "interval" in roles:
-        notes.append("the file has times and intervals: it is read by its times")
     gaps = is_missing & ~np.isin(table.lines, leave_out)
-    if gaps.any():
-        lines = ", ".join(map(str, table.lines[gaps]))
-        divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-        notes.append(f"a number is missing in line {lines}, which is left out{divides}")
+    missing = ", ".join(map(str, table.lines[gaps]))
+    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     unused = [
-        f"{key}: {value}"
+        repr(f"{key}: {value}")
         for key, value in head.items()
         if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
-    if unused:
-        said = ", ".join(map(repr, unused))
-        notes.append(f"the head has {said}, but only {', '.join(_USED)} are used")
-    return replace(
-        recording, head=head, uncertainty=uncertainty, durations=durations, notes=tuple(notes)
-    )
+    has_both = columns[0].role == "time" and "interval" in roles
+    further = {
+        "the file has times and intervals: it is read by its times": has_both,
+        f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
+        f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
+    }
+    notes = recording.notes + tuple(text for text, holds in further.items() if holds)
+    return replace(recording, head=head, uncertainty=uncertainty, durations=durations, notes=notes)

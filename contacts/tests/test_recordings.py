@@ -484,6 +484,12 @@ def test_a_line_that_is_left_out_divides_a_named_recording(tmp_path):
     assert [list(each) for each in chains] == [[1, 0.7], [0.35]]
 
 
+def test_a_torn_line_divides_the_recording_in_which_it_is(tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text("recording,height\n1,1\n1,0.7\nx,x\n1,0.35\n1,0.25\n2,1\n2,0.7")
+    assert [list(each) for each in read(path).chains] == [[1, 0.7], [0.35, 0.25], [1, 0.7]]
+
+
 def test_headings_in_quotes_are_read_between_spaces(tmp_path):
     """The number of the line was taken for a time."""
     path = tmp_path / "recording.csv"

@@ -431,14 +431,16 @@ def _runs(values: Array, lines: Lines) -> list[_Run]:
     return [(values[piece], lines[piece]) for piece in pieces]
 
 
-def _groups(table: _Table, roles: dict[str, list[_Column]]) -> list[Lines]:
+def _groups(roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
     """Return the rows of each recording."""
     if "recording" not in roles:
-        return [np.arange(len(table.lines))]
-    # Below a name empty cells stand for the same.
+        return [np.arange(len(is_missing))]
+    texts = roles["recording"][0].texts
+    # A name that is empty, or never beside a number, is that of the row above.
+    known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
     name = ""
-    names = np.array([name := text or name for text in roles["recording"][0].texts])
-    return [np.flatnonzero(names == name) for name in dict.fromkeys(names)]
+    names = np.array([name := text if text in known else name for text in texts])
+    return [np.flatnonzero(names == each) for each in dict.fromkeys(names)]
 
 
 def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[_Run]:
@@ -759,7 +761,7 @@ def read(
     elif kind == "track":
         recording = _of_track(table, columns, is_complete)
     elif kind in ("flights", "heights") or _are_successive(table, columns):
-        runs = _series(table, columns, _groups(table, roles))
+        runs = _series(table, columns, _groups(roles, is_missing))
         recording = _of_series(table, columns, runs)
     else:
         recording = _of_pairs(table, kind, columns)

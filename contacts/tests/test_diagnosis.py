@@ -92,7 +92,8 @@ def test_a_least_change_keeps_the_tolerance_if_need_be_at_a_shorter_step():
     reason = "; ".join(found.reasons)
     assert "damping of this contact keeps r within 0.02 at this step; the nearest: solref" in reason
     spring = design(found.bounce, "mujoco", "2 ms")
-    assert f"what a design has: {_written(spring.parameters)} at a step of 2 ms gives r = 0.500" in reason
+    written = _written(spring.parameters)
+    assert f"what a design has: {written} at a step of 2 ms gives r = 0.500" in reason
     same = asked(0.5, "mujoco", {"solref": "-1e4 -50"}, "1 ms")
     assert same.change.step == same.time_step and "keeps r within" not in str(same)
     assert "With --restitution there is a least change" in str(asked(None, "mujoco", {}, "2 ms"))

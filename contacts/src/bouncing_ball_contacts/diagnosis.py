@@ -377,6 +377,8 @@ def _reasons(
         yield problem.engine.caution
     if problem.engine.floor and bounce.other_mass is None:
         yield problem.engine.floor
+    if isinstance(law, ContactJoint) and law.fastest < bounce.impact_speed:
+        yield f"max_vel caps the rebound at {law.fastest:g} m/s; designs lift it"
     if isinstance(law, Solved) and law.is_number:
         number = problem.engine.number
         rule = problem.engine.rules[number].text
@@ -399,8 +401,6 @@ def _reasons(
                 f"PyBullet sees the surface {show(law.ahead, 'm')} ahead: with "
                 f"contactProcessingThreshold = 0 r is {touching:.3f}"
             )
-    if isinstance(law, ContactJoint) and law.fastest < bounce.impact_speed:
-        yield f"max_vel caps the rebound from a spring at {law.fastest:g} m/s; designs lift it"
     steps = float(law.duration(bounce.impact_speed)) / step
     if high > 1.02:
         yield f"unstable: a contact takes {steps:.2g} steps, and the body leaves faster than before"

@@ -463,6 +463,7 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
         damping=linear.damping,
         threshold=p["threshold"],
         fastest=p["max_vel"],
+        step=at.step,
     )
 
 
@@ -766,7 +767,7 @@ ENGINES: Mapping[str, Engine] = {
                 "kd": SUM,
                 "restitution_coefficient": LEAST,
                 "threshold": LEAST,
-                "max_vel": LEAST,
+                "max_vel": PAIR,
             },
             defaults={
                 "kp": 1e12,
@@ -777,10 +778,11 @@ ENGINES: Mapping[str, Engine] = {
             },
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
-                "The snippet lifts max_vel, which limits the correction",
+                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default",
             ),
             number="restitution_coefficient",
-            undisturbed={"threshold": 0.0},
+            # With such a damper the default spring takes nothing of the penetration back.
+            undisturbed={"threshold": 0.0, "max_vel": 1000.0, "kd": 1e12},
         ),
         Engine(
             name="chrono",

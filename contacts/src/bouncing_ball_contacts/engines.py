@@ -734,9 +734,9 @@ ENGINES: Mapping[str, Engine] = {
             scheme=_VERLET,
             **_forces(("stiffness", "dissipation")),
             meaning="stiffness = k, dissipation = c",
+            ran="MercuryDPM 1.0",
             rules={"stiffness": PAIR, "dissipation": PAIR},
             sets_pair=True,
-            deepest=1.0,
         ),
         Engine(
             name="ode",
@@ -762,6 +762,7 @@ ENGINES: Mapping[str, Engine] = {
             read=_read_gazebo,
             units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
+            ran="the ODE of Gazebo 11.10.2",
             rules={
                 "kp": SERIES,
                 "kd": SUM,
@@ -789,6 +790,7 @@ ENGINES: Mapping[str, Engine] = {
             scheme=SemiImplicit(),
             **_forces(("kn", "gn"), per_mass=True),
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
+            ran="Chrono 10.0.0",
             rules={"kn": MEAN, "gn": MEAN},
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
             floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "

@@ -71,7 +71,7 @@ def test_every_restitution_is_reached(name, r):
     """e⁻² = 0.135 is where a damping ratio of 1 is passed."""
     found = design(Bounce(mass="1 kg", restitution=r, radius="5 cm"), name)
     mean = found.row.outcome.restitution[1]
-    assert mean == pytest.approx(max(r, 0.01), abs=0.015)
+    assert mean == pytest.approx(r, abs=0.02)
 
 
 def test_the_stiffest_contact_within_the_tolerance_is_taken():
@@ -461,3 +461,36 @@ def test_names_of_engines_are_forgiving():
 def test_an_engine_of_the_table_stands_for_its_name():
     wanted = Bounce(mass="50 g", restitution=0.8)
     assert design(wanted, ENGINES["generic"]).engine == "generic"
+
+
+@pytest.mark.parametrize("name", ["mujoco", "pybullet", "drake", "lammps", "newton"])
+def test_no_rebound_needs_no_short_step(name):
+    """It was said that no spring works at 2 ms, and a step of 34 µs left r = 0.014 ± 0.016."""
+    foot = Bounce(mass="40 kg", restitution=0, points=4, radius="3 cm", speed="1 m/s")
+    found = design(foot, name, "2 ms")
+    assert found.chosen == YOURS
+    assert found.row.outcome.restitution[2] < 0.02
+    assert found.row.outcome.depth[1] <= foot.limit
+    # A crate dropped from 1 m moves by nine tenths of the limit in a step.
+    high = design(Bounce(mass="1 kg", restitution=0, radius="5 cm"), name, "1 ms")
+    assert high.row.outcome.restitution[2] < 0.02
+
+
+@pytest.mark.parametrize("name", ["mujoco", "pybullet", "drake", "ode", "physx"])
+@pytest.mark.parametrize("masses", [("170 g", "170 g"), ("170 g", "20 g")])
+def test_two_free_bodies_do_not_pass_through_each_other(name, masses):
+    """They were designed to sink 369 mm into each other, and parted on the wrong sides."""
+    mass, other = masses
+    size = dict(radius="28.5 mm", speed="2 m/s")
+    pair = Bounce(mass=mass, other_mass=other, restitution=0.95, **size)
+    found = design(pair, name, "1/120")
+    both = 0.0285 * (1 + (float(other.split()[0]) / 170) ** (1 / 3))
+    depths = [row.outcome.depth[1] for row in found.rows.values()]
+    assert max(depths) < both
+    assert YOURS in found.rows or "no spring works" in found.notes[0]
+
+
+def test_a_given_contact_through_which_bodies_pass_is_said():
+    pair = dict(mass="170 g", other_mass="170 g", restitution=0.9, speed="2 m/s", radius="3 cm")
+    found = design(Bounce(**pair, stiffness="50 N/m"), "pybullet")
+    assert "bodies that sink more than 60 mm pass through each other" in found.notes

@@ -280,7 +280,7 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("interval [s]\n0.5\n0.4\n#\n0.45", "line 5: a flight of 0.45 s follows one of 0.4 s"),
         ("time,height\n0.1,0.5\n0.2,0.7\n0.3,0.6", "a track of 3 positions is too short"),
         ("height [cm]\n50\n-4", "line 3: a height of -0.04 m is not positive"),
-        ("speed,COR\n1,81", "line 2: .* per cent"),
+        ("speed,COR\n1,81", "line 2: .* is it in %"),
         ("speed,COR,std (cm)\n1,0.8,0.1", "std.*does not fit"),
         ("speed,COR\n1,1.04\n2,1.041\n3,1.04\n4,1.041", "above 1 by more than its error"),
         ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
@@ -289,8 +289,8 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("# mass: 58\n# diameter: 67 mm\ntime [s]\n" + column(TIMES), "is a unit missing"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
         ("v_in,v_out\n400,200\n300,200", "is it in cm/s"),
-        ("speed,COR\n1,1.5", "above 1"),
-        ("drop [m],rebound [m]\n0.5,0", "not both positive"),
+        ("speed,COR\n1,1.5", "restitution coefficient of 1.5"),
+        ("drop [m],rebound [m]\n0.5,0", "line 2: a height of 0 m is not positive"),
         ("drop [m],rebound [m]\n0.5,0.7", "line 2"),
         ("speed,COR,std\n1,0.8,0.1\n2,0.8,", "each impact needs an uncertainty"),
         ("time [s]\n0.1\n0.9", "no impact lies between"),
@@ -422,3 +422,76 @@ def test_an_empty_line_divides_a_series(tmp_path):
     path.write_text("time [s]\n\n0.1\n\n0.9\n\n1.5\n\n1.95\n\n")
     assert list(read(path).chains[0]) == pytest.approx([0.8, 0.6, 0.45])
     assert not read(path).notes
+
+
+def test_a_ball_that_is_held_and_lies_at_last_is_followed_in_between(tmp_path):
+    """A parabola through the held ball gave r = 0.65 for 0.82; the ball at rest was refused."""
+    held = [f"{t:.4f},{position(0):.5f}" for t in np.arange(-60, 0) / 60]
+    lying = [f"{t:.4f},0" for t in FRAMES[-1] + np.arange(1, 61) / 60]
+    path = tmp_path / "track.csv"
+    path.write_text("\n".join(["t,y", *held, track(), *lying]))
+    found = fit(path)
+    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
+    assert len(found.impacts.speed) == 6
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("time,distance\n" + track(), "evenly spaced times are those of samples"),
+        ("t,x,y,x,y\n0,0,1,0,1\n1,0,2,0,2", "two columns are both taken as position"),
+        ("time A,time B\n0.1,0.2\n0.9,1\n1.5,1.7", "two columns are both taken as time"),
+        ("t,y\n0,2\n" + "\n".join(f"{t + 9:.4f},{position(t):.5f}" for t in FRAMES), "a gap in"),
+        ("v,COR,duration\n1,0.8,5\n2,0.8,4", "a contact time of 5 s .* is it in ms"),
+    ],
+)
+def test_what_would_give_a_wrong_r_is_refused(text, said, tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text(text)
+    with pytest.raises(Refused, match=said):
+        fit(path)
+
+
+def test_an_uncertainty_is_one_of_r(tmp_path):
+    """It was 100 % of an r in per cent, and an r of the heights beside it."""
+    path = tmp_path / "recording.csv"
+    path.write_text("speed,COR (%),std\n1,80,1\n2,79,1")
+    assert read(path).uncertainty == pytest.approx([0.01, 0.01])
+    path.write_text("drop,rebound,std\n1,0.64,0.01\n0.5,0.32,0.01")
+    assert read(path).uncertainty is None
+
+
+def test_a_name_stands_for_the_empty_cells_below_it(tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text("ball,time\nA,0.1\n,0.9\n\n,1.5\n,2.0\nB,0.2\n,1.0")
+    assert [list(each) for each in read(path).chains] == [
+        pytest.approx([each]) for each in (0.8, 0.5, 0.8)
+    ]
+
+
+def test_kilometres_per_hour_are_not_metres_per_second(tmp_path):
+    """Behind a slash or an underscore they were."""
+    path = tmp_path / "recording.csv"
+    for heading in ("v_in/km/h,v_out/km/h", "v_in_km/h,v_out_km/h", "v_in (km/h),v_out (km/h)"):
+        path.write_text(heading + "\n3.6,2.88\n7.2,5.76")
+        assert read(path).chains[0] == pytest.approx(np.array([[1, 0.8], [2, 1.6]]))
+
+
+def test_a_line_that_is_left_out_divides_a_named_recording(tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text("recording,height\n1,1\n1,0.7\n1,0.5\n1,0.35")
+    chains = read(path, leave_out=(4,)).chains
+    assert [list(each) for each in chains] == [[1, 0.7], [0.35]]
+
+
+def test_a_torn_line_divides_the_recording_in_which_it_is(tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text("recording,height\n1,1\n1,0.7\nx,x\n1,0.35\n1,0.25\n2,1\n2,0.7")
+    assert [list(each) for each in read(path).chains] == [[1, 0.7], [0.35, 0.25], [1, 0.7]]
+
+
+def test_headings_in_quotes_are_read_between_spaces(tmp_path):
+    """The number of the line was taken for a time."""
+    path = tmp_path / "recording.csv"
+    path.write_text('no "flight time/ms"\n1 900\n2 720\n3 576')
+    assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)

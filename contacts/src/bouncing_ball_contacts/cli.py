@@ -16,7 +16,7 @@ from bouncing_ball_contacts.units import Refused
 _DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
-    click.Option(["--restitution", "--cor"], help="√(h′/h) that is wanted, 0 to 1."),
+    click.Option(["--restitution"], help="√(h′/h) that is wanted, 0 to 1."),
     click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),
     click.Option(["--speed"], help="Impact speed, in place of the height."),
     click.Option(["--radius"], help="Radius, or half the height of a box."),

@@ -77,6 +77,8 @@ _AT_STEP = (
 )
 # A solver with error control is as good as this many steps in a contact.
 _CONTROLLED = 1000
+# Ratios of damping for an r of about 0.
+_STRONG = np.geomspace(0.03, 30.0, 40)
 # ln r is found to this error, a tenth of the last printed digit of r.
 _LN_R = 1e-4
 _DIGITS = 6
@@ -238,12 +240,16 @@ class Bounce:
         return "radius" if self.points == 1 else "half height"
 
     @property
-    def reduced_radius(self) -> float:
-        """R of a contact of spheres in m; two free bodies have the same density."""
+    def other_size(self) -> float:
+        """The size of a second free body of the same density in m, infinite of the ground."""
         if self.other_mass is None:
-            return self.size
-        other = self.size * (self.other_mass / self.mass) ** (1 / 3)
-        return self.size * other / (self.size + other)
+            return math.inf
+        return self.size * float(self.other_mass / self.mass) ** (1 / 3)
+
+    @property
+    def reduced_radius(self) -> float:
+        """R of a contact of spheres in m."""
+        return 1 / (1 / self.size + 1 / self.other_size)
 
     @property
     def limit(self) -> float:
@@ -302,8 +308,11 @@ class Outcome:
 
     @property
     def around(self) -> str:
-        """r as it is printed: mean ± largest distance from it."""
-        return f"{self.restitution[1]:.3f} ± {self.error:.3f}"
+        """r as it is printed: mean ± largest distance from it, or the range if r reaches 0."""
+        low, mean, high = self.restitution
+        if self.error > mean:
+            return f"{low:.3f} to {high:.3f}"
+        return f"{mean:.3f} ± {self.error:.3f}"
 
 
 @dataclass(frozen=True)
@@ -333,6 +342,20 @@ class Problem:
     def target(self) -> float:
         """The r that designs aim at."""
         return max(float(self.bounce.restitution), LEAST_RESTITUTION)
+
+    @property
+    def deepest(self) -> float:
+        """The depth in m from which on the engine loses the body, or two bodies change places."""
+        of_engine = self.engine.deepest * self.bounce.size
+        return min(of_engine, self.bounce.size + self.bounce.other_size)
+
+    @property
+    def lost(self) -> str:
+        """What happens beyond the deepest depth."""
+        deepest = show(self.deepest, "m")
+        if self.bounce.other_mass is None:
+            return f"{self.engine.name} loses a body that sinks more than {deepest}"
+        return f"bodies that sink more than {deepest} pass through each other"
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
@@ -381,12 +404,30 @@ class Problem:
         return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
     def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
-        """Return the ratios of damping with which the mean r is the target.
+        """Return the ratios of damping with which the mean r is the wanted one.
 
-        The secant rule in ln r, within a bracket: ln r is nearly linear in the ratio. Where the
-        steps or gravity alone take more, the ratio is 0.
+        If r may be 0 within the tolerance, it is the ratio with the least error among many: a
+        contact that no body leaves does not depend on where in a step it begins, and too much
+        damping throws the body away.
         """
-        goal = math.log(self.target)
+        if self.bounce.restitution > TOLERANCE:
+            return self._ratios_of_mean(depth, step, start)
+        tried = np.broadcast_to(_STRONG, (*np.shape(depth), len(_STRONG)))
+        if self.bounce.restitution >= LEAST_RESTITUTION:
+            mean = self._ratios_of_mean(depth, step, start)
+            tried = np.concatenate([tried, mean[..., None]], axis=-1)
+        law = self.law(np.broadcast_to(depth[..., None], tried.shape), tried)
+        steps = np.broadcast_to(step[..., None], tried.shape)
+        error = self.drops(law, steps).error(self.bounce.restitution)
+        best = np.argmin(error, axis=-1, keepdims=True)
+        return np.take_along_axis(tried, best, axis=-1)[..., 0]
+
+    def _ratios_of_mean(self, depth: Array, step: Array, start: Array | None) -> Array:
+        """Return the ratios by the secant rule in ln r, which is nearly linear in the ratio.
+
+        It stays within a bracket. Where the steps or gravity alone take more, the ratio is 0.
+        """
+        goal = math.log(self.bounce.restitution)
         x = np.full(np.shape(depth), 0.05 - goal / 4) if start is None else start
         low = np.zeros(x.shape)
         high = np.full(x.shape, np.inf)
@@ -473,7 +514,8 @@ def design(
     chosen = WANTED
     keeps = False
     if step is not None:
-        if step <= rows[WANTED].step:
+        # The r of a shorter step is nearer, unless it is about 0.
+        if step <= rows[WANTED].step and bounce.restitution > TOLERANCE:
             yours: Row | None = _kept(
                 problem, kept or bounce.limit, step, is_fixed=kept is not None
             )
@@ -506,7 +548,7 @@ def design(
 def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
     """Return whether a row keeps the tolerance and a limit of the penetration in m."""
     found = row.outcome
-    return found.deviation(problem.target) <= tolerance and found.depth[1] <= limit
+    return found.deviation(problem.bounce.restitution) <= tolerance and found.depth[1] <= limit
 
 
 def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
@@ -562,10 +604,10 @@ def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
             found = problem.drops(problem.law(depth, ratio), step)
             if kept is None:
                 depth = depth * 0.998 * limit / found.depth.max(axis=-1)
-        good = np.flatnonzero(found.error(problem.target) <= tolerance / 2)
+        good = np.flatnonzero(found.error(problem.bounce.restitution) <= tolerance / 2)
         if good.size:
             break
-    best = int(good[0]) if good.size else int(np.argmin(found.error(problem.target)))
+    best = int(good[0]) if good.size else int(np.argmin(found.error(problem.bounce.restitution)))
     step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
     return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
 
@@ -574,7 +616,7 @@ def _kept(problem: Problem, depth: float, step: float, *, is_fixed: bool) -> Row
     """Return the contact at a step that keeps the limit, or that has the depth if it `is_fixed`."""
     limit = problem.bounce.limit
     ratio: Array | None = None
-    for _ in range(8):
+    for _ in range(20):
         ratio = problem.ratios(np.array([depth]), np.array([step]), ratio)
         law = problem.law(np.asarray(depth), ratio[0])
         row = problem.row(law, step)
@@ -603,13 +645,15 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
         for i in dict.fromkeys([*np.flatnonzero(error <= tolerance), np.argmin(error)]):
             row = problem.row(problem.law(depth[i], ratio[i]), step)
             rows.append(row)
-            if row.outcome.deviation(problem.target) <= tolerance:
+            if row.outcome.deviation(problem.bounce.restitution) <= tolerance:
                 before = depth[i - 1] if i else stiffer
                 finer = before and _between(problem, before, depth[i], step, tolerance)
                 return finer or row
         stiffer = depth[-1]
-    nearest = min(rows, key=lambda row: row.outcome.deviation(problem.target), default=None)
-    if nearest is None or nearest.outcome.deviation(problem.target) > 2 * tolerance:
+    nearest = min(
+        rows, key=lambda row: row.outcome.deviation(problem.bounce.restitution), default=None
+    )
+    if nearest is None or nearest.outcome.deviation(problem.bounce.restitution) > 2 * tolerance:
         return None
     return nearest
 
@@ -621,7 +665,7 @@ def _between(
     depth, error, ratio = _tried(problem, np.geomspace(fails, holds, 7)[1:-1], step)
     for i in np.flatnonzero(error <= tolerance):
         row = problem.row(problem.law(depth[i], ratio[i]), step)
-        if row.outcome.deviation(problem.target) <= tolerance:
+        if row.outcome.deviation(problem.bounce.restitution) <= tolerance:
             return row
     return None
 
@@ -632,9 +676,9 @@ def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, A
     ratio = problem.ratios(depth, steps)
     law = problem.law(depth, ratio)
     found = problem.drops(law, steps)
-    seen = found.depth.max(axis=-1) < problem.engine.deepest * problem.bounce.size
+    seen = found.depth.max(axis=-1) < problem.deepest
     seen &= law.rest(problem.bounce.load) < problem.bounce.size
-    return depth[seen], found.error(problem.target)[seen], ratio[seen]
+    return depth[seen], found.error(problem.bounce.restitution)[seen], ratio[seen]
 
 
 def _impulse(problem: Problem, step: float) -> Row:
@@ -663,10 +707,12 @@ def _too_long(
     what = f"at {show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
     way = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
     if YOURS not in rows:
+        depth = f"lies less deep than the {bounce.size_name} of {show(bounce.size, 'm')}"
+        if bounce.other_mass is not None:
+            depth = f"sinks less than {show(problem.deepest, 'm')}"
         return [
             f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
-            f"{2 * tolerance:g} and lies less deep than the {bounce.size_name} of "
-            f"{show(bounce.size, 'm')}, because {way}; {what}"
+            f"{2 * tolerance:g} and {depth}, because {way}; {what}"
         ]
     sinks = rows[YOURS].outcome.depth[1]
     found = []
@@ -676,7 +722,7 @@ def _too_long(
             how = "its centre passes the surface"
         reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
         found.append(f"at your step it sinks {show(sinks, 'm')}, {how}{reason}; {what}")
-    if rows[YOURS].outcome.deviation(problem.target) > tolerance:
+    if rows[YOURS].outcome.deviation(problem.bounce.restitution) > tolerance:
         found.append(f"at your step no spring has r within {tolerance:g}: the nearest one is shown")
     if bounce.penetration is not None or _undamped_depth(problem) is not None:
         other = YOURS if chosen == WANTED else WANTED
@@ -693,15 +739,15 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
     found = []
     law = problem.law_of(row.parameters, row.step)
     low, mean, high = row.outcome.restitution
-    if bounce.restitution < LEAST_RESTITUTION:
+    # Half of the last printed digit.
+    if bounce.restitution < LEAST_RESTITUTION and mean > 5e-4:
         found.append(
             f"r = {bounce.restitution:g}: the damping leaves about {mean:.3f}, by which a body "
             f"rises {mean**2:.1g} of its height"
         )
-    elif is_wanted and row.outcome.deviation(problem.target) > tolerance:
+    elif is_wanted and row.outcome.deviation(problem.bounce.restitution) > tolerance:
         found.append(f"r is {span(low, high)}: no damping of this contact is nearer")
-    # Half of the last printed digit.
-    if float(law.damping) == 0 and mean < problem.target - 5e-4:
+    if float(law.damping) == 0 and mean < bounce.restitution - 5e-4:
         found.append(
             f"this contact has no damping, and r is still {mean:.3f} at most, because the steps "
             "damp by themselves: a shorter step has more"
@@ -709,10 +755,8 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
     if high > 1.0005:
         found.append(f"r is up to {high:.3f}: at some instants the body gains energy")
     sinks = row.outcome.depth[1]
-    if sinks > problem.engine.deepest * bounce.size:
-        found.append(
-            f"{problem.engine.name} loses a body that sinks more than its {bounce.size_name}"
-        )
+    if sinks > problem.deepest:
+        found.append(problem.lost)
     elif sinks > bounce.size and (bounce.stiffness or bounce.contact_time):
         found.append(f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}")
     if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:

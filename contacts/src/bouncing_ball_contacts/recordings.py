@@ -1,109 +1,142 @@
 """Recordings of bounces, as instruments, programs and people write them.
 
-A file is a table with any delimiter and decimal sign, with or without headings, or the first sheet
-of a spreadsheet. Its columns say what was measured: times of impacts or intervals between them,
-heights of a drop and its rebound, speeds before and after, restitution coefficients, positions over
-time, or a signal in which impacts stand out. Lines ``# key: value`` above it name the ball.
+Every source becomes lines of text: those of a file, of the first sheet of a spreadsheet, or of
+columns that are given. The lines are read in four steps.
+
+1. Lines are cells, with any delimiter and decimal sign. Lines ``# key: value`` name the ball.
+2. The heading of a column says its quantity, such as a height, whether that is one before or after
+   an impact, and its unit: by words in five languages, or else by the unit.
+3. The quantities that are there say what was measured: the first of the layouts that they have.
+4. Numbers are grouped into series. A number that is missing divides a series, whether its cell or
+   its line is empty, it is no number, or its line is left out.
+
+Positions over time and signals are samples, of which a missing one does not matter. Numbers that a
+ball cannot have are refused, with their line.
 """
 
-import contextlib
 import csv
+import functools
 import io
+import itertools
 import json
 import math
 import re
+import unicodedata
 import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
-from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
 
-UNITS = {
-    "time": "s",
-    "interval": "s",
-    "drop": "m",
-    "rebound": "m",
-    "average": "m",
-    "height": "m",
-    "in": "m/s",
-    "out": "m/s",
-    "duration": "s",
-    "restitution": "",
-    "uncertainty": "",
-}
-# Words of German, French, Spanish and Italian headings.
-_WORDS = {
-    "rebound": "rück(?:sprung|prall)|abprall|rebond|rebote|rimbalzo",
-    "drop": "fall(?=höhe)|chute|ca[ií]da|caduta"
-    "|(?<=hauteur )initiale|(?<=altura )inicial|(?<=altezza )iniziale",
-    "height": "höhe|hauteur|altura|altezza",
-    "impact": "einfall|aufprall|auftreff|impacto|impatto",
-    "speed": "geschwindigkeit|vitesse|velocidad|velocità",
-    "before": r"\bvor\b|avant|antes|\bprima\b",
-    "after": r"\bnach\b|après|después|\bdopo\b",
-    "restitution": "restitu|stoßzahl",
-    "average": r"mittel(?:wert)?|moyenne|promedio|\bmedia\b",
-    "time": r"\bzeit|\btemps\b|tiempo|\btempo\b",
-}
-# What a heading means: the first pattern that is found in it, in lower case and without units.
-_MEANINGS = (
-    ("other", r"duration.*(uncert|std|error)"),
-    ("uncertainty", r"uncert|std|sigma|error|±|deviation|^u\(?e"),
-    ("duration", r"duration|contact time"),
-    ("restitution", r"\bcor\b|restitution|^e$|^r$"),
-    ("out", r"\b(v|speed|velocity)\b.*\b(out|after|rebound|up|2)\b|^(u|v2|v')$"),
-    ("out", r"(rebound|outgoing|rising|exit)\b.*\b(speed|velocity)"),
-    ("in", r"\b(v|speed|velocity)\b.*\b(in|before|impact|down|1)\b|^(v|v1|speed|velocity)$"),
-    ("out", r"^v ?f$|final\b.*\b(speed|velocity)"),
-    ("in", r"^v ?[0i]$|(impact|incoming|falling|initial)\b.*\b(speed|velocity)"),
-    ("interval", r"interval|flight|bou\w+ time|Δt|delta ?t|^dt$"),
-    ("average", r"^(average|mean)$|\b(average|mean)\b.*bound|bound.*\b(average|mean)\b"),
-    ("rebound", r"rebound|bounce height|bounced|\bh ?([1-9]\d*|after|out|r|f)\b|^h ?['′]"),
-    ("rebound", r"height.*\b(after|end|final|reached)|^(after|end|final|max\w*)\b.*height"),
-    ("drop", r"drop|release|^(initial|start)\b.*height|height.*\b(before|initial|start)"),
-    ("drop", r"\bh ?(0|before|in|i)\b"),
-    ("height", r"height|^h$"),
-    ("recording", r"recording|^run\b|trial|series|ball\b"),
-    ("count", r"number|^(no|nr)\.?$|^n$|^#$|index|^(event|bounce|impact)s?$"),
-    ("time", r"^t ?\d*$|time|second"),
-    ("position", r"^[yz]\b|^(?!x\b).*\bposition\b(?!.*\bx\b)|vertical"),
-    ("force", r"^f[a-z]?$|force|load"),
-    ("signal", r"volt|ampl|sound|accel|pressure|^ch ?\d|audio"),
+Lines = NDArray[np.intp]
+_Run = tuple[Array, Lines]
+_Layouts = tuple[tuple[str, tuple[str, ...]], ...]
+
+_USED = ("mass", "diameter", "contact time", "resolution")
+_HEADINGS = (
+    "write headings such as time, interval, height, drop_height and rebound_height, speed_before "
+    "and speed_after, speed and COR, or t and y"
 )
-_UNIT_ROW = re.compile(
-    r"|s|ms|µs|us|ns|m|cm|mm|m/s|cm/s|m/s²|m/s\^2|n|kn|v|mv|a\.u\.|pa|g|seconds?|volts?"
-)
-_SUGGESTED = (
-    "write headings such as time, interval, height, drop_height and rebound_height, "
-    "speed_before and speed_after, speed and COR, or t and y"
+_NO_RECORDING = (
+    "is no recording: give a file, the name of an experiment, or columns such as "
+    "{'time (s)': [0.45, 1.17, 1.75]}"
 )
 _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
-_HEADS = ("mass", "diameter", "contact time", "resolution")
-_LENGTHS = ("m", "cm", "mm")
-_PIXELS = ("px", "pixel", "pixels")
-_HIGHEST = 100.0
-_HIGHEST_WITHOUT_UNIT = 10.0
-_FASTEST = 100.0
-_LONGEST = 9.0
-# An interval may exceed the one before it by the errors of both.
-_LONGER = 1.02
-# Between two impacts a signal is silent for this time in s.
-_SILENCE = 0.03
-# A contact that lasts longer, in s, is not one of a ball.
-_LONGEST_CONTACT = 0.03
-_SHORTEST_TRACK = 8
-# Heights that contradict gravity by this factor are said so.
-_OFF = 2.0
-# A height that rises by this part of the range belongs to another flight.
-_RISE = 0.03
+_UNSORTED = "the one before: sort the lines, or leave an empty line where another recording begins"
+# A number with or without a unit, as the head of a file may have it.
+_QUANTITY = r"[-+]?\d[\d.,]*\s*[^\s\d]{0,6}"
+# A unit behind a heading without brackets, or in a row of units. Inches are "inch", because "in"
+# is a word.
+_UNIT = (
+    r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch|ft|feet|[cm]?m/s|km/h|mph"
+    r"|px|k?N|m?V|%|-)"
+)
+# The quantity of a heading is that of the first row with which its words agree. Accents
+# are removed, and signs are spaces.
+_QUANTITIES = (
+    ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
+    ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
+    ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
+    ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
+    ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
+    ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
+    ("force", r"force|kraft|^f\b|\bf ?z\b"),
+    ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
+    ("duration", r"duration|dauer|contact|kontakt"),
+    ("speed", r"speed|veloc|geschwindigkeit|vitesse|\bv'?\b|\bv[012if]\b|\bv(in|out|y)\b"),
+    ("height", r"height|altitude|hohe|hauteur|altura|altezza|\bh'?\b|\bh[\dif]\b|\bh ?prime"),
+    ("time", r"time|zeit|temps|tiempo|tempo|\bt ?\d*\b"),
+    ("position", r"position|\by\b|\bpos\b"),
+    ("z", r"\bz\b"),
+    ("recording", r"recording|aufnahme|series|experiment|\b(ball|run|set|trial)\b(?! \d)"),
+)
+# In the same way, whether a height or speed is that before or after an impact.
+_SIDES = (
+    ("before", r"before|avant|antes|prima|\bvor|aufprall"),
+    ("after", r"after|apres|despues|dopo|\bnach|rebound|bounce|final|\bend|\bto\b|rebote|rimbal"),
+    ("after", r"rebond|ruck|prall|reflect|separat|out\b|outgoing|\bup\b|'|prime|\b[hv] ?f|\bv ?2"),
+    ("before", r"drop|fall|initia|inizial|inicial|start|release|original|ausgang|abwurf|einfall"),
+    ("before", r"inciden|approach|impact|\bv?in\b|incoming|\bdown\b|\bfrom\b|caduta|caida|chute"),
+    ("before", r"\b[hv] ?[0i]\b"),
+    ("after", r"average|mean\b|(trial|run|test|measurement) \d"),
+)
+_AVERAGE = r"average|mean\b"
+# These words alone are heights, if no unit says otherwise.
+_HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
+_BY_UNIT = (("speed", "/"), ("time", r"s$|sec|min"), ("height", r"m$|^in|ft|feet|met"))
+_SI = {
+    "time": "s",
+    "interval": "s",
+    "duration": "s",
+    "height": "m",
+    "speed": "m/s",
+    "coefficient": "",
+    "uncertainty": "",
+}
+# What was measured is the first row whose quantities are all there. Pairs come first: a time beside
+# them says nothing more.
+_PAIRS: _Layouts = (
+    ("drops", ("height before", "height after")),
+    ("speeds", ("speed before", "speed after")),
+    ("coefficients", ("speed", "coefficient")),
+    ("coefficients", ("speed before", "coefficient")),
+)
+_SERIES: _Layouts = (
+    ("signal", ("time", "force")),
+    ("signal", ("time", "signal")),
+    ("track", ("time", "position")),
+    ("track", ("time", "z")),
+    ("track", ("time", "height")),
+    ("flights", ("time",)),
+    ("flights", ("interval",)),
+    ("heights", ("height",)),
+)
+# Numbers of a pair that lacks its other half are no series.
+_HALVES = {"height before", "height after", "speed before", "speed after", "coefficient"}
+# Of each quantity: its name, the most that is plausible without a unit and with one, and the unit
+# that was perhaps meant. An error of its reading may let an r exceed 1.
+_PLAUSIBLE = {
+    "interval": ("flight", 9.0, 9.0, "ms"),
+    "height": ("height", 10.0, 100.0, "cm"),
+    "speed": ("speed", 100.0, 100.0, "cm/s"),
+    "coefficient": ("restitution coefficient", 1.05, 1.05, "%"),
+    "uncertainty": ("uncertainty", 1.0, 1.0, "%"),
+    "duration": ("contact time", 1.0, 1.0, "ms"),
+}
+# An error of a reading may let a flight or a height be that of the one before times this.
+_GROWTH = 1.02
+# A signal is quiet for at least this time between impacts, in s.
+_QUIET = 0.03
+# Flights of a track have at least so many positions, without those beside an impact.
+_FEWEST = 4
 
 
 @dataclass(frozen=True)
@@ -131,11 +164,574 @@ class Recording:
 def experiments() -> list[str]:
     """Return the names of the published experiments of the package."""
     folder = files(__package__).joinpath("experiments")
-    return sorted(path.name.removesuffix(".csv") for path in folder.iterdir())
+    return sorted(each.name.removesuffix(".csv") for each in folder.iterdir())
+
+
+# Sources to lines of text.
+
+
+def _sheet(data: bytes) -> str:
+    """Return the first sheet of a spreadsheet with tabs; a row keeps its number."""
+    lines: list[str] = []
+    with zipfile.ZipFile(io.BytesIO(data)) as book:
+        names = book.namelist()
+        first = min(each for each in names if each.startswith("xl/worksheets/sheet"))
+        sheet = ElementTree.fromstring(book.read(first))
+        texts = "xl/sharedStrings.xml"
+        shared = []
+        if texts in names:
+            shared = ["".join(each.itertext()) for each in ElementTree.fromstring(book.read(texts))]
+    for row in sheet.iterfind(".//{*}row"):
+        lines += [""] * (int(row.get("r", "1")) - len(lines))
+        for cell in row:
+            value = cell.findtext("{*}v") or "".join(cell.itertext())
+            text = shared[int(value)] if cell.get("t") == "s" else value
+            # Columns have the letters A to Z, AA and so on.
+            letters = re.sub(r"\d", "", cell.get("r", "A"))
+            column = functools.reduce(lambda n, letter: 26 * n + ord(letter) - 64, letters, 0)
+            tabs = "\t" * (column - 1 - lines[-1].count("\t"))
+            lines[-1] += tabs + " ".join(text.split())
+    return "\n".join(lines)
+
+
+def _columns_as_text(name: str, columns: Any) -> str:
+    """Return columns with their headings as lines with tabs."""
+    values = list(columns.values()) if isinstance(columns, Mapping) else [""]
+    are_lists = all(
+        hasattr(each, "__len__") and not isinstance(each, str | dict) for each in values
+    )
+    if not are_lists or any(np.ndim(cell) for each in values for cell in each if cell is not None):
+        raise Refused(f"{name} {_NO_RECORDING}")
+    rows = itertools.zip_longest(*values)
+    cells = [["" if cell is None else str(cell) for cell in row] for row in [columns, *rows]]
+    return "\n".join(map("\t".join, cells))
+
+
+def _text_of(source: Any) -> tuple[str, str]:
+    """Return the name of a source and its text."""
+    if not isinstance(source, str | Path):
+        name = "columns" if isinstance(source, Mapping) else type(source).__name__
+        return name, _columns_as_text(name, source)
+    path = Path(source)
+    if str(source) in experiments() and not path.exists():
+        path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
+    if path.is_dir() or not path.exists():
+        raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
+    name = Path(source).name
+    data = path.read_bytes()
+    if data.startswith(b"PK"):
+        try:
+            return name, _sheet(data)
+        except (zipfile.BadZipFile, ElementTree.ParseError, LookupError, ValueError):
+            raise Refused(f"{name}: the spreadsheet cannot be read") from None
+    try:
+        text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("latin-1")
+    if "\0" in text:
+        raise Refused(f"{name} is no text and no spreadsheet")
+    if not text.lstrip().startswith(("{", "[")):
+        return name, text
+    try:
+        return name, _columns_as_text(name, json.loads(text))
+    except json.JSONDecodeError:
+        raise Refused(f"{name} {_NO_RECORDING}") from None
+
+
+# Lines to cells.
+
+
+@dataclass(frozen=True)
+class _Table:
+    """Cells below headings, with the numbers of their lines, and what the head says."""
+
+    name: str
+    head: dict[str, str]
+    headings: list[str]
+    cells: list[list[str]]
+    lines: Lines
+
+    def refuse(self, is_bad: NDArray[np.bool_], lines: Lines, text: str, *numbers: Array) -> None:
+        """Refuse the first number that is bad; the text has places for numbers of that line."""
+        for i in np.flatnonzero(is_bad)[:1]:
+            said = text.format(*(f"{each[i]:.6g}" for each in numbers))
+            raise Refused(f"{self.name}, line {lines[i]}: {said}")
+
+
+def _number(text: str) -> float:
+    """Return a number, or seconds of a text such as 1:02.5; NaN if it is neither."""
+    plain = text.strip().replace("−", "-").replace(",", ".")
+    if not re.fullmatch(r"(\d+:){0,2}[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain):
+        return math.nan
+    parts = plain.split(":")
+    return sum(float(part) * 60**power for power, part in enumerate(reversed(parts)))
+
+
+def _split(name: str, lines: list[str]) -> list[list[str]]:
+    """Return the cells of lines, by the sign that divides most of them."""
+    filled = [line for line in lines if line]
+    # A comma that stands in single numbers only is a decimal sign.
+    decimals = r"[-+]?[\d:]*\d,\d+(\s+[-+]?[\d:]*\d,\d+)*"
+    is_decimal = all(re.fullmatch(decimals, line) for line in filled if "," in line)
+    signs = "\t; " if is_decimal else "\t;, "
+    most = [sign for sign in signs if sum(sign in line for line in filled) > len(filled) / 2]
+    sign = next(iter(most), "\t")
+    cells = [next(csv.reader([each], delimiter=sign, skipinitialspace=True), []) for each in lines]
+    unclear = [cell for row in cells for cell in row if re.fullmatch(r"[1-9]\d{0,2},\d{3}", cell)]
+    if unclear and sign == ",":
+        raise Refused(
+            f"{name}: {unclear[0]!r} may have thousands or decimals: write it without a comma"
+        )
+    return cells
+
+
+def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
+    """Return the table of a text, without the cells of lines that are left out."""
+    head: dict[str, str] = {}
+    kept: dict[int, str] = {}
+    for i, line in enumerate(text.rstrip().splitlines(), 1):
+        if named := re.match(r"\s*#\s*([^:=]+?)\s*[:=]\s*(.*\S)", line):
+            key = named[1].lower().replace("_", " ")
+            head[key] = f"{head.get(key, '')} {named[2]}".strip()
+        # Audacity writes frequencies in lines with a backslash.
+        elif not re.match(r"\s*[#\\]", line):
+            kept[i] = line.strip(" ")
+    if not any(kept.values()):
+        raise Refused(f"{name} is empty")
+    cells = _split(name, list(kept.values()))
+    with_numbers = [i for i, row in enumerate(cells) if not np.isnan([*map(_number, row)]).all()]
+    if not with_numbers:
+        raise Refused(f"{name} has no line of numbers; {_TIMES}")
+    above = [row for row in cells[: with_numbers[0]] if any(row)]
+    lines = np.array(list(kept))[with_numbers[0] :]
+    rows = cells[with_numbers[0] :]
+    # An empty line after each line divides nothing.
+    step = 1 if any(any(row) for row in rows[1::2]) else 2
+    rows = rows[::step]
+    lines = lines[::step]
+    if unknown := set(leave_out) - set(lines.tolist()):
+        raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
+    if not above:
+        # One line of numbers is a column.
+        rows = [[cell] for cell in rows[0]] if len(rows) == 1 else rows
+        lines = np.resize(lines, len(rows))
+        numbers = np.array([[_number(cell) for cell in [*row, "", ""][:2]] for row in rows])
+        starts, ends = numbers.T
+        # A label ends before the middle of the time until the next one.
+        are_labels = (ends >= starts) & (ends < np.append((starts[:-1] + starts[1:]) / 2, math.inf))
+        if not (are_labels | np.isnan(ends).all()).all():
+            raise Refused(f"{name}: no bounces in a table without headings: {_HEADINGS}")
+        above = [["time"]]
+    headings = above[-1]
+    if len(above) > 1 and all(re.fullmatch(rf"\W?{_UNIT}?\W?", unit) for unit in headings):
+        headings = [
+            f"{one} ({unit.strip('()[]')})"
+            for one, unit in itertools.zip_longest(*above[-2:], fillvalue="")
+        ]
+    rows = [[] if line in leave_out else row for line, row in zip(lines, rows, strict=True)]
+    width = len(headings)
+    return _Table(name, head, headings, [[*row, *[""] * width][:width] for row in rows], lines)
+
+
+# Headings to quantities.
+
+
+@dataclass(frozen=True)
+class _Column:
+    """A column with its unit, its role, such as "time" or "height before", and its cells."""
+
+    name: str
+    unit: str
+    role: str
+    texts: list[str]
+    numbers: Array
+
+
+def _column(heading: str, texts: list[str]) -> _Column:
+    """Return the column of a heading such as 'h0 (cm)', 'h0/cm', 'h0_cm' or 'h0 in cm'."""
+    parts = (
+        re.fullmatch(r"(.*?)\s*[(\[]([^)\]]*)[)\]]", heading)
+        or re.fullmatch(rf"(.*?)(?:[\s_,]+in)?[\s_,]+({_UNIT})", heading)
+        or re.fullmatch(r"(.*?)\s*/\s*\(?([^)]*)\)?", heading)
+    )
+    name, unit = parts.groups() if parts else (heading, "")
+    # (mm:ss) is no unit, and (-) is that of a number without one.
+    unit = "" if ":" in unit or unit == "-" else unit
+    apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
+    letters = unicodedata.normalize("NFKD", apart).casefold()
+    words = re.sub(
+        r"[^\w'±]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
+    )
+
+    def first(table: Sequence[tuple[str, str]], said: str) -> str:
+        return next((value for value, pattern in table if re.search(pattern, said)), "")
+
+    quantity = first(_QUANTITIES, words)
+    side = first(_SIDES, words)
+    numbers = np.array([_number(text) for text in texts])
+    if not quantity and side:
+        bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
+        quantity = first(_BY_UNIT, unit) or bare
+        # "bounce" above 1, 2, 3 is the number of the bounce.
+        if bare and side == "after" and len(texts) > 1 and (np.diff(numbers) == 1).all():
+            quantity = ""
+    role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
+    return _Column(name, unit, role, texts, numbers)
+
+
+def _columns(table: _Table) -> dict[str, list[_Column]]:
+    """Return the columns by their roles."""
+    roles: dict[str, list[_Column]] = {}
+    for heading, *texts in zip(table.headings, *table.cells, strict=True):
+        column = _column(heading.strip(), texts)
+        roles.setdefault(column.role, []).append(column)
+    for bare in ("height", "speed"):
+        halves = [f"{bare} before", f"{bare} after"]
+        absent = [half for half in halves if half not in roles]
+        # A column without a side is the other half of one that has a side.
+        if len(absent) == 1 and bare in roles:
+            roles[absent[0]] = roles.pop(bare)
+        rebounds = roles.get(halves[1], [])
+        single = [each for each in rebounds if not re.search(_AVERAGE, each.name, re.I)]
+        if single:
+            roles[halves[1]] = single
+    return roles
+
+
+def _values(table: _Table, column: _Column, unit: str = "") -> Array:
+    """Return the numbers of a column in SI units; ``unit`` is that of a heading without one."""
+    quantity = column.role.split()[0]
+    unit = column.unit or unit
+    named = f"{table.name}, column {column.name!r}"
+    scale = in_si(named, f"1 {unit}", _SI[quantity]) if unit else 1.0
+    # The sign of a velocity is its direction.
+    values = scale * (np.abs(column.numbers) if quantity == "speed" else column.numbers)
+    if quantity != "time":
+        _check(table, quantity, bool(unit), values, table.lines)
+    return values
+
+
+def _check(table: _Table, quantity: str, has_unit: bool, values: Array, lines: Lines) -> None:
+    """Refuse values in SI units that no ball has."""
+    what, bare, with_unit, perhaps = _PLAUSIBLE[quantity]
+    said = f"a {what} of {{}} {_SI[quantity]}".strip()
+    most = with_unit if has_unit else bare
+    hint = "" if has_unit else " without a unit"
+    hint += f": is it in {perhaps}? write ({perhaps}) behind the heading"
+    table.refuse(values <= 0, lines, f"{said} is not positive", values)
+    table.refuse(values > most, lines, f"{said}{hint}", values)
+
+
+# Numbers to series.
+
+
+def _runs(values: Array, lines: Lines) -> list[_Run]:
+    """Return the numbers between missing ones, with their lines."""
+    pieces = np.ma.clump_unmasked(np.ma.masked_invalid(values))
+    return [(values[piece], lines[piece]) for piece in pieces]
+
+
+def _groups(roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
+    """Return the rows of each recording."""
+    if "recording" not in roles:
+        return [np.arange(len(is_missing))]
+    texts = roles["recording"][0].texts
+    # A name that is empty, or never beside a number, is that of the row above.
+    known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
+    name = ""
+    names = np.array([name := text if text in known else name for text in texts])
+    return [np.flatnonzero(names == each) for each in dict.fromkeys(names)]
+
+
+def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[_Run]:
+    """Return series that run down columns, or along lines if only those make sense."""
+    matrix = np.column_stack([_values(table, each) for each in columns])
+    lines = np.broadcast_to(table.lines[:, None], matrix.shape)
+    down = [
+        run
+        for i in range(len(columns))
+        for rows in groups
+        for run in _runs(matrix[rows, i], lines[rows, i])
+    ]
+    if len(columns) == 1:
+        return down
+    along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
+    # A drop and its rebounds are in a line.
+    if len(matrix) == 1 or columns[0].role != columns[1].role:
+        return along
+    fitting = [way for way in (down, along) if all((np.diff(x) < 0).all() for x, _ in way)]
+    if columns[0].role == "time":
+        rising = [way for way in (down, along) if all((np.diff(x) > 0).all() for x, _ in way)]
+        fitting = rising or fitting
+    if len(fitting) != 1:
+        raise Refused(
+            f"{table.name}: each line or each column may be a recording: write one below the other "
+            "with an empty line between"
+        )
+    return fitting[0]
+
+
+def _flights(table: _Table, runs: list[_Run]) -> list[_Run]:
+    """Return the flights between times; times that fall are flights already."""
+    if all((np.diff(times) < 0).all() for times, _ in runs):
+        return runs
+    flights = [(np.diff(times), lines[1:]) for times, lines in runs]
+    for lasting, lines in flights:
+        table.refuse(lasting <= 0, lines, f"the time is not after {_UNSORTED}")
+        # Flights get shorter, even if r is 0.997.
+        half = len(lasting) // 2
+        if half >= 10 and lasting[half:].mean() > 0.97 * lasting[:half].mean():
+            raise Refused(
+                f"{table.name}: evenly spaced times are those of samples: of what? write headings "
+                "such as t and y, or time and force"
+            )
+    return flights
+
+
+def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recording:
+    """Return the recording of heights, of flights, or of times."""
+    quantity = columns[0].role.split()[0]
+    if quantity == "time":
+        quantity = "interval"
+        runs = _flights(table, runs)
+    said = f"a {_PLAUSIBLE[quantity][0]} of {{}} {_SI[quantity]}"
+    grown = (
+        f"{said} follows one of {{}} {_SI[quantity]}: an impact is missing, or another recording "
+        "begins (give a column 'recording', or --leave-out its line)"
+    )
+    for values, lines in runs:
+        _check(table, quantity, bool(columns[0].unit), values, lines)
+        is_grown = values[1:] > _GROWTH * values[:-1]
+        table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
+    kind = "heights" if quantity == "height" else "flights"
+    return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
+
+
+def _check_pairs(table: _Table, kind: str, pairs: Array, lines: Lines) -> None:
+    """Refuse pairs of heights or speeds with an r above 1.05."""
+    before, after = pairs.T
+    si = "m" if kind == "drops" else "m/s"
+    most = 1.05**2 if kind == "drops" else 1.05
+    said = f"it rebounds with {{}} {si} from {{}} {si}: is a number wrong, or are the columns "
+    table.refuse(after > most * before, lines, f"{said}exchanged?", after, before)
+
+
+def _of_pairs(table: _Table, kind: str, columns: list[_Column]) -> Recording:
+    """Return the recording of pairs: of the first column with each of the others."""
+    first, *others = (_values(table, each) for each in columns)
+    pairs = np.concatenate([np.column_stack([first, each]) for each in others])
+    lines = np.tile(table.lines, len(others))
+    is_there = ~np.isnan(pairs).any(axis=1)
+    if kind != "coefficients":
+        _check_pairs(table, kind, pairs[is_there], lines[is_there])
+    return Recording(table.name, kind, (pairs[is_there],))
+
+
+def _are_successive(table: _Table, columns: list[_Column]) -> bool:
+    """Return whether heights in lines are those of one ball, and not rebounds of one drop.
+
+    Successive heights fall on: each by more than the square root of the first factor.
+    """
+    h = np.column_stack([each.numbers for each in columns])
+    falls = h[:, 2:] ** 2 * h[:, :1] < h[:, 1:-1] ** 2 * h[:, 1:2]
+    are_falling = falls[~np.isnan(h[:, 2:] * h[:, 1:-1] * h[:, :1])]
+    if are_falling.any() and not are_falling.all():
+        raise Refused(f"{table.name}: some lines fall on, others have rebounds of one drop")
+    return bool(are_falling.any())
+
+
+# Samples to series.
+
+
+def _even(t: Array) -> Array:
+    """Return times of even frames, if the times agree with these but for their last digit."""
+    frames = np.arange(len(t))
+    even = np.polyval(np.polyfit(frames, t, 1), frames)
+    digits = next((d for d in range(9) if np.abs(np.round(t, d) - t).max() < 1e-10), 9)
+    is_rounded = np.abs(t - even).max() <= 10.0**-digits
+    return np.where(is_rounded, even, t)
+
+
+def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
+    """Return the positions of each flight, without those beside impacts, and the impacts."""
+    # Importing it takes longer than all else here.
+    from scipy.signal import find_peaks
+
+    # Third differences of a parabola vanish; those of noise of size 1 have a median of 3.
+    noise = float(np.median(np.abs(np.diff(up, 3)))) / 3
+    bottoms = find_peaks(-up, prominence=max(0.02 * float(np.ptp(up)), 6 * noise))[0].tolist()
+    edges = [-2, *bottoms, len(up) + 1]
+    flights = [np.arange(a + 2, b - 1) for a, b in itertools.pairwise(edges)]
+    if bottoms:
+        # A hand may hold the ball at first, and at last it may lie still: the first flight begins
+        # below 0.9 of its height, and the last one ends below 0.1 of it.
+        fall = up[: bottoms[0]] - up[bottoms[0]]
+        held = np.flatnonzero(fall > 0.9 * fall.max()).max()
+        flights[0] = flights[0][flights[0] > held]
+        rise = up[bottoms[-1] :] - up[bottoms[-1]]
+        top = int(np.argmax(rise))
+        down = np.flatnonzero(rise[top:] < 0.1 * rise[top]).min(initial=len(rise))
+        flights[-1] = flights[-1][flights[-1] < bottoms[-1] + top + down]
+    return flights, bottoms
+
+
+def _impact(t: Array, up: Array, before: Lines, after: Lines) -> tuple[float, float, float] | None:
+    """Return the speeds before and after an impact, and gravity; None if these are no flights.
+
+    Parabolas of one curvature are fitted to both flights; their slopes are those where they meet.
+    """
+    both = np.concatenate([before, after])
+    since = t[both] - t[after].min(initial=math.inf)
+    first = np.isin(both, before)
+    columns = np.column_stack([since**2, first, first * since, ~first, ~first * since])
+    best = np.linalg.lstsq(columns, up[both], rcond=None)[0]
+    bend, start, slope, start_after, slope_after = best
+    meet = (start_after - start) / (slope - slope_after)
+    down = -2 * bend * meet - slope
+    rise = 2 * bend * meet + slope_after
+    miss = math.sqrt(float(np.mean((columns @ best - up[both]) ** 2)))
+    # What misses the positions by more than a twentieth of the height is no flight.
+    is_flight = bend < 0 < rise and miss < 0.05 * min(down, rise) ** 2 / (-4 * bend)
+    return (float(down), float(rise), float(-2 * bend)) if is_flight else None
+
+
+def _samples(
+    table: _Table, columns: list[_Column], rows: NDArray[np.bool_]
+) -> tuple[Array, Array, Lines]:
+    """Return times in s, values as they are written, and lines."""
+    t = _values(table, columns[0])[rows]
+    lines = table.lines[rows]
+    table.refuse(np.diff(t) < 0, lines[1:], f"the time is not after {_UNSORTED}")
+    gap = np.diff(t) > 20 * np.mean(np.diff(t))
+    table.refuse(gap, lines[1:], "a gap in the time: one recording of positions or signals is read")
+    return t, columns[1].numbers[rows], lines
+
+
+def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -> Recording:
+    """Return the speeds at impacts; gravity gives their scale."""
+    name = table.name
+    t, y, lines = _samples(table, columns, rows)
+    unit = columns[1].unit
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(f"{name}: a track of {len(t)} positions is too short")
+    # Impacts bend a track much more than gravity does, and upwards.
+    turn = -1 if np.sum(np.diff(y, 2) ** 3) < 0 else 1
+    flights, bottoms = _flights_of_track(turn * y)
+    even = _even(t)
+    impacts = {
+        bottom: _impact(even, turn * y, before, after)
+        for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True)
+        if min(len(before), len(after)) >= _FEWEST
+    }
+    kept = {bottom: each for bottom, each in impacts.items() if each is not None}
+    if not kept:
+        raise Refused(f"{name}: no impact between two flights of four positions in the track")
+    down, rise, gravities = np.array(list(kept.values())).T
+    pairs = np.column_stack([down, rise]) * (STANDARD_GRAVITY / gravities)[:, None]
+    # Without a scale, as of pixels, nothing contradicts gravity.
+    scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
+    gravity = scale * float(gravities.mean())
+    slow = math.sqrt(STANDARD_GRAVITY / gravity)
+    further = {
+        f"{len(kept)} impacts were found where flights meet; gravity is the scale": True,
+        "the positions grow downwards, as in a picture: they were turned": turn < 0,
+        f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
+        "the true ones, as in slow motion, and so are the speeds, or the heights have another "
+        "unit": max(slow, 1 / slow) > math.sqrt(2),
+    }
+    notes = tuple(text for text, holds in further.items() if holds)
+    _check_pairs(table, "speeds", pairs, lines[list(kept)])
+    return Recording(name, "speeds", (pairs,), notes=notes)
+
+
+def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -> Recording:
+    """Return the flights between impacts that stand out of a signal.
+
+    An impact lasts from where a twentieth of its peak is exceeded until it is no longer.
+    """
+    t, y, lines = _samples(table, columns, rows)
+    size = np.abs(y - np.median(y))
+    noise = 1.5 * float(np.median(size))
+    loud = np.flatnonzero(size > max(0.1 * size.max(), 8 * noise))
+    firsts = loud[np.diff(t[loud], prepend=-math.inf) > _QUIET]
+    if len(firsts) < 3:
+        raise Refused(
+            f"{table.name}: {len(firsts)} impacts stand out of the signal: three are needed"
+        )
+    starts = []
+    ends = []
+    for first, until in itertools.pairwise([*firsts, len(t)]):
+        peak = first + int(np.argmax(size[first:until]))
+        quiet = np.flatnonzero(size <= max(size[peak] / 20, 4 * noise))
+        starts.append(int(quiet[quiet < first].max(initial=-1)) + 1)
+        ends.append(int(quiet[quiet > peak].min(initial=len(t) - 1)))
+    found = _of_series(table, columns[:1], [(t[starts], lines[starts])])
+    lasts = t[ends] - t[starts]
+    # A force that lasts longer rings on.
+    shows_contact = columns[1].role == "force" and lasts.max() < 0.1 * found.chains[0].min()
+    notes = (f"{len(starts)} impacts were found in the signal",)
+    return replace(found, durations=lasts if shows_contact else None, notes=notes)
+
+
+# What was measured.
+
+
+def _layout(
+    table: _Table, roles: dict[str, list[_Column]], intervals: bool
+) -> tuple[str, list[_Column]]:
+    """Return what was measured, and the columns with that."""
+    layouts = _PAIRS if _HALVES & roles.keys() else _PAIRS + _SERIES
+    if intervals:
+        layouts = (("flights", ("interval",)),)
+    found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
+    if found is None:
+        there = ", ".join(re.sub(r"\s*[(\[/].*", "", each) for each in table.headings)
+        wanted = "no column of intervals" if intervals else f"no bounces in {there}"
+        raise Refused(f"{table.name}: {wanted}: {_HEADINGS}; {_TIMES}")
+    kind, needed = found
+    columns = [column for role in needed for column in roles[role]]
+    for role in needed:
+        # Several columns are rebounds of a drop, or numbered ones of several balls.
+        names = {re.sub(r"\d+", "#", each.name) for each in roles[role]}
+        is_series = len(needed) == 1 and len(names) == 1 and "#" in min(names)
+        if len(roles[role]) > 1 and role != "height after" and not is_series:
+            raise Refused(
+                f"{table.name}: two columns are both taken as {role}: leave one out, or {_HEADINGS}"
+            )
+    heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
+    falls = -np.diff(heights)
+    # Tops fall by less and less, and a ball by more and more.
+    are_tops = len(falls) > 1 and falls[-1] < falls[0] and (-falls <= 0.02 * heights[:-1]).all()
+    return (
+        ("heights", columns[1:]) if needed == ("time", "height") and are_tops else (kind, columns)
+    )
+
+
+def _uncertainty_and_durations(
+    table: _Table, roles: dict[str, list[_Column]], columns: list[_Column], rows: NDArray[np.bool_]
+) -> tuple[Array | None, Array | None]:
+    """Return the uncertainties of r and contact times of rows, or the mean of these."""
+    uncertainty = None
+    durations = None
+    if "uncertainty" in roles and columns[-1].role == "coefficient":
+        # Without a unit it has that of the coefficients.
+        found = _values(table, roles["uncertainty"][0], columns[-1].unit)[rows]
+        uncertainty = None if np.isnan(found).all() else found
+        if np.isnan(found).any() and uncertainty is not None:
+            raise Refused(f"{table.name}: each impact needs an uncertainty, or none has one")
+    if "duration" in roles:
+        found = _values(table, roles["duration"][0])[rows]
+        known = found[~np.isnan(found)]
+        is_each = columns[-1].role == "coefficient" and len(known) == len(found)
+        if len(known):
+            durations = known if is_each else known.mean(keepdims=True)
+    return uncertainty, durations
 
 
 def read(
-    source: str | Path | Mapping[str, Any], leave_out: Sequence[int] = (), intervals: bool = False
+    source: str | Path | Mapping[str, Any],
+    leave_out: Sequence[int] = (),
+    intervals: bool = False,
 ) -> Recording:
     """Return the recording of a file, of a published experiment by its name, or of columns.
 
@@ -153,564 +749,41 @@ def read(
     Refused
         If the file has no bounces, or numbers that are no bounces.
     """
-    if not isinstance(source, str | Path):
-        lines = _of_columns(type(source).__name__, source).splitlines()
-        return _interpreted("columns", lines, set(leave_out), intervals)
-    path = Path(source)
-    if str(source) in experiments():
-        path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if not path.exists() or path.is_dir():
-        raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
-    data = path.read_bytes()
-    name = Path(source).name
-    text = _sheet(data) if data.startswith(b"PK") else _decoded(name, data)
-    with contextlib.suppress(json.JSONDecodeError):
-        text = _of_columns(name, json.loads(text))
-    return _interpreted(name, text.splitlines(), set(leave_out), intervals)
-
-
-def _of_columns(name: str, columns: Any) -> str:
-    """Return columns by their headings as lines with tabs."""
-    try:
-        rows = zip_longest(*map(np.asarray, columns.values()), fillvalue="")
-        return "\n".join("\t".join(map(str, row)) for row in (columns, *rows))
-    except (AttributeError, TypeError, ValueError):
-        raise Refused(
-            f"{name} is no recording: give a file, the name of an experiment, or columns such as "
-            "{'time (s)': [0.45, 1.17, 1.75]}"
-        ) from None
-
-
-def _decoded(name: str, data: bytes) -> str:
-    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
-    if b"\0" in data[:4000] and not is_wide:
-        raise Refused(f"{name} is no text and no spreadsheet")
-    with contextlib.suppress(UnicodeDecodeError):
-        return data.decode("utf-16" if is_wide else "utf-8-sig")
-    return data.decode("latin-1")
-
-
-def _sheet(data: bytes) -> str:
-    """Return the first sheet of an xlsx file as lines with tabs."""
-    space = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as book:
-            shared = []
-            if "xl/sharedStrings.xml" in book.namelist():
-                root = ElementTree.fromstring(book.read("xl/sharedStrings.xml"))
-                shared = ["".join(item.itertext()) for item in root.iter(f"{space}si")]
-            sheet = min(name for name in book.namelist() if name.startswith("xl/worksheets/sheet"))
-            rows = ElementTree.fromstring(book.read(sheet)).iter(f"{space}row")
-            lines = []
-            for row in rows:
-                cells: dict[int, str] = {}
-                for cell in row.iter(f"{space}c"):
-                    letters = reversed(re.sub(r"\d", "", cell.get("r", "A")))
-                    place = sum(26**i * (ord(each) - 64) for i, each in enumerate(letters))
-                    text = "".join(cell.itertext())
-                    cells[place] = shared[int(text)] if cell.get("t") == "s" else text
-                lines.append(
-                    "\t".join(cells.get(i, "") for i in range(1, max(cells, default=0) + 1))
-                )
-            return "\n".join(lines)
-    except (zipfile.BadZipFile, ValueError, KeyError, ElementTree.ParseError):
-        raise Refused("the spreadsheet cannot be read: save it as xlsx or as text") from None
-
-
-def _interpreted(name: str, lines: list[str], leave_out: set[int], intervals: bool) -> Recording:
-    head: dict[str, str] = {}
-    body: list[tuple[int, str]] = []
-    for number, line in enumerate(lines, 1):
-        found = re.match(r"\s*#\s*([\w ]+?)\s*[:=]\s*(.*?)\s*$", line)
-        if found:
-            key = found[1].lower().replace("_", " ")
-            head[key] = f"{head[key]} {found[2]}" if key in head else found[2]
-        # Audacity has the frequencies of a label in a line that begins with a backslash.
-        elif not line.lstrip().startswith(("#", "\\")):
-            body.append((number, line))
-    full = [each for each in body if each[1].strip()]
-    if not full:
-        raise Refused(f"{name} is empty")
-    # Empty lines divide series, unless each line is followed by one.
-    body = [each for each in body if full[0] <= each <= full[-1]]
-    if len(body) > 1.5 * len(full):
-        body = full
-    if missing := leave_out - {number for number, _ in body}:
-        raise Refused(f"{name} has no line {min(missing)} of numbers to leave out")
-    values, numbers, headings = _table(name, body, leave_out)
-    columns = _columns(name, values, numbers, headings)
-    known = ", ".join(heading for heading, _ in headings if heading)
-    recording, used = _measured(name, columns, head, intervals, known)
-    notes = list(recording.notes)
-    unused = [
-        f"'{key}: {value}'"
-        for key, value in head.items()
-        if not key.startswith(_HEADS) and re.fullmatch(r"[\d.,]+( ?[^\d\s-]\S*)?", value)
-    ]
-    if unused:
-        notes.append(f"the head has {', '.join(unused)}, but only {', '.join(_HEADS)} are used")
-    # Lines that were left out on purpose are known to be missing.
-    has_gap = ~np.all([np.isfinite(columns[each]) for each in used], axis=0)
-    gaps = sorted(set(columns["line"][has_gap]) - leave_out)
-    if gaps:
-        shown = ", ".join(f"{number:.0f}" for number in gaps[:5]) + (", …" if gaps[5:] else "")
-        divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-        notes.append(f"a number is missing in line {shown}, which is left out{divides}")
-    return replace(recording, notes=tuple(notes))
-
-
-_Headings = list[tuple[str, str]]
-
-
-def _table(
-    name: str, body: list[tuple[int, str]], leave_out: set[int]
-) -> tuple[Array, Array, _Headings]:
-    """Return the numbers, NaN where there is none, their lines, and names and units of columns."""
-    first_line = body[0][1]
-    last = body[-1][1]
-    delimiter: str | None = next((mark for mark in ("\t", ";", ",") if mark in last), None)
-    is_column = len(last.split()) < 2 and not delimiter
-    if delimiter == ",":
-        # Commas are decimal signs in a single column, whose heading has no comma.
-        one_column = all(_is_decimal(line) for _, line in body[1:] if line.strip())
-        is_column = one_column and ("," not in first_line or _is_decimal(first_line))
-    if is_column:
-        delimiter = "\x1f"
-    rows = (
-        next(csv.reader([line], delimiter=delimiter)) if delimiter and line else line.split()
-        for _, line in body
-    )
-    cells = [[cell.strip().strip('"').strip() for cell in row] for row in rows]
-
-    def number(cell: str) -> float:
-        """Return a number, the seconds of mm:ss.s or hh:mm:ss.s, or NaN."""
-        if delimiter == "," and re.fullmatch(r"[1-9]\d{0,2},\d{3}", cell):
-            raise Refused(
-                f"{name}: {cell!r} may have thousands or decimals: write it without a comma"
-            )
-        text = cell.replace("−", "-").replace(",", ".")
-        try:
-            return sum(float(part) * 60**i for i, part in enumerate(reversed(text.split(":"))))
-        except ValueError:
-            return np.nan
-
-    numbers = [[number(cell) for cell in row] for row in cells]
-    first = next((i for i, row in enumerate(numbers) if np.isfinite(row).any()), None)
-    if first is None:
-        raise Refused(f"{name} has no line of numbers; {_TIMES}")
-    # A row of units or headings may contain digits, but rows of numbers begin with one.
-    width = max(len(row) for row in numbers[first:])
-    lines = np.array([line for line, _ in body[first:]])
-    values = np.full((len(lines), width), np.nan)
-    for i in np.flatnonzero(~np.isin(lines, list(leave_out))):
-        row = numbers[first + i]
-        values[i, : len(row)] = row
-    headings = [("", "")] * width
-    for texts in cells[:first]:
-        if not (any(texts) and min(width, 2) <= len(texts) <= width):
-            continue
-        each = texts + [""] * (width - len(texts))
-        units = [cell.strip("[]()") for cell in each]
-        is_below = any(heading for heading, _ in headings)
-        if is_below and all(_UNIT_ROW.fullmatch(unit.lower()) for unit in units):
-            headings = [(old[0], unit) for old, unit in zip(headings, units, strict=True)]
-        else:
-            headings = [_heading(cell) for cell in each]
-    for place, heading in enumerate(headings):
-        if _meaning(*heading) == "recording" and not np.isfinite(values[:, place]).any():
-            # Recordings may have names.
-            recordings = [(row + [""] * width)[place] for row in cells[first:]]
-            values[:, place] = [recordings.index(each) for each in recordings]
-    return values, lines, headings
-
-
-def _is_decimal(line: str) -> bool:
-    return re.fullmatch(r"\s*-?[\d:]+,\d+\s*", line) is not None
-
-
-def _heading(cell: str) -> tuple[str, str]:
-    """Return the name and the unit of a heading such as 'Drop height (cm)' or 'h0/cm'."""
-    units = "s|ms|us|µs|ns|m|cm|mm|px|m/s|cm/s|N|V"
-    found = re.fullmatch(r"(.*?)\s*[\[(]\s*([^\])]*?)\s*[\])]\s*", cell) or re.fullmatch(
-        rf"(.+?)(?:\s*/\s*|[_ ]| in )({units})", cell
-    )
-    if found is None:
-        return cell, ""
-    # In (mm:ss) the colon says it all.
-    return found[1].strip(), "" if found[2] in ("-", "–", "1") or ":" in found[2] else found[2]
-
-
-def _meaning(name: str, unit: str) -> str | None:
-    plain = re.sub(r"[{}$\\]", "", name).replace("_", " ").lower().strip()
-    for word, foreign in _WORDS.items():
-        plain = re.sub(foreign, f" {word} ", plain).strip()
-    found = next((each for each, pattern in _MEANINGS if plain and re.search(pattern, plain)), None)
-    if found == "height" and unit.lower() in _PIXELS:
-        return "position"
-    return "time" if found is None and unit.lower() in ("s", "ms") else found
-
-
-def _meanings(headings: _Headings, values: Array) -> list[str | None]:
-    """Return what the columns mean beside each other."""
-    meanings = [_meaning(*each) for each in headings]
-    # "Bounce" is a number of a bounce, or its height.
-    meanings = [
-        "rebound" if each == "count" and (unit in _LENGTHS or np.any(column % 1 > 0)) else each
-        for each, (_, unit), column in zip(meanings, headings, values.T, strict=True)
-    ]
-    if "drop" in meanings and "rebound" not in meanings:
-        # "Trial 1", "Trial 2", … beside a drop height.
-        meanings = [
-            "rebound" if each in (None, "recording") and re.search(r"\d$", heading) else each
-            for each, (heading, _) in zip(meanings, headings, strict=True)
-        ]
-    if meanings.count("height") == 1 and len(of_pair := {"drop", "rebound"} & set(meanings)) == 1:
-        meanings[meanings.index("height")] = ({"drop", "rebound"} - of_pair).pop()
-    if "time" in meanings and meanings.count("height") == 1:
-        place = meanings.index("height")
-        steps = np.diff(values[:, place])
-        # Tops of flights fall, whereas a track rises in half of its frames.
-        if np.sum(steps > 0) > 0.3 * np.count_nonzero(steps):
-            meanings[place] = "position"
-        elif np.any(steps) and "interval" not in meanings:
-            meanings[meanings.index("time")] = None
-    return meanings
-
-
-def _columns(name: str, values: Array, line: Array, headings: _Headings) -> dict[str, Array]:
-    """Return what the columns measure, in SI units, and "line", the numbers of the lines."""
-    columns: dict[str, Array] = {}
-    alike = {re.sub(r"\d+", "", heading) for heading, _ in headings}
-    first = _meaning(*headings[0])
-    is_series = first in ("time", "interval", "height") or (first is None and len(values) == 1)
-    if len(headings) > 1 and len(alike) == 1 and is_series:
-        # Each line is a recording, as "Time 1 (s)", "Time 2 (s)", …, or each column is.
-        later = -values if first in ("interval", "height") else values
-        by_column = len(values) > 1 and not (np.diff(later, axis=0) <= 0).any()
-        if by_column and not (np.diff(later) <= 0).any():
-            raise Refused(
-                f"{name}: each line or each column may be a recording: write one below the other "
-                "with an empty line between"
-            )
-        number = np.tile(np.arange(len(headings), dtype=float), len(values))
-        line = np.repeat(line, len(headings))
-        columns["recording"] = number if by_column else line
-        values = values.reshape(-1, 1)
-        headings = headings[:1]
-    meanings = _meanings(headings, values)
-    found: dict[str, list[Array]] = {}
-    for column, (heading, unit), meaning in zip(values.T, headings, meanings, strict=True):
-        if meaning is None or not np.isfinite(column).any():
-            continue
-        scale = 1.0
-        if meaning == "position" and unit in _LENGTHS:
-            columns["metre"] = np.array(in_si(heading, f"1 {unit}", "m"))
-        if unit and meaning in UNITS:
-            scale = in_si(f"{name}, column {heading!r}", f"1 {unit}", UNITS[meaning])
-        elif UNITS.get(meaning) == "m" and np.nanmax(column) > _HIGHEST_WITHOUT_UNIT:
-            raise Refused(
-                f"{name}: heights up to {np.nanmax(column):g} without a unit: write it in the "
-                f"heading, as in '{heading} (cm)'"
-            )
-        found.setdefault(meaning, []).append(column * scale)
-    for meaning in ("interval", "height", "drop", "in", "out"):
-        if len(found.get(meaning, [])) > 1:
-            raise Refused(
-                f"{name}: two columns are both taken as {meaning}: leave one out, or {_SUGGESTED}"
-            )
-    if "rebound" not in found and "average" in found:
-        found["rebound"] = found["average"]
-    is_label = not ((values[:, 0] > values[:, 1:2].T).any() or (np.diff(values[:, 0]) <= 0).any())
-    if alike == {""} and (is_label or values.shape[1] == 1):
-        # One column, or labels with start and end.
-        found = {"time": [values[:, 0]]}
-    columns |= {meaning: parts[0] for meaning, parts in found.items()} | {"line": line}
-    rebounds = found.get("rebound", [])
-    if len(rebounds) < 2 or "drop" not in found:
-        return columns
-    heights = np.column_stack([columns["drop"], *rebounds])
-    total = heights[np.isfinite(heights[:, :3]).all(axis=1), :3].sum(axis=0)
-    # Of successive bounces, heights fall from each to the next: h₂/h₁ is nearer to h₁/h₀ than to 1.
-    if total[2] ** 2 * total[0] < total[1] ** 3:
-        line = np.repeat(line, heights.shape[1])
-        return {"height": heights.ravel(), "recording": line, "line": line}
-    return columns | {
-        "drop": np.tile(columns["drop"], len(rebounds)),
-        "rebound": np.concatenate(rebounds),
-        "line": np.tile(line, len(rebounds)),
-    }
-
-
-_PAIRS = (
-    ("drops", "drop", "rebound", "m"),
-    ("speeds", "in", "out", "m/s"),
-    ("coefficients", "in", "restitution", ""),
-)
-
-
-def _measured(
-    name: str, columns: dict[str, Array], head: dict[str, str], intervals: bool, known: str
-) -> tuple[Recording, list[str]]:
-    """Return the recording, and the columns that it was read from."""
-    have = columns.keys()
-    notes: list[str] = []
-    durations = None
-    for speed in {"in", "out"} & have:
-        if np.nanmax(columns[speed]) < 0:
-            notes.append("the velocities are all negative: their sizes are the speeds")
-        columns[speed] = np.abs(columns[speed])
-    # One half of a pair is no series.
-    alone = {"drop", "rebound", "in", "out"} & have
-    pairs = next((each for each in _PAIRS if {each[1], each[2]} <= have), None)
-    uncertainty = None if pairs is None else columns.get("uncertainty")
-    if intervals and not {"time", "interval"} & have:
-        raise Refused(f"{name} has no column of intervals")
-    if pairs is not None:
-        kind, *used, unit = pairs
-        chains = [_pairs(name, columns, used, unit)]
-    elif {"time", "position"} <= have:
-        kind = "speeds"
-        used = ["time", "position"]
-        track, notes = _track(name, columns)
-        chains = [track]
-    elif "time" in have and {"force", "signal"} & have:
-        kind = "flights"
-        used = ["time", "force" if "force" in have else "signal"]
-        touches, durations = _touches(name, columns, used[1])
-        chains = [np.diff(touches)]
-        notes.append(f"{len(touches)} impacts were found in the signal")
-    elif {"time", "interval"} & have and not alone:
-        kind = "flights"
-        chains, of = _flights(name, columns, intervals)
-        used = [of]
-        if {"time", "interval"} <= have and not intervals:
-            notes.append(f"the file has times and intervals: it is read by its {of}s")
-    elif "height" in have and not alone:
-        kind = "heights"
-        used = ["height"]
-        chains = _falling(name, _parts(columns, "height"), "height", "m", _HIGHEST)
+    name, text = _text_of(source)
+    table = _table_of(name, text, leave_out)
+    head = table.head
+    roles = _columns(table)
+    kind, columns = _layout(table, roles, intervals)
+    is_missing = np.any(np.isnan([each.numbers for each in columns]), axis=0)
+    is_complete = np.logical_not(is_missing)
+    if kind == "signal":
+        recording = _of_signal(table, columns, is_complete)
+    elif kind == "track":
+        recording = _of_track(table, columns, is_complete)
+    elif kind in ("flights", "heights") or _are_successive(table, columns):
+        runs = _series(table, columns, _groups(roles, is_missing))
+        recording = _of_series(table, columns, runs)
     else:
-        raise Refused(
-            f"{name}: no bounces in {known or 'a table without headings'}: {_SUGGESTED}; {_TIMES}"
-        )
-    if uncertainty is not None:
-        uncertainty = uncertainty[np.isfinite(uncertainty)]
-        if len(uncertainty) != len(chains[0]) or np.any(uncertainty <= 0):
-            raise Refused(f"{name}: each impact needs an uncertainty above 0, or none has one")
-    given = columns.get("duration", np.empty(0))
-    given = given[np.isfinite(given)]
+        recording = _of_pairs(table, kind, columns)
+    if not sum(map(len, recording.chains)):
+        raise Refused(f"{name}: no bounces in {', '.join(each.name for each in columns)}; {_TIMES}")
+    uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
+    durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
-        durations = np.array([in_si("contact time", head["contact time"], "s")])
-    elif len(given):
-        is_each = pairs is not None and len(given) == len(chains[0])
-        durations = given if is_each else np.array([given.mean()])
-    recording = Recording(
-        name=name,
-        kind=kind,
-        chains=tuple(chains),
-        uncertainty=uncertainty,
-        durations=durations,
-        head=head,
-        notes=tuple(notes),
-    )
-    return recording, used
-
-
-def _pairs(name: str, columns: dict[str, Array], both: Sequence[str], unit: str) -> Array:
-    pairs = np.column_stack([columns[each] for each in both])
-    good = np.isfinite(pairs).all(axis=1)
-    if not good.any():
-        raise Refused(f"{name} has no complete line")
-    for line, (before, after) in zip(columns["line"][good], pairs[good], strict=True):
-        what, si, most = ("height", "m", _HIGHEST) if unit == "m" else ("speed", "m/s", _FASTEST)
-        wrong = ""
-        if before <= 0 or after <= 0:
-            wrong = f"{before:g} and {after:g} are not both positive"
-        elif before > most:
-            wrong = f"a {what} of {before:.3g} {si}: is it in c{si}? write the unit"
-        elif not unit and after > 1.05:
-            wrong = f"an r of {after:.3g} is above 1: write (%) in the heading if it is in per cent"
-        elif unit and after > 1.05 * before:
-            wrong = (
-                f"it rebounds with {after:.3g} {unit} from {before:.3g} {unit}: is a number wrong, "
-                "or are the columns exchanged?"
-            )
-        if wrong:
-            raise Refused(f"{name}, line {line}: {wrong}")
-    return pairs[good]
-
-
-_Parts = list[tuple[Array, Array]]
-
-
-def _parts(columns: dict[str, Array], of: str) -> _Parts:
-    """Return the values of each recording with their lines, divided where a number is missing."""
-    values = columns[of]
-    if of != "time":
-        values = np.where(values == 0, np.nan, values)
-    numbers = columns.get("recording", np.zeros(len(values)))
-    found = []
-    for number in dict.fromkeys(numbers[np.isfinite(numbers)]):
-        both = np.column_stack([values, columns["line"]])[numbers == number]
-        ends = np.flatnonzero(~np.isfinite(both[:, 0]))
-        found += [part[np.isfinite(part[:, 0])].T for part in np.split(both, ends)]
-    return [(part[0], part[1]) for part in found if part.size]
-
-
-def _flights(name: str, columns: dict[str, Array], intervals: bool) -> tuple[list[Array], str]:
-    """Return the durations of flights, and the column that they are of."""
-    of = "interval" if "interval" in columns else "time"
-    if "time" in columns and not (intervals and of == "interval"):
-        parts = _parts(columns, "time")
-        steps = [(np.diff(times), lines[1:]) for times, lines in parts if len(times) > 1]
-        rises = np.concatenate([step for step, _ in steps] or [np.empty(0)]) > 0
-        if rises.all() and intervals:
-            raise Refused(f"{name} has times, which rise, and no intervals: leave --intervals out")
-        if rises.all():
-            return _falling(name, steps, "flight", "s", _LONGEST), "time"
-        # A list of numbers that fall is one of intervals, whatever its heading.
-        if of == "time" and rises.mean() > 0.5:
-            step, lines = next(each for each in steps if (each[0] <= 0).any())
-            raise _unsorted(name, lines[step <= 0][0])
-    return _falling(name, _parts(columns, of), "flight", "s", _LONGEST), of
-
-
-def _unsorted(name: str, line: float) -> Refused:
-    return Refused(
-        f"{name}, line {line:.0f}: the time is not after the one before: sort the lines, or leave "
-        "an empty line where another recording begins"
-    )
-
-
-def _falling(name: str, parts: _Parts, what: str, unit: str, most: float) -> list[Array]:
-    """Return chains without their lines, if they are of a bouncing ball."""
-    for chain, lines in parts:
-        before = np.concatenate([[np.inf], chain[:-1]])
-        for line, value, last in zip(lines, chain, before, strict=True):
-            found = f"{name}, line {line:.0f}: a {what} of {value:.4g} {unit}"
-            if value <= 0:
-                raise Refused(f"{found} is not positive")
-            if value > most:
-                small = "ms" if unit == "s" else "cm"
-                raise Refused(f"{found}: is it in {small}? write ({small}) behind the heading")
-            if value > _LONGER * last:
-                raise Refused(
-                    f"{found} follows one of {last:.4g} {unit}: an impact is missing, or another "
-                    "recording begins (give a column 'recording', or --leave-out its line)"
-                )
-    return [chain for chain, _ in parts]
-
-
-def _even(times: Array) -> Array:
-    """Return the times of a camera, which are even, although a table rounds them."""
-    frames = np.arange(len(times))
-    slope, start = np.polyfit(frames, times, 1)
-    even = start + slope * frames
-    # Where frames are missing, some time is nearer to another frame than to its own.
-    return even if np.abs(even - times).max() < 0.5 * slope else times
-
-
-def _in_time(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array, Array]:
-    """Return the times, values and lines of a track or a signal."""
-    rows = np.column_stack([columns["time"], columns[of], columns["line"]])
-    times, values, lines = rows[np.isfinite(rows).all(axis=1)].T
-    back = np.flatnonzero(np.diff(times) < 0)
-    if len(back):
-        raise _unsorted(name, lines[back[0] + 1])
-    return times, values, lines
-
-
-def _track(name: str, columns: dict[str, Array]) -> tuple[Array, list[str]]:
-    """Return speeds before and after impacts of a track, and notes on how it was read.
-
-    Flights are parabolas that are open below: the other way round, they would end at their tops,
-    and parabolas would miss the impacts between them.
-    """
-    times, heights, lines = _in_time(name, columns, "position")
-    if len(times) < _SHORTEST_TRACK:
-        raise Refused(f"{name}: a track of {len(times)} positions is too short")
-    t = _even(times)
-    upwards = _meetings(t, heights)
-    downwards = _meetings(t, -heights)
-    meetings, _ = min(upwards, downwards, key=lambda each: each[1])
-    if not meetings:
-        raise Refused(f"{name}: no impact between two flights of four positions in the track")
-    notes = [f"{len(meetings)} impacts were found where flights meet; gravity is the scale."]
-    if meetings is downwards[0]:
-        notes.append("the positions grow downwards, as in a picture: they were turned")
-    at, before, after, scale = np.array(meetings).T
-    if "metre" in columns:
-        ratio = float(np.median(scale) / columns["metre"])
-        if 0 < ratio < 1 / _OFF or ratio > _OFF:
-            notes.append(
-                f"gravity is {STANDARD_GRAVITY / ratio:.3g} m/s² by the heights and times: the "
-                f"times are {math.sqrt(ratio):.2g} times the true ones, as in slow motion, and so "
-                "are the speeds, or the heights have another unit"
-            )
-    impacts = {"line": lines[at.astype(int)].astype(int), "in": before, "out": after}
-    return _pairs(name, impacts, ("in", "out"), "m/s"), notes
-
-
-def _meetings(t: Array, y: Array) -> tuple[list[tuple[int, float, float, float]], float]:
-    """Return frame, speeds before and after, and scale of each impact, and the parabolas' misfit.
-
-    Two neighbouring flights have one curvature, which is that of gravity and gives the scale in m.
-    """
-    from scipy.signal import find_peaks
-
-    low, _ = find_peaks(-y, prominence=_RISE * np.ptp(y))
-    edges = [-1, *(int(i) for i in low), len(y)]
-    # The frames beside an impact may show a part of it.
-    flights = [
-        np.arange(max(start + 2, 0), min(end - 1, len(y)))
-        for start, end in zip(edges[:-1], edges[1:], strict=True)
+        durations = np.array([positive("contact time", head["contact time"], "s")])
+    gaps = is_missing & ~np.isin(table.lines, leave_out)
+    missing = ", ".join(map(str, table.lines[gaps]))
+    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
+    unused = [
+        repr(f"{key}: {value}")
+        for key, value in head.items()
+        if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
-    found = []
-    squares = 0.0
-    free = 0
-    for impact, before, after in zip(low, flights[:-1], flights[1:], strict=True):
-        if min(len(before), len(after)) < 4:
-            continue
-        both = np.concatenate([before, after])
-        is_after = np.isin(both, after)
-        time = t[both] - t[impact]
-        rows = np.column_stack([time**2, ~is_after, ~is_after * time, is_after, is_after * time])
-        best = np.linalg.lstsq(rows, y[both], rcond=None)[0]
-        squares += float(np.sum((y[both] - rows @ best) ** 2))
-        free += len(both) - len(best)
-        a, c1, b1, c2, b2 = best
-        meet = (c1 - c2) / (b2 - b1)
-        scale = STANDARD_GRAVITY / (-2 * a)
-        speeds = -(b1 + 2 * a * meet) * scale, (b2 + 2 * a * meet) * scale
-        found.append((impact, *speeds, scale))
-    return found, squares / free if free else np.inf
-
-
-def _touches(name: str, columns: dict[str, Array], of: str) -> tuple[Array, Array | None]:
-    """Return the times at which impacts begin in a signal, and how long they last in a force.
-
-    An impact rises above a fifth of the largest peak after silence. A force has the contact from
-    where it last was below a twentieth of its peak, or in the noise, to where it is so again.
-    """
-    t, signal, _ = _in_time(name, columns, of)
-    size = np.abs(signal - np.median(signal))
-    noise = float(np.median(size))
-    above = np.flatnonzero(size > max(size.max(initial=0.0) / 5, 6 * noise))
-    starts = above[np.diff(t[above], prepend=-np.inf) > _SILENCE]
-    if len(starts) < 3:
-        raise Refused(f"{name}: {len(starts)} impacts stand out of the signal: three are needed")
-    if of != "force":
-        return t[starts], None
-    contacts = []
-    for start, end in zip(starts, [*starts[1:], len(t)], strict=True):
-        peak = start + int(np.argmax(size[start:end]))
-        low = np.flatnonzero(size <= max(size[peak] / 20, 6 * noise))
-        over = int(np.searchsorted(low, peak))
-        if 0 < over < len(low):
-            # The force begins and ends between two samples.
-            contacts.append(np.interp(low[over - 1 : over + 1] + [0.5, -0.5], np.arange(len(t)), t))
-    begins, ends = np.array(contacts).T
-    if (ends - begins).max() > _LONGEST_CONTACT:
-        # The signal rings on, so that the end of a contact does not show.
-        return t[starts], None
-    return begins, ends - begins
+    has_both = columns[0].role == "time" and "interval" in roles
+    further = {
+        "the file has times and intervals: it is read by its times": has_both,
+        f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
+        f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
+    }
+    notes = recording.notes + tuple(text for text, holds in further.items() if holds)
+    return replace(recording, head=head, uncertainty=uncertainty, durations=durations, notes=notes)

@@ -495,6 +495,69 @@ def genesis(trial):
     return np.array(heights), math.nan
 
 
+def _by_program(name, trial, *values):
+    """Return the heights that a program of ours writes; it is built with its engine."""
+    program = shutil.which(name)
+    if program is None:
+        raise ModuleNotFoundError(name, name=name)
+    other = trial.other if trial.shape == "two" else 0.0
+    body = (trial.size, trial.mass, other, trial.gap, trial.speed, trial.gravity)
+    command = [program, *map(str, (*body, *values, trial.step, trial.steps))]
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(command, cwd=folder, capture_output=True, check=True)
+        return np.loadtxt(Path(folder, "heights.txt")), math.nan
+
+
+def mercurydpm(trial):
+    values = trial.design.parameters
+    return _by_program("engine_mercury", trial, values["stiffness"], values["dissipation"])
+
+
+def gazebo(trial):
+    row = ENGINES["gazebo"]
+    values = {**row.defaults, **trial.design.parameters}
+    return _by_program("engine_gazebo", trial, *(values[name] for name in row.defaults))
+
+
+def chrono(trial, table=None):
+    import pychrono
+
+    system = pychrono.ChSystemSMC()
+    system.SetCollisionSystemType(pychrono.ChCollisionSystem.Type_BULLET)
+    system.SetGravitationalAcceleration(pychrono.ChVector3d(0, 0, -trial.gravity))
+    system.UseMaterialProperties(False)
+    system.SetContactForceModel(pychrono.ChSystemSMC.Hooke)
+    materials = []
+    for values in (trial.design.parameters, table or trial.design.parameters):
+        material = pychrono.ChContactMaterialSMC()
+        material.SetKn(values["kn"])
+        material.SetGn(values["gn"])
+        materials.append(material)
+    r = trial.size
+    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
+    bodies = []
+    for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
+        body = pychrono.ChBodyEasySphere(r, 1.0, False, True, materials[0])
+        body.SetMass(mass)
+        body.SetPos(pychrono.ChVector3d(0, 0, place))
+        bodies.append(body)
+    bodies[0].SetPosDt(pychrono.ChVector3d(0, 0, -trial.speed))
+    if trial.shape != "two":
+        floor = pychrono.ChBodyEasyBox(20 * r, 20 * r, 20 * r, 1.0, False, True, materials[1])
+        floor.SetMass(1000 * trial.mass)
+        floor.SetPos(pychrono.ChVector3d(0, 0, -10 * r))
+        floor.SetFixed(True)
+        bodies.append(floor)
+    for body in bodies:
+        system.AddBody(body)
+    heights = []
+    for _ in range(trial.steps):
+        system.DoStepDynamics(trial.step)
+        lower = bodies[1].GetPos().z + r if trial.shape == "two" else 0.0
+        heights.append(bodies[0].GetPos().z - r - lower)
+    return np.array(heights), math.nan
+
+
 RUNS = {
     "mujoco": mujoco,
     "pybullet": pybullet,
@@ -510,7 +573,10 @@ RUNS = {
     "newton-mujoco": newton,
     "genesis": genesis,
     "physx": physx,
+    "mercurydpm": mercurydpm,
     "ode": ode,
+    "gazebo": gazebo,
+    "chrono": chrono,
 }
 
 

@@ -66,7 +66,7 @@ _VECTORS = {
 """The least and the most numbers of parameters that have several, in figures and in words."""
 _WHY = {
     "contactProcessingThreshold": "PyBullet sees the surface ahead, and ",
-    "max_vel": "max_vel caps the rebound from a spring, and ",
+    "max_vel": "max_vel caps the rebound, and ",
 }
 """What parameters do that change r."""
 

@@ -463,6 +463,7 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
         damping=linear.damping,
         threshold=p["threshold"],
         fastest=p["max_vel"],
+        step=at.step,
     )
 
 
@@ -733,9 +734,9 @@ ENGINES: Mapping[str, Engine] = {
             scheme=_VERLET,
             **_forces(("stiffness", "dissipation")),
             meaning="stiffness = k, dissipation = c",
+            ran="MercuryDPM 1.0",
             rules={"stiffness": PAIR, "dissipation": PAIR},
             sets_pair=True,
-            deepest=1.0,
         ),
         Engine(
             name="ode",
@@ -761,12 +762,13 @@ ENGINES: Mapping[str, Engine] = {
             read=_read_gazebo,
             units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
+            ran="the ODE of Gazebo 11.10.2",
             rules={
                 "kp": SERIES,
                 "kd": SUM,
                 "restitution_coefficient": LEAST,
                 "threshold": LEAST,
-                "max_vel": LEAST,
+                "max_vel": PAIR,
             },
             defaults={
                 "kp": 1e12,
@@ -777,16 +779,18 @@ ENGINES: Mapping[str, Engine] = {
             },
             notes=(
                 f"{_BOTH}; {_STEP_ONLY}",
-                "The snippet lifts max_vel, which limits the correction",
+                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default",
             ),
             number="restitution_coefficient",
-            undisturbed={"threshold": 0.0},
+            # With such a damper the default spring takes nothing of the penetration back.
+            undisturbed={"threshold": 0.0, "max_vel": 1000.0, "kd": 1e12},
         ),
         Engine(
             name="chrono",
             scheme=SemiImplicit(),
             **_forces(("kn", "gn"), per_mass=True),
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
+            ran="Chrono 10.0.0",
             rules={"kn": MEAN, "gn": MEAN},
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
             floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "

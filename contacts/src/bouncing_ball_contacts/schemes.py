@@ -86,6 +86,11 @@ class Law:
         """Whether the rebound is by a restitution coefficient, and not by a spring."""
         return False
 
+    @property
+    def of_position(self) -> "Law":
+        """The law whose velocity moves the body: the same one, but in Gazebo."""
+        return self
+
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s.
 
@@ -314,14 +319,26 @@ class Bullet(Solved):
 class ContactJoint(Solved):
     """ODE's contact joint: C is the larger one of e (-v)₊ and h k p/(h k + c)/h, at most `fastest`.
 
-    The rebound is from the velocity before the step.
+    The rebound is from the velocity before the step. The position moves as without `fastest`, and
+    a body whose C at rest, g/(h k + c), is larger lies deeper than g/k at the time step h.
     """
 
     fastest: float = math.inf
+    step: float = math.inf
+
+    @property
+    def of_position(self) -> "ContactJoint":
+        return self if math.isinf(self.fastest) else replace(self, fastest=math.inf)
+
+    def rest(self, gravity: float) -> Array:
+        aim = gravity / (self.step * self.stiffness + self.damping)
+        more = np.maximum(aim - self.fastest, 0.0) / (self.step * self.stiffness)
+        return super().rest(gravity) + more
 
     def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
-        out = np.minimum(-self.stiffness * z / (h * self.stiffness + self.damping), self.fastest)
-        return np.where(z < 0, self.held(u, np.maximum(self.thrown(v), out), h), u)
+        out = -self.stiffness * z / (h * self.stiffness + self.damping)
+        aim = np.minimum(np.maximum(self.thrown(v), out), self.fastest)
+        return np.where(z < 0, self.held(u, aim, h), u)
 
 
 @dataclass(frozen=True)
@@ -457,6 +474,7 @@ def drop(
         D in 1/s of Bullet's linear damping, which decelerates a body by D v (1 + |v|/(1 m/s)).
     """
     columns = _beside(law, trials)
+    of_position = columns.of_position
     at = trials.at
     duration = columns.duration(speed)
     h = np.maximum(np.asarray(step, float)[..., None] * trials.step, duration / MOST_STEPS)
@@ -491,7 +509,10 @@ def drop(
         falls_again = rises & (z < 0)
         rises = new > 0
         falls_again &= ~rises
-        z = z + h * new
+        moves = new
+        if of_position is not columns:
+            moves = scheme.velocity(of_position, z, v, free, h, g)
+        z = z + h * moves
         np.minimum(lowest, z, out=lowest, where=inside)
         leaves = inside & rises & (z >= 0)
         if leaves.any():

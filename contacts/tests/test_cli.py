@@ -184,7 +184,7 @@ MISTAKES = {
     f"{BALL} --time-step 0Hz": "not positive",
     f"{BALL} --friction slippery": "does not begin",
     f"{BALL} --friction -0.5": "not between 0 and inf",
-    f"{BALL} --one-body --engine mujoco": "averages solimp",
+    f"{BALL} --one-body --engine mujoco": "solimp is averaged",
     f"{BALL} --one-body --engine lammps": "no contact that one body alone sets",
     f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
     f"{BALL} --script drop.py --engine physx": "no script is written for physx",
@@ -217,7 +217,7 @@ MISTAKES = {
     "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake-hunt-crossley has it",
     "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
-    LAMMPS: "kn is missing: give kn and gamma_n; lammps has no defaults",
+    LAMMPS: "kn is missing: give kn and gamma_n; lammps has no default",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
     f"{LAMMPS} kn=-1 gamma_n=1": "not between 0 and inf",

@@ -146,6 +146,23 @@ def test_the_defaults_of_newton_are_critical_damping_in_its_mujoco_solver():
     assert "the defaults ke = 2500, kd = 100" in str(found)
 
 
+@pytest.mark.parametrize(("ke", "rest"), [(2500, 0.367e-3), (1e4, 0.108e-3), (1e5, 0.011e-3)])
+def test_the_mujoco_solver_of_newton_has_the_impedance_of_mujoco(ke, rest):
+    """Measured with Newton 1.8.0. It was taken as 1e-4, and the depth as 9 times larger."""
+    numbers = {"ke": ke, "kd": 20}
+    found = asked(None, "newton-mujoco", numbers, "1 ms")
+    # The last measured digit is a micrometre.
+    assert found.outcome.rest == pytest.approx(rest, abs=0.6e-6)
+    low = asked(None, "newton-mujoco", numbers | {"solimp": "1e-4 1e-4 0.001"}, "1 ms")
+    assert low.outcome.rest == pytest.approx(9.80665 / ke, rel=1e-3)
+
+
+def test_the_scheme_that_is_taken_for_drake_is_said():
+    """Its default, lagged, ignores relaxation_time: r was 0 where 0.493 was printed."""
+    assert "lagged" in str(asked(None, "drake", {}, "1 ms"))
+    assert asked(None, "drake-hunt-crossley", {}, "1 ms").outcome.restitution[2] < 0.01
+
+
 def test_a_damper_that_is_far_too_strong_stops_the_body():
     """Exchanged, kn and gamma_n had r = 24754, with steps that were too long for it."""
     found = asked(None, "lammps", {"kn": 50, "gamma_n": 1e5}, "10 us")

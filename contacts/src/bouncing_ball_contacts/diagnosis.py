@@ -322,8 +322,7 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     body = {**engine.defaults, **found}
     if missing := [name for name in engine.rules if name not in body]:
         raise Refused(
-            f"{missing[0]} is missing: give {' and '.join(engine.rules)}; {engine.name} has no "
-            "defaults"
+            f"{missing[0]} is missing: give {' and '.join(missing)}; {engine.name} has no default"
         )
     # PyBullet's -1 stands for a spring and a damper that are off.
     if len({body[name] == -1 for name in engine.names}) > 1:

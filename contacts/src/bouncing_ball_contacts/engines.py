@@ -304,14 +304,18 @@ def _mix_solimp(one: Any, other: Any) -> tuple[float, ...]:
 
 def _alone_solimp(value: Any, other: Any) -> tuple[float, ...]:
     raise Refused(
-        "one geom alone cannot make this contact in mujoco, which averages solimp: set both, or "
-        "give the geom a higher priority"
+        "one geom alone cannot make this contact, because solimp is averaged: set both, or in "
+        "MuJoCo give the geom a higher priority"
     )
 
 
+_SOLIMP = Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp)
+_DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
+# With it a contact is a spring and a damper.
+_LEAST_SOLIMP = (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001)
 _MUJOCO_RULES = {
     "solref": Rule("least of both", _mix_solref, lambda x: x, lambda x, other: x),
-    "solimp": Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp),
+    "solimp": _SOLIMP,
     "refsafe": PAIR,
 }
 
@@ -325,9 +329,7 @@ def _write_genesis(law: Law, at: Setting) -> dict[str, Any]:
 
 
 def _read_genesis(p: Parameters, at: Setting) -> Law:
-    time = max(p["timeconst"], 2 * at.step)
-    c = 2 / time * at.points
-    return Linear(np.asarray(at.points / (time * p["dampratio"]) ** 2), np.asarray(c))
+    return _read_mujoco({"solref": (p["timeconst"], p["dampratio"]), "solimp": p["solimp"]}, at)
 
 
 def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
@@ -340,7 +342,7 @@ def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
 
 
 def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
-    return Linear(np.asarray(p["ke"] * at.points), np.asarray(p["kd"] * at.points))
+    return _read_mujoco({"solref": (-p["ke"], -p["kd"]), "solimp": p["solimp"]}, at)
 
 
 def _if_set(rule: Rule, default: float) -> Rule:
@@ -520,11 +522,11 @@ ENGINES: Mapping[str, Engine] = {
             names=("solref", "solref"),
             scheme=SemiImplicit(),
             write=_write_mujoco,
-            beside={"solimp": (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001)},
+            beside={"solimp": _LEAST_SOLIMP},
             read=_read_mujoco,
             meaning="solref = -k/m -c/m, solimp = 1e-4 1e-4 0.001",
             rules=_MUJOCO_RULES,
-            defaults={"solref": (0.02, 1.0), "solimp": (0.9, 0.95, 0.001), "refsafe": 1.0},
+            defaults={"solref": (0.02, 1.0), "solimp": _DEFAULT_SOLIMP, "refsafe": 1.0},
             ran="MuJoCo 4.0.0",
             notes=(
                 "The numbers of solref are per unit of mass: they hold for every mass, and for two "
@@ -577,6 +579,8 @@ ENGINES: Mapping[str, Engine] = {
             points_share=False,
             ran="Drake 1.51.1",
             notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            caution='the discrete_contact_approximation is taken as "sap"; with the default, '
+            '"lagged", Drake ignores relaxation_time, and the row is drake-hunt-crossley',
             box=_DRAKE_BOX,
         ),
         DrakeDissipation(
@@ -588,6 +592,7 @@ ENGINES: Mapping[str, Engine] = {
             meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
             units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
             rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
+            defaults={"point_contact_stiffness": 1e6, "hunt_crossley_dissipation": 50.0},
             of_depth=HuntCrossley.of_depth,
             points_share=False,
             ran="Drake 1.51.1",
@@ -678,11 +683,12 @@ ENGINES: Mapping[str, Engine] = {
             names=("ke", "kd"),
             scheme=SemiImplicit(),
             write=_write_newton_mujoco,
+            beside={"solimp": _LEAST_SOLIMP},
             read=_read_newton_mujoco,
-            meaning="ke = k/m, kd = c/m, in SolverMuJoCo",
+            meaning="ke = k/m, kd = c/m, solimp = 1e-4 1e-4 0.001, in SolverMuJoCo",
             units={"ke": "1/s^2", "kd": "1/s"},
-            rules={"ke": MEAN, "kd": MEAN},
-            defaults={"ke": 2500.0, "kd": 100.0},
+            rules={"ke": MEAN, "kd": MEAN, "solimp": _SOLIMP},
+            defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
             ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
         ),
@@ -691,11 +697,13 @@ ENGINES: Mapping[str, Engine] = {
             names=("timeconst", "dampratio"),
             scheme=SemiImplicit(),
             write=_write_genesis,
+            beside={"solimp": _LEAST_SOLIMP},
             read=_read_genesis,
-            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m)",
+            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m), solimp = 1e-4 1e-4 0.001",
             ran="Genesis 1.4.5",
             units={"timeconst": "s"},
-            rules={"timeconst": MEAN, "dampratio": MEAN},
+            rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
+            defaults={"solimp": _DEFAULT_SOLIMP},
             notes=("The numbers hold for every mass", _BOTH),
         ),
         PhysX(

@@ -495,3 +495,11 @@ def test_headings_in_quotes_are_read_between_spaces(tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text('no "flight time/ms"\n1 900\n2 720\n3 576')
     assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.parametrize("more", ["rebound ratio", "height lost (m)", "predicted rebound (m)"])
+def test_what_was_computed_is_no_reading(more):
+    """With a column of ratios r was 0.818, with one of predictions 0.841, where it is 0.8."""
+    columns = {"drop height (m)": [1.0, 1.5, 2.0], "rebound height (m)": [0.64, 0.96, 1.28]}
+    found = fit(columns | {more: [0.9, 0.8, 0.7]})
+    assert found.restitution == pytest.approx(0.8, abs=1e-6)

@@ -65,6 +65,8 @@ _QUANTITIES = (
     ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
     ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
     ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
+    # What was computed is no reading.
+    ("unused", r"^(?!.*restitution).*(\bratio|lost|loss\b|predict|theor|calcul|ideal|sqrt|squar)"),
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),

@@ -15,6 +15,7 @@ ball cannot have are refused, with their line.
 """
 
 import csv
+import difflib
 import functools
 import io
 import itertools
@@ -62,6 +63,8 @@ _UNIT = (
 # The quantity of a heading is that of the first row with which its words agree. Accents
 # are removed, and signs are spaces.
 _QUANTITIES = (
+    ("force", r"force|kraft|^f\b|\bf ?z\b"),
+    ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
     ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
     ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
     ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
@@ -70,14 +73,11 @@ _QUANTITIES = (
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
-    ("force", r"force|kraft|^f\b|\bf ?z\b"),
-    ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
     ("duration", r"duration|dauer|contact|kontakt"),
-    ("speed", r"speed|veloc|geschwindigkeit|vitesse|\bv'?\b|\bv[012if]\b|\bv(in|out|y)\b"),
+    ("speed", r"speed|\bq?vel|geschwindigkeit|vitesse|\bv'?\b|\bv[012ifxyz]\b|\bv(in|out)\b"),
     ("height", r"height|altitude|hohe|hauteur|altura|altezza|\bh'?\b|\bh[\dif]\b|\bh ?prime"),
     ("time", r"time|zeit|temps|tiempo|tempo|\bt ?\d*\b"),
-    ("position", r"position|\by\b|\bpos\b"),
-    ("z", r"\bz\b"),
+    ("position", r"position|\bq?pos\b|\b[cp]?[yz]\b|^(distance|displacement)$"),
     ("recording", r"recording|aufnahme|series|experiment|\b(ball|run|set|trial)\b(?! \d)"),
 )
 # In the same way, whether a height or speed is that before or after an impact.
@@ -91,6 +91,12 @@ _SIDES = (
     ("after", r"average|mean\b|(trial|run|test|measurement) \d"),
 )
 _AVERAGE = r"average|mean\b"
+# A heading with one of these words has no readings, but what was made of them or is expected.
+_DERIVED = (
+    r"\bratio|efficien|percent|\blos[st]|predict|theor|calcul|expect|ideal|simulat|fitted|sqrt"
+    r"|squar|[√²^]|\b(log|log10|ln|lg)\b|^1 ?[-−]|verhaltnis|verlust|berechn|erwart|\bperte"
+)
+_ORDINALS = ("first", "second", "third", "fourth", "fifth")
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
 _BY_UNIT = (("speed", "/"), ("time", r"s$|sec|min"), ("height", r"m$|^in|ft|feet|met"))
@@ -113,9 +119,8 @@ _PAIRS: _Layouts = (
 )
 _SERIES: _Layouts = (
     ("signal", ("time", "force")),
-    ("signal", ("time", "signal")),
     ("track", ("time", "position")),
-    ("track", ("time", "z")),
+    ("signal", ("time", "signal")),
     ("track", ("time", "height")),
     ("flights", ("time",)),
     ("flights", ("interval",)),
@@ -217,8 +222,12 @@ def _text_of(source: Any) -> tuple[str, str]:
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if path.is_dir() or not path.exists():
-        raise Refused(f"{source} is no file, and none of {', '.join(experiments())}")
+    if path.is_dir():
+        raise Refused(f"{source} is a directory: give a file in it")
+    if not path.exists():
+        close = difflib.get_close_matches(str(source), experiments(), 1)
+        meant = f"; did you mean {close[0]!r}?" if close else ""
+        raise Refused(f"{source} is no file, and none of {', '.join(experiments())}{meant}")
     name = Path(source).name
     data = path.read_bytes()
     if data.startswith(b"PK"):
@@ -301,12 +310,19 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     if not any(kept.values()):
         raise Refused(f"{name} is empty")
     cells = _split(name, list(kept.values()))
-    with_numbers = [i for i, row in enumerate(cells) if not np.isnan([*map(_number, row)]).all()]
-    if not with_numbers:
+    has_numbers = [not np.isnan([*map(_number, row)]).all() for row in cells]
+    # Lines such as "Mass,46,g" may stand above the headings.
+    headed = (i for i, row in enumerate(cells) if not has_numbers[i] and _are_headings(row))
+    above_headings = next(headed, 0)
+    for row in cells[:above_headings]:
+        if len(row) > 1:
+            head[row[0].lower()] = " ".join(row[1:]).strip()
+    begin = next((i for i in range(above_headings, len(cells)) if has_numbers[i]), None)
+    if begin is None:
         raise Refused(f"{name} has no line of numbers; {_TIMES}")
-    above = [row for row in cells[: with_numbers[0]] if any(row)]
-    lines = np.array(list(kept))[with_numbers[0] :]
-    rows = cells[with_numbers[0] :]
+    above = [row for row in cells[:begin] if any(row)]
+    lines = np.array(list(kept))[begin:]
+    rows = cells[begin:]
     # An empty line after each line divides nothing.
     step = 1 if any(any(row) for row in rows[1::2]) else 2
     rows = rows[::step]
@@ -357,6 +373,8 @@ def _column(heading: str, texts: list[str]) -> _Column:
         or re.fullmatch(r"(.*?)\s*/\s*\(?([^)]*)\)?", heading)
     )
     name, unit = parts.groups() if parts else (heading, "")
+    # Programs write "Run 1: Time (s)".
+    name = re.sub(r"^[^:]*: +", "", name)
     # (mm:ss) is no unit, and (-) is that of a number without one.
     unit = "" if ":" in unit or unit == "-" else unit
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
@@ -378,7 +396,34 @@ def _column(heading: str, texts: list[str]) -> _Column:
         if bare and side == "after" and len(texts) > 1 and (np.diff(numbers) == 1).all():
             quantity = ""
     role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
+    is_share = "%" in unit and quantity not in ("coefficient", "uncertainty")
+    if role not in ("", "unused") and (is_share or re.search(_DERIVED, f"{name} {words}", re.I)):
+        role = "derived"
     return _Column(name, unit, role, texts, numbers)
+
+
+def _are_headings(row: list[str]) -> bool:
+    """Return whether two cells of a line name quantities."""
+    return sum(bool(_column(cell.strip(), []).role) for cell in row) > 1
+
+
+def _are_counted(columns: list[_Column]) -> bool:
+    """Return whether headings are alike but for counts, as h1 and h2, or first and second."""
+    names = [each.name.casefold() for each in columns]
+    for i, ordinal in enumerate(_ORDINALS, 1):
+        names = [name.replace(ordinal, str(i)) for name in names]
+    steps = np.diff([sum(map(int, re.findall(r"\d+", name))) for name in names])
+    alike = {re.sub(r"\d+(st|nd|rd|th)?", "#", name) for name in names}
+    return len(alike) == 1 and ((steps == 1).all() or (steps == 0).all())
+
+
+def _vertical(columns: list[_Column]) -> list[_Column]:
+    """Return that of the columns x, y, z of a quantity that changes most sharply, as at impacts."""
+    names = {each.name for each in columns}
+    if len(names) < len(columns) or len({re.sub(r"[xyzXYZ]\b", "", name) for name in names}) > 1:
+        return columns
+    bends = [np.nan_to_num(np.abs(np.diff(each.numbers, 2))).max(initial=0) for each in columns]
+    return [columns[int(np.argmax(bends))]]
 
 
 def _columns(table: _Table) -> dict[str, list[_Column]]:
@@ -498,13 +543,23 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
         runs = _flights(table, runs)
     said = f"a {_PLAUSIBLE[quantity][0]} of {{}} {_SI[quantity]}"
     grown = (
-        f"{said} follows one of {{}} {_SI[quantity]}: an impact is missing, or another recording "
-        "begins (give a column 'recording', or --leave-out its line)"
+        f"{said} follows one of {{}} {_SI[quantity]}: an impact is missing, the first time is that "
+        "of the release, or another recording begins (give a column 'recording', or --leave-out "
+        "its line)"
+    )
+    missed = (
+        "a flight of {} s, after which one of {} s has less than half of the ratio that the next "
+        "one has: an impact is missing within it (--leave-out its line)"
     )
     for values, lines in runs:
         _check(table, quantity, bool(columns[0].unit), values, lines)
         is_grown = values[1:] > _GROWTH * values[:-1]
         table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
+        if quantity == "interval":
+            # A flight and the next one, taken as one, have the ratio r/(1 + 1/r) < r/2 to the third.
+            ratios = values[1:] / values[:-1]
+            is_missed = ratios[:-1] < ratios[1:] / 2
+            table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
     kind = "heights" if quantity == "height" else "flights"
     return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
 
@@ -534,7 +589,7 @@ def _are_successive(table: _Table, columns: list[_Column]) -> bool:
 
     Successive heights fall on: each by more than the square root of the first factor.
     """
-    h = np.column_stack([each.numbers for each in columns])
+    h = np.column_stack([_values(table, each) for each in columns])
     falls = h[:, 2:] ** 2 * h[:, :1] < h[:, 1:-1] ** 2 * h[:, 1:2]
     are_falling = falls[~np.isnan(h[:, 2:] * h[:, 1:-1] * h[:, :1])]
     if are_falling.any() and not are_falling.all():
@@ -636,6 +691,8 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     slow = math.sqrt(STANDARD_GRAVITY / gravity)
     further = {
         f"{len(kept)} impacts were found where flights meet; gravity is the scale": True,
+        f"{len(bottoms) - len(kept)} further turns of the track are left out: a flight beside them "
+        f"has fewer than {_FEWEST} positions, or is no parabola": len(bottoms) > len(kept),
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
         "the true ones, as in slow motion, and so are the speeds, or the heights have another "
@@ -687,19 +744,26 @@ def _layout(
         layouts = (("flights", ("interval",)),)
     found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
     if found is None:
-        there = ", ".join(re.sub(r"\s*[(\[/].*", "", each) for each in table.headings)
-        wanted = "no column of intervals" if intervals else f"no bounces in {there}"
+        said = {"": "not known", "unused": "not used", "derived": "no reading, but derived"}
+        there = ", ".join(
+            f"{column.name!r} is {said.get(role, role)}"
+            for role, columns in roles.items()
+            for column in columns
+        )
+        wanted = "no column of intervals" if intervals else f"no bounces, as {there}"
         raise Refused(f"{table.name}: {wanted}: {_HEADINGS}; {_TIMES}")
     kind, needed = found
-    columns = [column for role in needed for column in roles[role]]
+    columns = []
     for role in needed:
-        # Several columns are rebounds of a drop, or numbered ones of several balls.
-        names = {re.sub(r"\d+", "#", each.name) for each in roles[role]}
-        is_series = len(needed) == 1 and len(names) == 1 and "#" in min(names)
-        if len(roles[role]) > 1 and role != "height after" and not is_series:
+        same = _vertical(roles[role]) if kind in ("track", "signal") else roles[role]
+        # Counted columns are rebounds of a drop, or those of several balls.
+        may_be_several = len(needed) == 1 or role == "height after"
+        if len(same) > 1 and not (may_be_several and _are_counted(same)):
             raise Refused(
-                f"{table.name}: two columns are both taken as {role}: leave one out, or {_HEADINGS}"
+                f"{table.name}: {same[0].name!r} and {same[1].name!r} are both taken as {role}: "
+                f"leave one out, or {_HEADINGS}"
             )
+        columns += same
     heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
     falls = -np.diff(heights)
     # Tops fall by less and less, and a ball by more and more.
@@ -782,8 +846,14 @@ def read(
         if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
     has_both = columns[0].role == "time" and "interval" in roles
+    derived = ", ".join(repr(each.name) for each in roles.get("derived", []))
+    components = roles[columns[-1].role] if recording.notes else columns[-1:]
     further = {
         "the file has times and intervals: it is read by its times": has_both,
+        f"{derived} is left out: by its heading it has no readings, but what is derived or "
+        "expected": bool(derived),
+        f"of {', '.join(each.name for each in components)} the one with the sharpest changes is "
+        f"read, {columns[-1].name}": len(components) > 1,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
         f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
     }

@@ -233,7 +233,7 @@ MISTAKES = {
     "fit croquet --time-step 1ms": "--time-step needs an engine",
     "fit croquet --tolerance 0.1": "--tolerance needs an engine",
     "fit croquet --density wood": "--density needs an engine",
-    "fit /": "/ is no file, and none of",
+    "fit /": "/ is a directory: give a file in it",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",

@@ -253,9 +253,9 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("a,b\nx,y", "no line of numbers"),
         (
             "a,b\n1,2",
-            "no bounces in a, b: write headings such as .* drop_height and rebound_height",
+            "no bounces, as 'a' is not known, 'b' is not known: write .* drop_height and rebound_h",
         ),
-        ("Fallhöhe (m),Sprung (m)\n2,1\n1,0.5", "no bounces in Fallhöhe, Sprung: write headings"),
+        ("Fallhöhe (m),Sprung (m)\n2,1\n1,0.5", "'Fallhöhe' is height before, 'Sprung' is not k"),
         ("time\n2024-05-03T14:07:20.45Z\n2024-05-03T14:07:21.17Z", "seconds, mm:ss.s or hh:mm"),
         ('{"time": {"0": 0.45, "1": 1.17, "2": 1.75}}', "no recording: .* columns such"),
         ('{"time": "0.45 1.17 1.75"}', "no recording: .* columns such"),
@@ -267,8 +267,11 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("height A,height B\n1,0.8\n0.64,0.5", "two columns are both taken as height"),
         ("time,height A,height B\n0,1,0.8\n0.5,0,0.1\n0.9,0.5,0", "two columns are both taken as"),
         ("height 1,height 2\n1,0.8\n0.64,0.5", "each line or each column may be a recording"),
-        ("drop height,time\n1,1.1\n0.8,1\n0.7,0.9", "no bounces in drop height, time: write"),
-        ("drop height (cm),COR\n20,0.8\n30,0.79", "no bounces in drop height, COR: .* COR"),
+        (
+            "drop height,time\n1,1.1\n0.8,1\n0.7,0.9",
+            "'drop height' is height before, 'time' is time: w",
+        ),
+        ("drop height (cm),COR\n20,0.8\n30,0.79", "'COR' is coefficient: .* speed and COR"),
         ('h0 (mm),h1 (mm)\n"1,000","640"', "'1,000' may have thousands or decimals"),
         ("time\n1\n1.7\n2.2\n0.3\n1.2\n1.8", "sort the lines, or leave an empty line where"),
         ("interval [s]\n0.5\n0.7\n0.6", "follows one of"),
@@ -332,9 +335,12 @@ def test_balls_side_by_side_are_all_read(tmp_path):
 
 def test_columns_are_read_as_those_of_a_file():
     heights = np.array([50, 75, 100, 125])
-    found = fit({"drop height (cm)": heights, "rebound height (cm)": [*(0.6724 * heights), None]})
+    columns = {"drop height (cm)": heights, "rebound height (cm)": [*(0.6724 * heights[:3]), None]}
+    found = fit(columns)
     assert found.restitution == pytest.approx(0.82, abs=1e-9)
-    assert found.impacts.speed == pytest.approx(np.sqrt(2 * G * heights / 100))
+    assert found.impacts.speed == pytest.approx(np.sqrt(2 * G * heights[:3] / 100))
+    with pytest.raises(Refused, match="columns differ in length: 2, 1 cells"):
+        fit({"drop": [1, 2], "rebound": [0.5]})
 
 
 @pytest.mark.parametrize(
@@ -438,7 +444,7 @@ def test_a_ball_that_is_held_and_lies_at_last_is_followed_in_between(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("time,distance\n" + track(), "evenly spaced times are those of samples"),
+        ("time,KE\n" + track(), "evenly spaced times are those of samples"),
         ("t,x,y,x,y\n0,0,1,0,1\n1,0,2,0,2", "two columns are both taken as position"),
         ("time A,time B\n0.1,0.2\n0.9,1\n1.5,1.7", "two columns are both taken as time"),
         ("t,y\n0,2\n" + "\n".join(f"{t + 9:.4f},{position(t):.5f}" for t in FRAMES), "a gap in"),
@@ -497,9 +503,153 @@ def test_headings_in_quotes_are_read_between_spaces(tmp_path):
     assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
 
 
-@pytest.mark.parametrize("more", ["rebound ratio", "height lost (m)", "predicted rebound (m)"])
+DROPS = {"drop height (m)": [1.0, 1.5, 2.0], "rebound height (m)": [0.64, 0.96, 1.28]}
+DERIVED = (
+    "rebound ratio | height lost (m) | predicted rebound (m) | theoretical rebound height (m) "
+    "| rebound height squared | sqrt rebound height | rebound (%) | loss of height (m) "
+    "| log rebound height | expected rebound (m) | bounce efficiency | h² | berechnete Höhe (m)"
+)
+
+
+@pytest.mark.parametrize("more", DERIVED.split(" | "))
 def test_what_was_computed_is_no_reading(more):
     """With a column of ratios r was 0.818, with one of predictions 0.841, where it is 0.8."""
-    columns = {"drop height (m)": [1.0, 1.5, 2.0], "rebound height (m)": [0.64, 0.96, 1.28]}
-    found = fit(columns | {more: [0.9, 0.8, 0.7]})
+    found = fit(DROPS | {more: [0.9, 0.8, 0.7]})
     assert found.restitution == pytest.approx(0.8, abs=1e-6)
+    assert any("is left out: by its heading" in note for note in found.notes)
+    with pytest.raises(Refused, match="is no reading, but derived"):
+        fit({"drop height (m)": DROPS["drop height (m)"], more: [0.9, 0.8, 0.7]})
+
+
+@pytest.mark.parametrize("more", ["COR^2", "COR²", "1-e", "e squared", "velocity ratio"])
+def test_what_was_made_of_r_is_not_r(more):
+    """The square of r was taken for r: 0.64 for 0.8."""
+    with pytest.raises(Refused, match="is no reading, but derived"):
+        fit({"impact velocity (m/s)": [1, 2, 3], more: [0.64, 0.64, 0.64]})
+
+
+@pytest.mark.parametrize(
+    "headings",
+    [
+        ("rebound on wood (m)", "rebound on carpet (m)"),
+        ("rebound height 20C (m)", "rebound height 5C (m)"),
+        ("rebound golf (m)", "rebound tennis (m)"),
+    ],
+)
+def test_conditions_side_by_side_are_no_successive_bounces(headings):
+    """They were taken for bounces 1 and 2: r was 0.755 where it is 0.8 and 0.566."""
+    others = dict(zip(headings, ([0.64, 0.96, 1.28], [0.32, 0.48, 0.64]), strict=True))
+    with pytest.raises(Refused, match="two columns are both taken as height after"):
+        fit({"drop height (m)": [1.0, 1.5, 2.0]} | others)
+
+
+@pytest.mark.parametrize("form", ["bounce {}", "{} bounce height"])
+def test_headings_that_count_are_successive_bounces(form):
+    counts = ("1", "2") if form.startswith("b") else ("first", "second")
+    heights = np.array([1.0, 1.5, 2.0])
+    found = fit(
+        {"drop height (m)": heights}
+        | {f"{form.format(n)} (m)": heights * 0.64**i for i, n in enumerate(counts, 1)}
+    )
+    assert (found.recording.kind, len(found.impacts.speed)) == ("heights", 6)
+    assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
+def test_trials_have_another_unit_than_the_drop():
+    """Centimetres were compared with metres: the trials were taken for successive bounces."""
+    trials = {"Trial 1 (cm)": [16.4, 32.4, 47.9], "Trial 2 (cm)": [15.7, 31.2, 48.4]}
+    found = fit({"Drop height (m)": [0.25, 0.5, 0.75]} | trials)
+    assert found.recording.kind == "drops"
+    assert found.restitution == pytest.approx(0.8, abs=0.01)
+
+
+def test_names_that_are_pooled_are_said():
+    """Golf and tennis balls with 0.8 and 0.7 were given as 0.751 without a word."""
+    balls = {"Ball": ["Golf", "Golf", "Tennis", "Tennis"]}
+    heights = {"Drop height (m)": [1, 1.5, 1, 1.5], "Rebound height (m)": [0.64, 0.96, 0.49, 0.735]}
+    assert "Ball has Golf, Tennis: one r is fitted to all of them" in fit(balls | heights).notes
+    assert not any("all of them" in note for note in fit(heights).notes)
+
+
+def test_a_missed_impact_is_refused_with_its_line(tmp_path):
+    """Its r of 0.36 was pooled with those of 0.8."""
+    flights = 0.7 * 0.8 ** np.arange(8)
+    times = np.cumsum([0.2, *flights])
+    path = tmp_path / "heard.csv"
+    path.write_text("time (s)\n" + column(np.delete(times, 1)))
+    with pytest.raises(Refused, match="line 3: a flight of 1.26 s.* an impact is missing within"):
+        fit(path)
+    assert fit(path, leave_out=(3,)).restitution == pytest.approx(0.8, abs=1e-4)
+
+
+def test_of_components_that_with_the_impacts_is_read():
+    pushes = np.array([push(t) for t in PULSES])
+    noise = np.sin(77777 * PULSES)
+    names = [f"Acceleration {axis} (m/s^2)" for axis in "xyz"]
+    for i, name in enumerate(names):
+        columns = {"Time (s)": PULSES} | dict.fromkeys(names, noise)
+        found = fit(columns | {name: pushes})
+        # The contact of 8 ms stays in the flights.
+        assert found.restitution == pytest.approx(0.8225, abs=1e-3)
+        assert any(f"is read, Acceleration {'xyz'[i]}" in note for note in found.notes)
+
+
+def test_of_a_log_of_an_engine_the_vertical_position_is_read():
+    """The horizontal one was, or the speed."""
+    up = np.array([position(t) for t in FRAMES])
+    columns = {"time": FRAMES, "qpos_x": 0 * up, "qpos_y": 0 * up, "qpos_z": up}
+    found = fit(columns | {"qvel_z": np.gradient(up, FRAMES)})
+    assert found.restitution == pytest.approx(0.82, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "heading", ["Distance (m)", "Displacement (m)", "Run 1: Position (m)", "cy", "pos_z"]
+)
+def test_motion_detectors_and_trackers_have_positions(heading):
+    up = np.array([position(t) for t in FRAMES])
+    columns = {"Run 1: Time (s)": FRAMES, heading: up, "Latest: Velocity (m/s)": np.gradient(up)}
+    found = fit(columns | {"Latest: Acceleration (m/s²)": 0 * up})
+    assert found.restitution == pytest.approx(0.82, abs=1e-3)
+
+
+def test_a_track_says_how_many_impacts_are_left_out():
+    """The last flight of this one has three positions."""
+    kept = TIMES[2] + 0.06 > FRAMES
+    found = fit({"t": FRAMES[kept], "y": np.array([position(t) for t in FRAMES[kept]])})
+    assert any("2 of 3 impacts were found" in note for note in found.notes)
+
+
+def test_a_head_without_signs_above_the_headings_names_the_ball(tmp_path):
+    path = tmp_path / "sheet.csv"
+    lines = ["Lab 3: bouncing ball,,", "Mass,46,g", "Diameter,43,mm", ",,"]
+    lines += ["Drop height (cm),Trial 1 (cm),Trial 2 (cm)", "100,64,65", "150,96,95"]
+    path.write_text("\n".join(lines))
+    found = read(path)
+    assert (found.head["mass"], found.head["diameter"]) == ("46 g", "43 mm")
+    assert len(found.chains[0]) == 4
+
+
+@pytest.mark.parametrize(
+    ("source", "said"),
+    [
+        ("croqet", "none of the experiments: did you mean croquet"),
+        ("zzz", "did you mean blue_marble or bouncy_ball or"),
+        ("", "is a directory: give a file in it"),
+    ],
+)
+def test_what_is_no_recording_is_said(source, said, tmp_path):
+    with pytest.raises(Refused, match=said):
+        fit(source or tmp_path)
+
+
+def test_what_cannot_be_read_is_said(tmp_path):
+    path = tmp_path / "recording.csv"
+    path.write_text("frame,x_px,y_px\n0,3,1\n1,3,2")
+    with pytest.raises(Refused, match="'frame' is not used, 'x' is not used, 'y' is position: w"):
+        fit(path)
+    path.write_text("drop,rebound\n1,0.6\n2,1.2")
+    with pytest.raises(Refused, match="no bounces in .*: all lines with them are left out"):
+        fit(path, leave_out=(2, 3))
+    path.write_text("time (s)\n0\n0.4516\n1.1742\n1.7544")
+    with pytest.raises(Refused, match="the first time is that of the release"):
+        fit(path)

@@ -61,15 +61,16 @@ _UNIT = (
     r"|px|k?N|m?V|%|-)"
 )
 # The quantity of a heading is that of the first row with which its words agree. Accents
-# are removed, and signs are spaces.
+# are removed, and most signs are spaces. What is derived from readings or expected is no reading.
 _QUANTITIES = (
+    ("derived", r"\bratio|efficien|percent|\blos[st]|predict|theor|calcul|expect|ideal|simulat"),
+    ("derived", r"fitted|sqrt|squar|[√^]|\b(log|log10|ln|lg)\b|^1 (e|r|cor)\b|verhaltnis|verlust"),
+    ("derived", r"berechn|erwart|\bperte|\bprevu"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
     ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
     ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
     ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
-    # What was computed is no reading.
-    ("unused", r"^(?!.*restitution).*(\bratio|lost|loss\b|predict|theor|calcul|ideal|sqrt|squar)"),
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
@@ -91,12 +92,6 @@ _SIDES = (
     ("after", r"average|mean\b|(trial|run|test|measurement) \d"),
 )
 _AVERAGE = r"average|mean\b"
-# A heading with one of these words has no readings, but what was made of them or is expected.
-_DERIVED = (
-    r"\bratio|efficien|percent|\blos[st]|predict|theor|calcul|expect|ideal|simulat|fitted|sqrt"
-    r"|squar|[√²^]|\b(log|log10|ln|lg)\b|^1 ?[-−]|verhaltnis|verlust|berechn|erwart|\bperte"
-)
-_ORDINALS = ("first", "second", "third", "fourth", "fifth")
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
 _BY_UNIT = (("speed", "/"), ("time", r"s$|sec|min"), ("height", r"m$|^in|ft|feet|met"))
@@ -209,7 +204,9 @@ def _columns_as_text(name: str, columns: Any) -> str:
     )
     if not are_lists or any(np.ndim(cell) for each in values for cell in each if cell is not None):
         raise Refused(f"{name} {_NO_RECORDING}")
-    rows = itertools.zip_longest(*values)
+    if len(set(map(len, values))) > 1:
+        raise Refused(f"{name} differ in length: {', '.join(map(str, map(len, values)))} cells")
+    rows = zip(*values, strict=True)
     cells = [["" if cell is None else str(cell) for cell in row] for row in [columns, *rows]]
     return "\n".join(map("\t".join, cells))
 
@@ -225,9 +222,10 @@ def _text_of(source: Any) -> tuple[str, str]:
     if path.is_dir():
         raise Refused(f"{source} is a directory: give a file in it")
     if not path.exists():
-        close = difflib.get_close_matches(str(source), experiments(), 1)
-        meant = f"; did you mean {close[0]!r}?" if close else ""
-        raise Refused(f"{source} is no file, and none of {', '.join(experiments())}{meant}")
+        near = difflib.get_close_matches(str(source), experiments(), 1) or experiments()
+        raise Refused(
+            f"{source} is no file, and none of the experiments: did you mean {' or '.join(near)}?"
+        )
     name = Path(source).name
     data = path.read_bytes()
     if data.startswith(b"PK"):
@@ -374,13 +372,13 @@ def _column(heading: str, texts: list[str]) -> _Column:
     )
     name, unit = parts.groups() if parts else (heading, "")
     # Programs write "Run 1: Time (s)".
-    name = re.sub(r"^[^:]*: +", "", name)
+    name = re.sub(r"^[^:]*: +", "", name).replace("²", "^2")
     # (mm:ss) is no unit, and (-) is that of a number without one.
     unit = "" if ":" in unit or unit == "-" else unit
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     letters = unicodedata.normalize("NFKD", apart).casefold()
     words = re.sub(
-        r"[^\w'±]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
+        r"[^\w'±√^]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
     )
 
     def first(table: Sequence[tuple[str, str]], said: str) -> str:
@@ -396,8 +394,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
         if bare and side == "after" and len(texts) > 1 and (np.diff(numbers) == 1).all():
             quantity = ""
     role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
-    is_share = "%" in unit and quantity not in ("coefficient", "uncertainty")
-    if role not in ("", "unused") and (is_share or re.search(_DERIVED, f"{name} {words}", re.I)):
+    if "%" in unit and role not in ("coefficient", "uncertainty"):
         role = "derived"
     return _Column(name, unit, role, texts, numbers)
 
@@ -409,11 +406,9 @@ def _are_headings(row: list[str]) -> bool:
 
 def _are_counted(columns: list[_Column]) -> bool:
     """Return whether headings are alike but for counts, as h1 and h2, or first and second."""
-    names = [each.name.casefold() for each in columns]
-    for i, ordinal in enumerate(_ORDINALS, 1):
-        names = [name.replace(ordinal, str(i)) for name in names]
-    steps = np.diff([sum(map(int, re.findall(r"\d+", name))) for name in names])
-    alike = {re.sub(r"\d+(st|nd|rd|th)?", "#", name) for name in names}
+    count = r"\d+(st|nd|rd|th)?|first|second|third|fourth|fifth"
+    alike = {re.sub(count, "#", each.name, flags=re.I) for each in columns}
+    steps = np.diff([sum(map(int, re.findall(r"\d+", each.name))) for each in columns])
     return len(alike) == 1 and ((steps == 1).all() or (steps == 0).all())
 
 
@@ -556,7 +551,7 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
         is_grown = values[1:] > _GROWTH * values[:-1]
         table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
         if quantity == "interval":
-            # A flight and the next one, taken as one, have the ratio r/(1 + 1/r) < r/2 to the third.
+            # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2.
             ratios = values[1:] / values[:-1]
             is_missed = ratios[:-1] < ratios[1:] / 2
             table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
@@ -690,9 +685,8 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     gravity = scale * float(gravities.mean())
     slow = math.sqrt(STANDARD_GRAVITY / gravity)
     further = {
-        f"{len(kept)} impacts were found where flights meet; gravity is the scale": True,
-        f"{len(bottoms) - len(kept)} further turns of the track are left out: a flight beside them "
-        f"has fewer than {_FEWEST} positions, or is no parabola": len(bottoms) > len(kept),
+        f"{len(kept)} of {len(bottoms)} impacts were found between flights that can be fitted; "
+        "gravity is the scale": True,
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
         "the true ones, as in slow motion, and so are the speeds, or the heights have another "
@@ -760,8 +754,8 @@ def _layout(
         may_be_several = len(needed) == 1 or role == "height after"
         if len(same) > 1 and not (may_be_several and _are_counted(same)):
             raise Refused(
-                f"{table.name}: {same[0].name!r} and {same[1].name!r} are both taken as {role}: "
-                f"leave one out, or {_HEADINGS}"
+                f"{table.name}: two columns are both taken as {role}, {same[0].name!r} and "
+                f"{same[1].name!r}: leave one out, or {_HEADINGS}"
             )
         columns += same
     heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
@@ -832,7 +826,8 @@ def read(
     else:
         recording = _of_pairs(table, kind, columns)
     if not sum(map(len, recording.chains)):
-        raise Refused(f"{name}: no bounces in {', '.join(each.name for each in columns)}; {_TIMES}")
+        said = "all lines with them are left out" if leave_out else _TIMES
+        raise Refused(f"{name}: no bounces in {', '.join(each.name for each in columns)}: {said}")
     uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
@@ -847,9 +842,21 @@ def read(
     ]
     has_both = columns[0].role == "time" and "interval" in roles
     derived = ", ".join(repr(each.name) for each in roles.get("derived", []))
+    # A column of texts that recur has names, as of balls or surfaces.
+    kinds = {
+        each.name: set(each.texts) - {""}
+        for each in itertools.chain(*roles.values())
+        if np.isnan(each.numbers).all()
+    }
+    pooled = "; ".join(
+        f"{name} has {', '.join(sorted(texts))}"
+        for name, texts in kinds.items()
+        if 1 < len(texts) <= len(table.lines) / 2
+    )
     components = roles[columns[-1].role] if recording.notes else columns[-1:]
     further = {
         "the file has times and intervals: it is read by its times": has_both,
+        f"{pooled}: one r is fitted to all of them": bool(pooled),
         f"{derived} is left out: by its heading it has no readings, but what is derived or "
         "expected": bool(derived),
         f"of {', '.join(each.name for each in components)} the one with the sharpest changes is "

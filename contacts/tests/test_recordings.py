@@ -528,6 +528,12 @@ def test_what_was_made_of_r_is_not_r(more):
         fit({"impact velocity (m/s)": [1, 2, 3], more: [0.64, 0.64, 0.64]})
 
 
+@pytest.mark.parametrize("heading", ["calculated COR", "restitution coefficient, ratio"])
+def test_a_coefficient_is_always_computed(heading):
+    found = fit({"impact velocity (m/s)": [1, 2, 3], heading: [0.8] * 3})
+    assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
 @pytest.mark.parametrize(
     "headings",
     [
@@ -627,6 +633,9 @@ def test_a_head_without_signs_above_the_headings_names_the_ball(tmp_path):
     found = read(path)
     assert (found.head["mass"], found.head["diameter"]) == ("46 g", "43 mm")
     assert len(found.chains[0]) == 4
+    # Numbers above are no head.
+    path.write_text("time (s)\n0.1\n0.9\n1.5\n\ndrop height,rebound height\n1,0.64")
+    assert list(read(path).chains[0]) == pytest.approx([0.8, 0.6])
 
 
 @pytest.mark.parametrize(

@@ -63,9 +63,12 @@ _UNIT = (
 # The quantity of a heading is that of the first row with which its words agree. Accents
 # are removed, and most signs are spaces. What is derived from readings or expected is no reading.
 _QUANTITIES = (
-    ("derived", r"\bratio|efficien|percent|\blos[st]|predict|theor|calcul|expect|ideal|simulat"),
-    ("derived", r"fitted|sqrt|squar|[√^]|\b(log|log10|ln|lg)\b|^1 (e|r|cor)\b|verhaltnis|verlust"),
-    ("derived", r"berechn|erwart|\bperte|\bprevu"),
+    ("derived", r"^(?!.*(restitution|\bcor\b)).*(\bratio|efficien|percent|calcul|berechn|verhalt)"),
+    (
+        "derived",
+        r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^]|^1 (e|cor)\b",
+    ),
+    ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
     ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
@@ -310,7 +313,8 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     cells = _split(name, list(kept.values()))
     has_numbers = [not np.isnan([*map(_number, row)]).all() for row in cells]
     # Lines such as "Mass,46,g" may stand above the headings.
-    headed = (i for i, row in enumerate(cells) if not has_numbers[i] and _are_headings(row))
+    texts = itertools.takewhile(lambda row: np.isnan(_number("".join(row[:1]))), cells)
+    headed = (i for i, row in enumerate(texts) if not has_numbers[i] and _are_headings(row))
     above_headings = next(headed, 0)
     for row in cells[:above_headings]:
         if len(row) > 1:

@@ -15,6 +15,8 @@ from bouncing_ball_contacts.designs import Problem
 from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import exact, offsets
 
+EQUAL = dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm")
+UNEQUAL = dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm")
 CASES = [
     ("mujoco", "ball", dict(mass="50 g", restitution=0.8), "2 ms", {}),
     ("mujoco", "ball", dict(mass="50 g", restitution=0.8, penetration="2 mm"), "2 ms", {}),
@@ -24,13 +26,7 @@ CASES = [
     ("mujoco", "ball", dict(mass="2 t", restitution=0.3, radius="0.5 m"), "10 ms", {}),
     ("mujoco", "ball", dict(mass="2 mg", restitution=0.7, drop_height="5 cm"), "20 us", {}),
     ("mujoco", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
-    (
-        "mujoco",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("mujoco", "two", EQUAL, None, {}),
     (
         "mujoco",
         "two",
@@ -64,13 +60,7 @@ CASES = [
         None,
         {},
     ),
-    (
-        "pybullet",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("pybullet", "two", EQUAL, None, {}),
     ("drake", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     (
         "drake",
@@ -82,13 +72,7 @@ CASES = [
     ("drake", "ball", dict(mass="2 t", restitution=0.6, radius="0.5 m"), "10 ms", {}),
     ("drake", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
     ("drake", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
-    (
-        "drake",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("drake", "two", EQUAL, None, {}),
     (
         "drake-hunt-crossley",
         "ball",
@@ -99,13 +83,7 @@ CASES = [
     ("lammps", "ball", dict(mass="50 g", restitution=0.8, radius="30 mm"), "1 ms", {}),
     ("lammps", "ball", dict(mass="2 mg", restitution=0.99, drop_height="5 cm"), "20 us", {}),
     ("lammps", "ball", dict(mass="1 kg", restitution=0.05, radius="5 cm"), "200 us", {}),
-    (
-        "lammps",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("lammps", "two", UNEQUAL, None, {}),
     (
         "lammps-limit-damping",
         "ball",
@@ -136,13 +114,7 @@ CASES = [
     ),
     ("newton-mujoco", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("liggghts", "ball", dict(mass="50 g", restitution=0.8, radius="30 mm"), "1 ms", {}),
-    (
-        "liggghts",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("liggghts", "two", UNEQUAL, None, {}),
     (
         "liggghts-limit-force",
         "ball",
@@ -168,13 +140,7 @@ CASES = [
     ("mercurydpm", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("mercurydpm", "ball", dict(mass="2 mg", restitution=0.99, drop_height="5 cm"), "20 us", {}),
     ("mercurydpm", "ball", dict(mass="1 kg", restitution=0.05, radius="5 cm"), "200 us", {}),
-    (
-        "mercurydpm",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("mercurydpm", "two", UNEQUAL, None, {}),
     ("ode", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     (
         "ode",
@@ -202,13 +168,7 @@ CASES = [
         None,
         {},
     ),
-    (
-        "chrono",
-        "two",
-        dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
+    ("chrono", "two", UNEQUAL, None, {}),
     ("genesis", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
 ]
 HEAD = [

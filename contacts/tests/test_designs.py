@@ -71,7 +71,8 @@ def test_every_restitution_is_reached(name, r):
     """e⁻² = 0.135 is where a damping ratio of 1 is passed."""
     found = design(Bounce(mass="1 kg", restitution=r, radius="5 cm"), name)
     mean = found.row.outcome.restitution[1]
-    assert mean == pytest.approx(r, abs=0.02)
+    # The step of this row is one with half of the tolerance.
+    assert mean == pytest.approx(r, abs=0.01)
 
 
 def test_the_stiffest_contact_within_the_tolerance_is_taken():
@@ -415,7 +416,7 @@ def largest_deviation(found, change):
         setting = problem.setting(step)
         law = problem.engine.read(combined, replace(setting, mass=of_mass * setting.mass))
         law = replace(law, stiffness=of_stiffness * law.stiffness)
-        deviations.append(problem.drops(law, step, trials).error(problem.target))
+        deviations.append(problem.drops(law, step, trials).error(problem.bounce.restitution))
     return max(deviations)
 
 

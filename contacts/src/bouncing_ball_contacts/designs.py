@@ -339,11 +339,6 @@ class Problem:
     drag: float = 0.0
 
     @property
-    def target(self) -> float:
-        """The r that designs aim at."""
-        return max(float(self.bounce.restitution), LEAST_RESTITUTION)
-
-    @property
     def deepest(self) -> float:
         """The depth in m from which on the engine loses the body, or two bodies change places."""
         of_engine = self.engine.deepest * self.bounce.size
@@ -356,6 +351,10 @@ class Problem:
         if self.bounce.other_mass is None:
             return f"{self.engine.name} loses a body that sinks more than {deepest}"
         return f"bodies that sink more than {deepest} pass through each other"
+
+    def miss(self, row: "Row") -> float:
+        """Return the largest distance of r from the wanted one."""
+        return row.outcome.deviation(self.bounce.restitution)
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
@@ -547,8 +546,7 @@ def design(
 
 def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
     """Return whether a row keeps the tolerance and a limit of the penetration in m."""
-    found = row.outcome
-    return found.deviation(problem.bounce.restitution) <= tolerance and found.depth[1] <= limit
+    return problem.miss(row) <= tolerance and row.outcome.depth[1] <= limit
 
 
 def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
@@ -645,15 +643,13 @@ def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
         for i in dict.fromkeys([*np.flatnonzero(error <= tolerance), np.argmin(error)]):
             row = problem.row(problem.law(depth[i], ratio[i]), step)
             rows.append(row)
-            if row.outcome.deviation(problem.bounce.restitution) <= tolerance:
+            if problem.miss(row) <= tolerance:
                 before = depth[i - 1] if i else stiffer
                 finer = before and _between(problem, before, depth[i], step, tolerance)
                 return finer or row
         stiffer = depth[-1]
-    nearest = min(
-        rows, key=lambda row: row.outcome.deviation(problem.bounce.restitution), default=None
-    )
-    if nearest is None or nearest.outcome.deviation(problem.bounce.restitution) > 2 * tolerance:
+    nearest = min(rows, key=problem.miss, default=None)
+    if nearest is None or problem.miss(nearest) > 2 * tolerance:
         return None
     return nearest
 
@@ -665,7 +661,7 @@ def _between(
     depth, error, ratio = _tried(problem, np.geomspace(fails, holds, 7)[1:-1], step)
     for i in np.flatnonzero(error <= tolerance):
         row = problem.row(problem.law(depth[i], ratio[i]), step)
-        if row.outcome.deviation(problem.bounce.restitution) <= tolerance:
+        if problem.miss(row) <= tolerance:
             return row
     return None
 
@@ -722,7 +718,7 @@ def _too_long(
             how = "its centre passes the surface"
         reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
         found.append(f"at your step it sinks {show(sinks, 'm')}, {how}{reason}; {what}")
-    if rows[YOURS].outcome.deviation(problem.bounce.restitution) > tolerance:
+    if problem.miss(rows[YOURS]) > tolerance:
         found.append(f"at your step no spring has r within {tolerance:g}: the nearest one is shown")
     if bounce.penetration is not None or _undamped_depth(problem) is not None:
         other = YOURS if chosen == WANTED else WANTED
@@ -745,7 +741,7 @@ def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> lis
             f"r = {bounce.restitution:g}: the damping leaves about {mean:.3f}, by which a body "
             f"rises {mean**2:.1g} of its height"
         )
-    elif is_wanted and row.outcome.deviation(problem.bounce.restitution) > tolerance:
+    elif is_wanted and problem.miss(row) > tolerance:
         found.append(f"r is {span(low, high)}: no damping of this contact is nearer")
     if float(law.damping) == 0 and mean < bounce.restitution - 5e-4:
         found.append(

@@ -24,6 +24,7 @@ import numpy as np
 from bouncing_ball_contacts import units
 from bouncing_ball_contacts.designs import (
     IMPULSE,
+    LEAST_RESTITUTION,
     TOLERANCE,
     Bounce,
     Outcome,
@@ -526,12 +527,13 @@ def _nearest(contact: Contact) -> Change:
     It is found by bisection: a damping lowers r, and a number raises it.
     """
     raises = contact.damper in _SHARES
+    target = max(contact.problem.bounce.restitution, LEAST_RESTITUTION)
     # Ratios beyond these are springs that throw the body away, or hardly act.
     low, high = (1e-3, 1e2) if contact.is_ratio else (1e-12, 1.0 if raises else 1e12)
     while high > (1 + 1e-4) * low:
         middle = math.sqrt(low * high)
         tried = contact.damped(middle)
-        is_above = not tried.diverges and tried.outcome(_MEAN).restitution[1] > tried.problem.target
+        is_above = not tried.diverges and tried.outcome(_MEAN).restitution[1] > target
         if is_above == raises:
             high = middle
         else:

@@ -20,13 +20,13 @@ import numpy as np
 
 from bouncing_ball_contacts.fits import (
     LAWS,
-    G,
     curves_of,
     estimates,
     impacts_of,
     judge,
 )
 from bouncing_ball_contacts.recordings import Recording
+from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
 
 
 def power(e, slope, v):

@@ -13,6 +13,7 @@ from bouncing_ball_contacts.fits import (
     ContactLaw,
     curves_of,
     impacts_of,
+    judge,
     without_scatter,
 )
 from bouncing_ball_contacts.recordings import Recording
@@ -106,6 +107,45 @@ def test_recordings_without_scatter_are_rejected_as_one_in_twenty(known):
     assert 115 <= np.sum(np.array(found) < 0.5) <= 185
 
 
+@pytest.mark.parametrize("known", [None, 1e-3])
+def test_two_impacts_contradict_nothing(known):
+    impacts = impacts_of(Recording("", "flights", (np.array([0.8, 0.62, 0.51]),)))
+    curves = curves_of(impacts, known, 2.0)
+    assert without_scatter(impacts, curves) == 1
+    assert {law.verdict for law in judge(impacts, curves, 2.0)} == {"undecided"}
+
+
+def test_impacts_that_are_left_out_are_those_of_a_shorter_recording():
+    """The errors of flights are correlated, for which their number was off by a tenth."""
+    rng = np.random.default_rng(4)
+    impacts = impacts_of(heard(rng, 1e-3, 0.0))
+    curves = curves_of(impacts, 1e-3, 2.0)
+    constant = next(law for law in judge(impacts, curves, 2.0) if law.law.startswith("constant"))
+    share = int(np.argmax(np.exp(curves.log_weights - curves.log_weights.max()).sum(axis=(1, 2))))
+    covariance = curves.basis * curves.variances[share] @ curves.basis.T
+    missed = []
+    for i in range(len(impacts.log_r)):
+        kept = np.delete(np.arange(len(impacts.log_r)), i)
+        weights = np.linalg.inv(covariance[np.ix_(kept, kept)]).sum(axis=0)
+        mean = weights @ impacts.log_r[kept] / weights.sum()
+        missed.append(math.exp(mean) - impacts.restitution[i])
+    # The law is followed to first order in its parameter.
+    assert constant.left_out == pytest.approx(np.sqrt(np.mean(np.square(missed))), rel=1e-3)
+
+
+@pytest.mark.parametrize("r", [0.015, 0.05, 0.3, 0.9])
+def test_every_law_follows_an_r_of_its_own(r):
+    """An r below 0.14 was out of the table of Kuwabara and Kono, and below 0.02 of the others."""
+    for name, law in LAWS.items():
+        v = np.linspace(0.5, 2.0, 8)
+        a = law.damping(r) / 2.0**law.speed
+        pairs = np.column_stack([v, np.exp(law.log_r(a, v))])
+        found = fit(Recording("", "coefficients", (pairs,)), speed=2.0)
+        judged = next(each for each in found.laws if each.law == name)
+        assert judged.restitution == pytest.approx(r, rel=2e-3)
+        assert judged.rms < 1e-6
+
+
 def test_a_ratio_above_1_beyond_its_error_is_refused():
     pairs = np.column_stack([[1.0, 2.0, 3.0, 4.0], [1.04, 2.081, 3.12, 4.161]])
     with pytest.raises(Refused, match=r"r = 1\.04\d\d is above 1 by more than its error"):
@@ -148,7 +188,7 @@ def test_a_stated_resolution_is_used():
 
 
 def test_contact_laws_in_closed_form():
-    linear, hunt_crossley = ContactLaw(1.0, 0.0, 1.9), LAWS["Hunt and Crossley"]
+    linear, hunt_crossley = ContactLaw(1.0, 0.0), LAWS["Hunt and Crossley"]
     zeta = 0.3
     # The force vanishes after π - 2 arcsin ζ of the damped swing.
     lasts = (math.pi - 2 * math.asin(zeta)) / math.sqrt(1 - zeta**2)
@@ -163,7 +203,7 @@ def test_a_contact_time_gives_each_law_its_stiffness():
     found = fit("croquet")
     stiffness = {each.law: each.stiffness for each in found.times}
     # T = D (M²/(K² v))^(1/5), where D is 3.218 without damping.
-    tsuji = ContactLaw(1.5, 0.25, 20.0)
+    tsuji = ContactLaw(1.5, 0.25)
     lasts = float(tsuji.duration(tsuji.damping(found.restitution), np.array(1.0)))
     assert 0.9 * 3.218 < lasts < 3.218
     hertz = (lasts / 7.314e-4) ** 2.5 * 0.4536 / math.sqrt(found.speed)
@@ -189,9 +229,7 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
 def test_weights_are_those_of_a_distribution():
     impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64, 0.5]),)))
     curves = curves_of(impacts, None, 3.0)
-    weights, _, _ = curves.posterior(impacts.log_r)
-    assert weights.sum() == pytest.approx(1.0)
-    assert curves.shapes.shape[1:] == (3, 3)
+    assert curves.basis @ curves.basis.T == pytest.approx(np.eye(3))
 
 
 def test_intervals_are_read_and_shown(tmp_path):

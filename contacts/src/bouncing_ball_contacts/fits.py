@@ -1,4 +1,4 @@
-r"""From a recording to r over the speed, with its interval, and to the contact laws that it allows.
+"""From a recording to r over the speed, with its interval, and to the contact laws that it allows.
 
 The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Their logarithms are::
 
@@ -15,19 +15,22 @@ have log-normal priors with a factor of 7 either way. That of scatter is about 0
 the published experiments (0.0004 to 0.04); that of errors about what instruments have, 1 ms, 2 mm
 or 0.02 m/s. If the errors of the readings are given, σ² (1 - φ) is known.
 
+The covariances of all φ have the same eigenvectors, those of M Mᵀ. In their basis each covariance
+is a row of variances, and every question below is one of weighted sums of squares.
+
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
 does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
-scatter, and for all other φ, if they do. The first one is left out if the impacts contradict it or
-if both are alike. The impacts contradict it if a test of φ = 0 rejects it at 5 %. Its statistic is
-Q(0)/σ², which has the χ² distribution, if the errors are known, and Q(0)/Q(1) otherwise, where Q(φ)
-is the sum of squares that a power of the speed leaves.
+scatter, and for all other φ, if they do. The first one is left out if both are alike or if a test
+of φ = 0 at 5 % rejects it (`without_scatter`).
 
-A law is judged by how much worse it fits than a parabola in ln v, for each φ: by the F
-distribution, of whose probabilities the largest one counts among those φ that are at least 1/20 as
-likely as the likeliest one, or by the χ² distribution if the errors are known, averaged over φ.
-Scatter alone, which the parabola has as well, therefore rejects no law. Without given errors a
-systematic error of the measurement does not show in the scatter: a law is then not called
-incompatible, but said to deviate.
+A law is judged by how much worse it fits than a parabola in ln v, for each φ: with m impacts more
+than the three that a parabola needs, and sums of squares Q of the law and P of the parabola, its
+probability is (P/Q)^(m/2), that of the F distribution with 2 and m degrees of freedom. The largest
+one counts of those φ that are at least 1/20 as likely as the likeliest one. If the errors are known
+it is e^(-(Q - P)/2σ²), that of the χ² distribution, averaged over φ. Scatter alone, which the
+parabola has as well, therefore rejects no law. Without given errors a systematic error of the
+measurement does not show in the scatter: a law is then not called incompatible, but said to
+deviate.
 """
 
 import functools
@@ -38,42 +41,48 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy import linalg, optimize, special
+from scipy import integrate, interpolate, linalg, special
 from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
-from bouncing_ball_contacts.units import Refused, positive, show, span
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
-_SLOPE = 0.25
-_EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
-# φ: none, and evenly in ln(φ/(1 - φ)), so that sizes of scatter and errors are even in logarithms.
-_SHARES = np.concatenate([[0.0], special.expit(np.arange(-6.0, 7.0, 2.0))])
-# Usual sizes of scatter in ln r and of errors of readings, and the width of the priors of both in
-# their logarithms: a factor of 7 either way.
-_SCATTER = 0.011
-_USUAL = {"flights": 1e-3, "heights": 2e-3, "drops": 2e-3, "speeds": 0.02, "coefficients": 0.011}
-_WIDTH = 2.0
-_LEAST, _MOST = 1e-5, 0.5
-_LEVEL = 0.95
-# What is less likely than this, compared with something else, is left out.
-_UNLIKELY = 0.05
-# Contacts of balls rarely last longer, in s.
-_LONG_CONTACT = 0.01
-# Intervals are alike if the narrower one is more than this part of the other one.
-_ALIKE = 0.8
 REJECTED = 0.005
-"""A law with a smaller probability is rejected."""
+"""The probability below which a law is rejected."""
 ACCEPTED = 0.05
-# Of air and osmium, in kg/m³, and the drag coefficient of a sphere.
+"""The probability above which a law is compatible, and an absence of scatter possible."""
+
+# Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
+# the readings with which the speeds before and after an impact go. Those of series are alike; of a
+# coefficient the speed is taken as exact.
+_KINDS = {
+    "flights": ("s", 1e-3, (1.0, 1.0)),
+    "heights": ("m", 2e-3, (0.5, 0.5)),
+    "drops": ("m", 2e-3, (0.5, 0.5)),
+    "speeds": ("m/s", 2e-2, (1.0, 1.0)),
+    "coefficients": ("", 1.1e-2, (0.0, 1.0)),
+}
+_WITH_DRAG = ("flights", "heights", "drops")
+# The priors: the middle of scatter, the width of the logarithms of both sizes, and that of s.
+_SCATTER = 0.011
+_WIDTH = 2.0
+_SLOPE = 0.25
+# φ is 0, or else even in its logit, in which the priors of both sizes are even as well.
+_SHARES = np.array([0.0, *special.expit(np.arange(-6.0, 7.0, 2.0))])
+# 1e-6 stands for 0, which would be divided by.
+_EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
+# Squares of differences of ln r that are rounding errors.
+_ROUNDING = 1e-20
+# Of the air: its density in kg/m³ and the drag coefficient of a ball. The densest ball is osmium.
 _AIR = 1.2
-_DENSEST = 22600.0
 _DRAG = 0.47
-_FEWEST = 3
+_DENSEST = 22600.0
+
+
+# Readings to impacts.
 
 
 @dataclass(frozen=True)
@@ -95,26 +104,36 @@ class Impacts:
         return np.exp(self.log_r)
 
 
-def _flight_speeds(duration: Array, drag: float) -> tuple[Array, Array]:
-    """Return the speeds at the start and the end of flights, with the drag in 1/m."""
-    if not drag:
-        return G * duration / 2, G * duration / 2
-
-    def lasts(up: Array) -> Array:
-        x = up * math.sqrt(drag / G)
-        return (np.arctan(x) + np.arcsinh(x)) / math.sqrt(drag * G)
-
-    bracket = (G * duration / 2, 2 * G * duration)
-    up = elementwise.find_root(lambda up, all_: lasts(up) - all_, bracket, args=(duration,)).x
-    return up, up / np.sqrt(1 + drag * up**2 / G)
+def _derivatives(kind: str, values: Array) -> Array:
+    """Return the part of a chain in M, which is that of ln v after minus that before an impact."""
+    power = np.array(_KINDS[kind][2])
+    n = len(values)
+    if values.ndim == 2:
+        # The readings of a pair are independent, and enter as one.
+        return np.diag(np.linalg.norm(power / values, axis=1))
+    # A flight is the difference of two readings.
+    each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
+    return np.diff(power[0] * each / values[:, None], axis=0)
 
 
-def _height_speeds(height: Array, drag: float) -> tuple[Array, Array]:
-    """Return the speeds of a rise to a height, and of the fall from it."""
-    if not drag:
-        return np.sqrt(2 * G * height), np.sqrt(2 * G * height)
-    up = np.sqrt(G / drag * np.expm1(2 * drag * height))
-    return up, np.sqrt(-G / drag * np.expm1(-2 * drag * height))
+def _height(flight: Array, drag: float) -> Array:
+    """Return the height of flights of some time in s, with a drag D in 1/m.
+
+    A ball that starts with a √(g/D) rises for atan(a)/√(g D) to ln(1 + a²)/(2 D), and falls for
+    asinh(a)/√(g D). The sum of both functions is below 2 a and above asinh(a).
+    """
+    lasts = math.sqrt(STANDARD_GRAVITY * drag) * flight
+    found = elementwise.find_root(
+        lambda a, wanted: np.arctan(a) + np.arcsinh(a) - wanted,
+        (lasts / 2, np.sinh(lasts)),
+        args=(lasts,),
+    )
+    return np.log1p(found.x**2) / (2 * drag)
+
+
+def _speed(height: Array, drag: Array) -> Array:
+    """Return √(g (e^(2 D h) - 1)/D), the speed of a rise to a height, and with -D of a fall."""
+    return np.sqrt(STANDARD_GRAVITY * np.expm1(2 * drag * height) / drag)
 
 
 def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
@@ -125,126 +144,72 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     Refused
         If there is no impact between two flights.
     """
-    parts = []
-    for chain in recording.chains:
-        is_pairs = recording.kind not in ("flights", "heights")
-        first, second = chain.T if is_pairs else (chain[:-1], chain[1:])
-        down = first
-        up = second
-        if recording.kind == "flights":
-            down = _flight_speeds(first, drag)[1]
-            up = _flight_speeds(second, drag)[0]
-            # An error of a time enters the flights on both sides of it.
-            of_flights = np.diff(np.diag(1 / chain), axis=0)
-            matrix = of_flights @ np.diff(np.eye(len(chain) + 1), axis=0)
-        elif recording.kind == "coefficients":
-            up = first * second
-            matrix = np.diag(1 / second)
-        elif recording.kind == "speeds":
-            matrix = np.diag(np.hypot(1 / first, 1 / second))
-        else:
-            down = _height_speeds(first, drag)[1]
-            up = _height_speeds(second, drag)[0]
-            of_pairs = np.diag(0.5 * np.hypot(1 / first, 1 / second))
-            matrix = of_pairs if is_pairs else np.diff(np.diag(0.5 / chain), axis=0)
-        parts.append((down, np.log(up / down), matrix))
-    if not sum(len(down) for down, _, _ in parts):
-        raise Refused(f"{recording.name}: no impact lies between two flights: three times or two "
-                      "heights are needed")  # fmt: skip
-    speeds, logs, blocks = zip(*parts, strict=True)
-    readings = linalg.block_diag(*blocks)
-    return Impacts(np.concatenate(speeds), np.concatenate(logs), readings, _USUAL[recording.kind])
+    kind = recording.kind
+    pairs = np.concatenate(
+        [
+            values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
+            for values in recording.chains
+        ]
+    )
+    if not len(pairs):
+        raise Refused(
+            f"{recording.name}: no impact lies between two flights: three times or two heights are "
+            "needed"
+        )
+    # Without drag the formulas have limits, to which they are close at 1e-12/m.
+    drag = drag or 1e-12
+    if kind == "coefficients":
+        pairs[:, 1] *= pairs[:, 0]
+    if kind == "flights":
+        pairs = _height(pairs, drag)
+    if kind in _WITH_DRAG:
+        pairs = _speed(pairs, np.array([-drag, drag]))
+    before, after = pairs.T
+    readings = linalg.block_diag(*(_derivatives(kind, values) for values in recording.chains))
+    return Impacts(before, np.log(after / before), readings, _KINDS[kind][1])
 
 
 def without_contacts(recording: Recording, durations: Array) -> Recording:
-    """Return the recording with flights from release to touch.
+    """Return a recording of flights from release to touch, in place of from touch to touch.
 
     Raises
     ------
     Refused
         If a contact would last longer than half of the flights, or than two touches are apart.
     """
-    chains = tuple(chain - durations[: len(chain)] for chain in recording.chains)
-    typical = float(np.mean(durations))
-    if any((chain <= 0).any() or typical > np.median(chain) for chain in chains if len(chain)):
-        longest = show(float(durations.max()), "s")
+    # A recording with a duration for each touch has one chain.
+    lasting = durations if len(durations) == 1 else durations[:-1]
+    chains = tuple(flights - lasting for flights in recording.chains)
+    rest = np.concatenate(chains)
+    if rest.min() <= 0 or rest.sum() < np.concatenate(recording.chains).sum() / 2:
+        longest = show(float(np.max(durations)), "s")
         raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
     return replace(recording, chains=chains)
 
 
+# Impacts to r at one speed.
+
+
 @dataclass(frozen=True)
 class Curves:
-    """The smooth curves of a recording about a speed, by share φ, exponent q and size σ.
+    """The posterior of smooth curves about a speed, by share φ, size σ and exponent q.
 
-    ``shapes`` are the V of covariances σ² V of ln r (share, n, n), ``sizes`` the σ (share, size);
-    ``columns`` are those of β and s at the impacts (exponent, 2, n), ``project`` is XᵀV⁻¹,
-    ``spread`` the covariance of β and s, ``log_weight`` what the posterior has besides squares.
+    ``basis`` has the eigenvectors of M Mᵀ, in which ``variances`` (share, n) are those of ln r over
+    σ²; ``sizes`` are the σ (share, size). The logarithms of weights, the means of β, ``value``, and
+    of s, ``slope``, and the standard deviation of β, ``spread``, have the shape (share, size,
+    exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
     ``is_known`` says whether the errors of readings are given.
     """
 
     is_known: bool
-    shapes: Array
+    basis: Array
+    variances: Array
     sizes: Array
-    columns: Array
-    project: Array
+    log_weights: Array
+    value: Array
+    slope: Array
     spread: Array
-    log_weight: Array
-
-    def posterior(self, y: Array) -> tuple[Array, Array, Array]:
-        """Return weights of sum 1, β and s for ln r of a recording."""
-        normal = self.project @ y
-        squares = y @ np.linalg.solve(self.shapes, y[:, None])[..., 0].T
-        variance = self.sizes[:, None, :] ** 2
-        best = (self.spread @ normal[:, :, None, :, None])[..., 0] / variance[..., None]
-        explained = np.sum(best * normal[:, :, None], axis=-1)
-        logs = self.log_weight - (squares[:, None, None] - explained) / (2 * variance)
-        weights = np.exp(logs - logs.max())
-        return weights / weights.sum(), best[..., 0], best[..., 1]
-
-
-def curves_of(impacts: Impacts, known: float | Array | None, at: float) -> Curves:
-    """Return the smooth curves about a speed in m/s.
-
-    ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
-    """
-
-    def log_prior(size: Array) -> Array:
-        return -0.5 * (np.log(size) / _WIDTH) ** 2
-
-    n = len(impacts.log_r)
-    of_readings = impacts.readings @ impacts.readings.T
-    if isinstance(known, np.ndarray):
-        of_readings = np.diag((known / impacts.restitution) ** 2)
-    unit = float(np.median(np.diag(of_readings)))
-    share = _SHARES[:, None, None]
-    # Contributions below 10⁻⁴ of σ keep the covariances regular.
-    shapes = (1 - share) * of_readings / unit + (share + 1e-9) * np.eye(n)
-    still = np.sqrt(1 - _SHARES)[:, None]
-    if known is None:
-        # ln σ is known to about 1/√(2n), which the grid resolves.
-        size = np.geomspace(_LEAST, _MOST, 28 + (n if n > 11 else 0))
-        sizes = np.tile(size, (len(_SHARES), 1))
-        logs = log_prior(sizes * still / (impacts.usual * math.sqrt(unit)))
-    else:
-        sizes = (1.0 if isinstance(known, np.ndarray) else known) * math.sqrt(unit) / still
-        logs = np.zeros_like(sizes)
-    logs[1:] += log_prior(sizes[1:] * np.sqrt(_SHARES[1:])[:, None] / _SCATTER)
-    logs -= 0.5 * np.linalg.slogdet(shapes)[1][:, None] + n * np.log(sizes)
-    q = _EXPONENTS[:, None]
-    columns = np.stack([np.ones((len(q), n)), np.expm1(q * np.log(impacts.speed / at)) / q], axis=1)
-    project = columns @ np.linalg.inv(shapes)[:, None]
-    information = project @ np.swapaxes(columns, 1, 2)
-    prior = np.diag([0.0, _SLOPE**-2])
-    precision = information[:, :, None] / sizes[:, None, :, None, None] ** 2 + prior
-    return Curves(
-        is_known=known is not None,
-        shapes=shapes,
-        sizes=sizes,
-        columns=columns,
-        project=project,
-        spread=np.linalg.inv(precision),
-        log_weight=logs[:, None] - 0.5 * np.linalg.slogdet(precision)[1],
-    )
+    scatter: float
 
 
 @dataclass(frozen=True)
@@ -257,56 +222,114 @@ class Estimate:
     slope: float
 
 
-def _estimate(curves: Curves, y: Array, possible: NDArray[np.bool_]) -> Estimate:
+def curves_of(impacts: Impacts, known: float | Array | None, at: float) -> Curves:
+    """Return the smooth curves about a speed in m/s.
+
+    ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
+    """
+    n = len(impacts.log_r)
+    errors = impacts.readings * (impacts.usual if known is None else known)
+    covariance = errors @ errors.T
+    error = math.sqrt(float(np.median(np.diag(covariance))))
+    eigenvalues, basis = np.linalg.eigh(covariance / error**2)
+    share = _SHARES[:, None]
+    # Readings that are nearly redundant have eigenvalues of about 0.
+    variances = (1 - share) * (eigenvalues + 1e-9) + share
+    # If the size of errors is known, it gives σ; otherwise the posterior of ln σ gets narrower as
+    # impacts get more.
+    unknown = np.geomspace(1e-5, 0.5, 28 + n) * np.ones_like(share)
+    sizes = unknown if known is None else error / np.sqrt(1 - share)
+    # The squares of the logarithms of both sizes, in units of the width of their priors.
+    prior = (np.log(sizes * np.sqrt(1 - share) / error) / _WIDTH) ** 2
+    prior[1:] += (np.log((sizes * np.sqrt(share))[1:] / _SCATTER) / _WIDTH) ** 2
+    # With the weights w, e for the ones, c for the bends and means m = Σ w e y/Σ w e² and
+    # b = Σ w e c/Σ w e², the slope is (Σ w c y - b m Σ w e²)/(Σ w c² - b² Σ w e² + 1/0.25²), and β
+    # is m - b s. The middle of ln r is subtracted against rounding errors.
+    bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
+    middle = float(np.mean(impacts.log_r))
+    one = basis.sum(axis=0)
+    bend = bends @ basis
+    y = (impacts.log_r - middle) @ basis
+    precision = 1 / (sizes[..., None] ** 2 * variances[:, None])
+    ones = (precision @ one**2)[..., None]
+    both = precision @ (one * bend).T / ones
+    mean = (precision @ (one * y))[..., None] / ones
+    of_slope = precision @ (bend**2).T - ones * both**2 + _SLOPE**-2
+    slope = (precision @ (bend * y).T - ones * both * mean) / of_slope
+    squares = (precision @ y**2 + prior)[..., None] - ones * mean**2 - of_slope * slope**2
+    size = np.sum(np.log(precision), axis=-1)[..., None] - np.log(ones * of_slope)
+    log_weights = (size - squares) / 2
+    value = middle + mean - both * slope
+    weights = special.softmax(log_weights)
+    curve = np.sum(weights * value) + np.sum(weights * slope, axis=(0, 1)) @ bends
+    deviations = np.exp(curve) - impacts.restitution
+    return Curves(
+        is_known=known is not None,
+        basis=basis,
+        variances=variances,
+        sizes=sizes,
+        log_weights=log_weights,
+        value=value,
+        slope=slope,
+        spread=np.sqrt(1 / ones + both**2 / of_slope),
+        # A curve has two parameters.
+        scatter=math.sqrt(float(np.sum(deviations**2)) / max(n - 2, 1)),
+    )
+
+
+def _estimate(curves: Curves, shares: slice) -> Estimate:
     """Return what a recording says if only these shares are possible."""
-    middle = float(np.mean(y))
-    weights, beta, slope = curves.posterior(y - middle)
-    weights = weights * possible[:, None, None]
-    weights = weights / weights.sum()
-    deviation = np.sqrt(curves.spread[..., 0, 0])
-    centre = float(np.sum(weights * beta))
-    spread = math.sqrt(float(np.sum(weights * (deviation**2 + (beta - centre) ** 2))))
+    weights = special.softmax(curves.log_weights[shares]).ravel()
+    value = curves.value[shares].ravel()
+    spread = curves.spread[shares].ravel()
+    low, high = elementwise.find_root(
+        lambda x, level: special.ndtr((x[:, None] - value) / spread) @ weights - level,
+        (np.min(value - 9 * spread), np.max(value + 9 * spread)),
+        args=(np.array([0.025, 0.975]),),
+    ).x
+    return Estimate(
+        float(value @ weights),
+        float(low),
+        float(high),
+        float(curves.slope[shares].ravel() @ weights),
+    )
 
-    def below(at: float) -> float:
-        """Return the probability that β is less."""
-        return float(np.sum(weights * special.ndtr((at - beta) / deviation)))
 
-    # Less than 1/49 of any distribution is further from its mean than seven deviations.
-    bracket = centre - 7 * spread, centre + 7 * spread
-    low = optimize.brentq(lambda at: below(at) - (1 - _LEVEL) / 2, *bracket) + middle
-    high = optimize.brentq(lambda at: below(at) - (1 + _LEVEL) / 2, *bracket) + middle
-    return Estimate(centre + middle, low, high, float(np.sum(weights * slope)))
+def _rest(impacts: Impacts, curves: Curves, degree: int) -> tuple[Array, Array]:
+    """Return n - degree - 1 sums of ln r in which polynomials of ln v of that degree vanish.
+
+    Their covariances over σ² are for each share.
+    """
+    free = linalg.null_space(np.vander(np.log(impacts.speed), degree + 1).T)
+    turned = free.T @ curves.basis
+    return impacts.log_r @ free, (turned * curves.variances[:, None]) @ turned.T
 
 
 def without_scatter(impacts: Impacts, curves: Curves) -> float:
     """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
 
-    The deviations are those from a power of the speed. A ratio of two squares is larger than the
-    measured one if a sum of squares of normal numbers with certain factors is positive: the
-    integral for that is of J. P. Imhof, Biometrika 48 (1961) 419.
+    The deviations from a power of the speed are sums of independent uᵢ with variances σ² λᵢ. If σ
+    is known, Σ u²/(σ² λ) has the χ² distribution. Otherwise the statistic is q = (Σ u²/λ)/(Σ u²):
+    it is larger than the measured one if a sum of squares of normal numbers with the factors
+    1 - q λᵢ is positive, whose probability is an integral of J. P. Imhof, Biometrika 48 (1961) 419.
     """
-    x = np.log(impacts.speed)
-    contrasts = linalg.null_space(np.stack([np.ones_like(x), x - x.mean()]))
-    z = contrasts.T @ impacts.log_r
-    if not len(z):
-        return 1.0
-    still = contrasts.T @ curves.shapes[0] @ contrasts
-    squares = float(z @ np.linalg.solve(still, z))
+    rest, covariances = _rest(impacts, curves, 1)
+    eigenvalues, turn = np.linalg.eigh(covariances[0])
+    squares = (rest @ turn) ** 2
+    statistic = float(np.sum(squares / eigenvalues))
     if curves.is_known:
-        return float(special.chdtrc(len(z), squares / curves.sizes[0, 0] ** 2))
-    scattered = float(z @ z)
-    if scattered < 1e-20:
-        # A power of the speed but for rounding errors.
+        # Two impacts leave no deviations, which any number of degrees of freedom allows.
+        return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0, 0] ** 2))
+    # A single deviation has no pattern.
+    if len(squares) < 2 or squares.sum() < _ROUNDING:
         return 1.0
-    factors = 1 - squares / scattered * np.linalg.eigvalsh(still)
-    if np.abs(factors).max() < 1e-6:
-        # Errors of readings are like scatter.
-        return 1.0
-    steps = np.arange(-30.0, 60.0, 0.05)
-    by_step = factors / np.abs(factors).max() * np.exp(steps)[:, None]
-    swing = np.sin(np.arctan(by_step).sum(axis=1) / 2)
-    damped = np.exp(-np.log1p(by_step**2).sum(axis=1) / 4)
-    return 0.5 + float(np.trapezoid(swing * damped, steps)) / math.pi
+    factors = 1 - statistic / squares.sum() * eigenvalues
+    # The integrand is smooth in ln u, and vanishes on both sides.
+    log_u = np.linspace(-40.0, 60.0, 2001)
+    products = np.exp(log_u)[:, None] * factors / np.abs(factors).max()
+    angle = np.sum(np.arctan(products), axis=1) / 2
+    decay = np.exp(-np.sum(np.log1p(products**2), axis=1) / 4)
+    return float(0.5 + np.trapezoid(np.sin(angle) * decay, log_u) / math.pi)
 
 
 def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:
@@ -314,23 +337,15 @@ def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | No
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
-    scattering = _estimate(curves, impacts.log_r, _SHARES > 0)
-    if without_scatter(impacts, curves) < _UNLIKELY:
-        return scattering, None
-    still = _estimate(curves, impacts.log_r, _SHARES == 0)
-    is_alike = still.high - still.low > _ALIKE * (scattering.high - scattering.low)
-    return scattering, None if is_alike or still.low > 0 else still
+    scattering = _estimate(curves, slice(1, None))
+    still = _estimate(curves, slice(0, 1))
+    # An interval of nearly the same width says the same.
+    says_more = still.high - still.low < 0.8 * (scattering.high - scattering.low)
+    is_possible = still.low <= 0 and without_scatter(impacts, curves) >= ACCEPTED
+    return scattering, still if says_more and is_possible else None
 
 
-def scatter_of(impacts: Impacts, curves: Curves) -> float:
-    """Return the root mean square of the errors of r about the likeliest smooth curve."""
-    weights, beta, slope = curves.posterior(impacts.log_r - np.mean(impacts.log_r))
-    best = np.unravel_index(int(np.argmax(weights)), weights.shape)
-    level, steep = curves.columns[best[1]]
-    curve = np.mean(impacts.log_r) + beta[best] * level + slope[best] * steep
-    errors = impacts.restitution - np.exp(curve)
-    # The curve takes two of the degrees of freedom.
-    return float(np.sqrt(np.sum(errors**2) / max(len(errors) - 2, 1)))
+# Impacts to contact laws.
 
 
 @dataclass(frozen=True)
@@ -343,63 +358,67 @@ class ContactLaw:
 
     n: float
     m: float
-    most: float
 
     @property
     def speed(self) -> float:
         """The power of the speed with which the damping x goes."""
-        return 1 + 2 * (self.m - self.n) / (self.n + 1)
+        return (1 + 2 * self.m - self.n) / (1 + self.n)
 
-    def log_r(self, a: float, v: Array) -> Array:
+    @functools.cached_property
+    def by_damping(self) -> Any:
+        """The curve over x of ln r and of the contact time over L/v, down to r = 0.005.
+
+        The impacts of all x are one system p″ = -(pⁿ + x p^m p′)₊, p′ = 1 at first, which is
+        followed until all balls fly. Their flight leads back to the release, where pⁿ = x p^m r.
+        Errors of ln r are below 1e-5, and those of the contact time below 2e-4 of it.
+        """
+        x = np.array([0.0, *np.geomspace(1e-3, 200.0, 120)])
+        end = 40.0
+
+        def rate(_: float, state: Array) -> Array:
+            p, w = np.split(state, 2)
+            inside = np.maximum(p, 0.0)
+            force = inside**self.n + x * inside**self.m * w
+            return np.concatenate([w, -np.maximum(force, 0.0)])
+
+        states = integrate.solve_ivp(
+            rate, (0.0, end), np.repeat([0.0, 1.0], len(x)), rtol=1e-8, atol=1e-11
+        ).y
+        p, w = np.split(states[:, -1], 2)
+        released = (-x * w) ** (1 / (self.n - self.m)) if self.n > self.m else 0.0
+        # The first ball has no damping, and its r is 1.
+        values = np.column_stack([np.log(w / w[0]), end + (released - p) / w])
+        return interpolate.CubicSpline(x, values)
+
+    def x(self, a: Array | float, v: Array) -> Array:
+        """Return the damping x = a v^speed at speeds in m/s, at most that of the curve."""
+        return np.minimum(a * v**self.speed, self.by_damping.x[-1])
+
+    def log_r(self, a: Array | float, v: Array) -> Array:
         """Return ln r at speeds in m/s if x = a v^speed."""
-        x, log_r, _ = _impacts_of_law(self)
-        return np.interp(a * v**self.speed, x, log_r)
+        return self.by_damping(self.x(a, v))[..., 0]
 
-    def duration(self, a: float, v: Array) -> Array:
+    def duration(self, a: Array | float, v: Array) -> Array:
         """Return the contact time at speeds in m/s, over L/v."""
-        x, _, duration = _impacts_of_law(self)
-        return np.interp(a * v**self.speed, x, duration)
+        return self.by_damping(self.x(a, v))[..., 1]
 
     def damping(self, restitution: float) -> float:
         """Return the x with a restitution coefficient."""
-        x, log_r, _ = _impacts_of_law(self)
-        return float(np.interp(-math.log(restitution), -log_r, x))
+        x = self.by_damping.x
+        return float(np.interp(-math.log(restitution), -self.by_damping(x)[:, 0], x))
 
 
-@functools.cache
-def _impacts_of_law(law: ContactLaw) -> tuple[Array, Array, Array]:
-    """Return x, ln r and the contact time over L/v of p″ = -(p^n + x p^m p′)₊, p′ = 1 at first."""
-    x = np.concatenate([[0.0], np.geomspace(1e-3, law.most, 200)])
-    h = 0.005
-    p = np.zeros_like(x)
-    v = np.ones_like(x)
-    duration = np.zeros_like(x)
-
-    def push(p: Array, v: Array) -> Array:
-        depth = np.maximum(p, 0.0)
-        return np.maximum(depth**law.n + x * depth**law.m * v, 0.0)
-
-    # The midpoint rule; a contact without damping lasts 3.2.
-    for _ in range(1100):
-        middle = p + h / 2 * v
-        half = v - h / 2 * push(p, v)
-        change = push(middle, half)
-        v = v - h * change
-        p = p + h * half
-        duration += np.where(change > 0, h, 0.0)
-    # Without damping r is 1 but for the error of the rule.
-    return x, np.log(-v) - math.log(-v[0]), duration
-
-
-_LINEAR = ContactLaw(1.0, 0.0, 20.0)
-_TSUJI = ContactLaw(1.5, 0.25, 20.0)
-LAWS = {
-    "constant r (linear; Hertz with Tsuji)": _LINEAR,
-    "Hertz with Kuwabara and Kono": ContactLaw(1.5, 0.5, 2.9),
-    "Hunt and Crossley": ContactLaw(1.0, 1.0, 50.0),
+# By their contact times, and by their r over the speed.
+_TIMED = {
+    "linear": ContactLaw(1.0, 0.0),
+    "Hertz with Tsuji": ContactLaw(1.5, 0.25),
+    "Hertz with Kuwabara and Kono": ContactLaw(1.5, 0.5),
+    "Hunt and Crossley": ContactLaw(1.0, 1.0),
 }
-"""Laws with one parameter a; a linear contact stands for all with a constant r."""
-_TIMED = {"linear": _LINEAR, "Hertz with Tsuji": _TSUJI} | dict(list(LAWS.items())[1:])
+LAWS = {
+    "constant r (linear; Hertz with Tsuji)": _TIMED["linear"],
+    **{name: law for name, law in _TIMED.items() if law.speed},
+}
 
 
 @dataclass(frozen=True)
@@ -418,80 +437,91 @@ class Judged:
     left_out: float
     needed: float
     probability: float
-    verdict: str
+    verdict: str = "undecided"
 
 
-def _least_squares(law: ContactLaw, v: Array, y: Array, root: Array) -> float:
-    """Return the parameter of a law with the least squares, by a search in ln a."""
-    whiten = np.linalg.inv(root)
+def _rms(errors: Array) -> float:
+    return math.sqrt(float(np.mean(errors**2)))
 
-    def miss(log_a: float) -> float:
-        return float(np.sum((whiten @ (y - law.log_r(math.exp(log_a), v))) ** 2))
 
-    most = law.most / float(v.max()) ** law.speed
-    grid = np.linspace(math.log(1e-5), math.log(most), 60)
-    i = int(np.argmin([miss(each) for each in grid]))
-    around = grid[max(i - 1, 0)], grid[min(i + 1, len(grid) - 1)]
-    found = optimize.minimize_scalar(miss, bounds=around, method="bounded", options={"xatol": 1e-7})
-    return math.exp(found.x)
+def _least_squares(law: ContactLaw, impacts: Impacts, curves: Curves) -> tuple[Array, Array, Array]:
+    """Return a of a law for each share, what it misses of ln r, and the derivative of ln r by a.
+
+    It is found by Gauss's method: ln r is a convex curve over a, which is approached from below.
+    """
+    v = impacts.speed
+    a = np.zeros((len(curves.variances), 1))
+    for _ in range(20):
+        missed = impacts.log_r - law.log_r(a, v)
+        slope = law.by_damping(law.x(a, v), 1)[..., 0] * v**law.speed
+        pull = slope @ curves.basis / curves.variances
+        step = np.sum(pull * (missed @ curves.basis), axis=1)
+        step /= np.sum(pull * (slope @ curves.basis), axis=1)
+        # r is at most 1.
+        a = np.maximum(a + step[:, None], 0.0)
+    return a, missed, slope
+
+
+def _judged(
+    name: str, impacts: Impacts, curves: Curves, at: float, weights: Array, parabola: Array
+) -> Judged:
+    """Return a law beside the impacts.
+
+    ``weights`` are those of the shares, and ``parabola`` has the squares that one leaves for each.
+    The last row of variances is beside the shares.
+    """
+    law = LAWS[name]
+    r = impacts.restitution
+    a, missed, slope = _least_squares(law, impacts, curves)
+    squares = np.sum((missed @ curves.basis) ** 2 / curves.variances, axis=1) + _ROUNDING
+    # A law may fit better than a parabola.
+    worse = np.maximum(squares - parabola, 0.0)
+    if curves.is_known:
+        of_shares = np.exp(-worse[1:-1] / (2 * curves.sizes[1:, 0] ** 2))
+        probability = np.average(of_shares, weights=weights[1:])
+    else:
+        of_shares = (parabola / (parabola + worse)) ** (max(len(r) - 3, 0) / 2)
+        probability = np.max(of_shares[:-1][weights > np.max(weights) / 20])
+    best = int(np.argmax(weights))
+    inverse = curves.basis / curves.variances[best] @ curves.basis.T
+    # An impact is left out if it has a parameter of its own, which is what the others leave of it.
+    column = slope[best] / math.sqrt(slope[best] @ inverse @ slope[best])
+    pull = inverse @ column
+    alone = inverse @ missed[best] / (np.diag(inverse) - pull**2)
+    return Judged(
+        law=name,
+        parameter=float(a[best, 0]),
+        restitution=float(np.exp(law.log_r(a[best, 0], np.array(at)))),
+        rms=_rms(r * np.expm1(-missed[best])),
+        left_out=_rms(r * np.expm1(-missed[best] - column * pull * alone)),
+        needed=math.sqrt(worse[-1] / (-2 * math.log(REJECTED))) * float(np.mean(r)),
+        probability=float(probability),
+    )
+
+
+def _verdict(probability: float, is_any_rejected: bool, is_known: bool) -> str:
+    if probability < REJECTED:
+        return "incompatible" if is_known else "deviates"
+    return "compatible" if probability > ACCEPTED and is_any_rejected else "undecided"
 
 
 def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     """Return the laws with their verdicts, that of the smallest errors first."""
-    v = impacts.speed
-    y = impacts.log_r
-    n = len(y)
-    powers = np.vander(np.log(v) - np.mean(np.log(v)), 3, increasing=True)
-    posterior, _, _ = curves.posterior(y - np.mean(y))
-    likelihood = posterior.sum(axis=1)
-    share, size = np.unravel_index(int(np.argmax(likelihood)), likelihood.shape)
-    values = len(np.unique(np.round(np.log(v), 3)))
-    shape = powers[:, : min(3, values, n - 1)]
-    further = shape.shape[1] - 1
-    likely = curves.shapes[share] * curves.sizes[share, size] ** 2
-    root = np.linalg.cholesky(likely)
-    of_share = likelihood.sum(axis=1) * (_SHARES > 0)
-    # An r without any deviation leaves rounding errors.
-    smooth = np.maximum(_rest(curves.shapes, shape, y), 1e-20)
-    left = n - shape.shape[1]
-    judged = []
-    for name, law in LAWS.items():
-        a = _least_squares(law, v, y, root)
-        fitted = law.log_r(a, v)
-        slope = (law.log_r(a * 1.001, v) - law.log_r(a * 0.999, v)) / (0.002 * a)
-        misfit = y - fitted
-        worse = np.maximum(_rest(curves.shapes, slope[:, None], misfit) - smooth, 0.0)
-        probability = math.nan
-        if further and curves.is_known:
-            chances = special.chdtrc(further, worse / curves.sizes[:, 0] ** 2)
-            probability = float(of_share @ chances / of_share.sum())
-        elif further and left:
-            chances = special.fdtrc(further, left, worse / further / (smooth / left))
-            probability = float(chances[of_share > _UNLIKELY * of_share.max()].max())
-        errors = impacts.restitution - np.exp(fitted)
-        weighted = np.linalg.solve(likely, slope)
-        hat = slope * weighted / (slope @ weighted)
-        apart = errors / np.maximum(1 - hat, 1e-9)
-        excess = _rest(np.eye(n)[None], slope[:, None], misfit) - _rest(np.eye(n)[None], shape, y)
-        bound = special.chdtri(further, REJECTED) if further else math.nan
-        judged.append(
-            Judged(
-                law=name,
-                parameter=a,
-                restitution=float(np.exp(law.log_r(a, np.asarray(at)))),
-                rms=float(np.sqrt(np.mean(errors**2))),
-                left_out=float(np.sqrt(np.mean(apart**2))),
-                needed=float(np.mean(impacts.restitution) * math.sqrt(max(excess[0], 0.0) / bound)),
-                probability=probability,
-                verdict="",
-            )
-        )
-    some_rejected = any(each.probability < REJECTED for each in judged)
-    with_words = (
-        replace(each, verdict=_verdict(each.probability, some_rejected, curves.is_known))
-        for each in judged
+    weights = special.softmax(curves.log_weights).sum(axis=(1, 2))
+    # One more row has independent errors of ln r.
+    rows = [curves.variances, np.ones(len(impacts.log_r))]
+    curves = replace(curves, variances=np.vstack(rows))
+    rest, covariances = _rest(impacts, curves, 2)
+    parabola = np.linalg.solve(covariances, rest[:, None])[..., 0] @ rest + _ROUNDING
+    found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
+    is_any_rejected = any(each.probability < REJECTED for each in found)
+    return sorted(
+        (
+            replace(each, verdict=_verdict(each.probability, is_any_rejected, curves.is_known))
+            for each in found
+        ),
+        key=lambda each: each.rms,
     )
-    return sorted(with_words, key=lambda each: each.rms)
 
 
 @dataclass(frozen=True)
@@ -514,56 +544,43 @@ class Timed:
 def by_contact_time(
     impacts: Impacts,
     durations: Array,
-    laws: list[Judged],
-    at: float,
+    laws: tuple[Judged, ...],
     restitution: float,
-    mass: float,
-) -> list[Timed]:
-    """Return the laws whose contacts last as long as measured ones, one time or one per impact."""
-    v = impacts.speed if len(durations) == len(impacts.speed) else np.array([at])
-    parameters = {LAWS[each.law]: each.parameter for each in laws}
+    at: float,
+    mass: float | None,
+) -> tuple[Timed, ...]:
+    """Return the laws whose contacts last as long as measured ones.
+
+    There is one time, or one for each impact or each touch of flights; the first and the last touch
+    have no r. A law that was not judged has the restitution coefficient at the speed.
+    """
+    v = impacts.speed
+    measured = durations[1:-1] if len(durations) == len(v) + 2 else durations
+    if len(measured) != len(v):
+        measured = measured.mean(keepdims=True)
+        v = np.exp(np.mean(np.log(v), keepdims=True))
+    parameters = {each.law: each.parameter for each in laws}
     found = []
     for name, law in _TIMED.items():
-        # A constant r is known without a fit.
-        a = law.damping(restitution) if law.speed == 0 else parameters.get(law)
-        if a is None:
-            continue
-        power = 1 / (law.n + 1)
-        # T = D(x) L/v with L = (M v²/K)^(1/(n + 1)).
-        lasting = np.log(law.duration(a, v)) + (2 * power - 1) * np.log(v)
-        scale = float(np.mean(np.log(durations) - lasting))
-        errors = np.expm1(np.log(durations) - lasting - scale)
-        length = math.exp(scale) * at ** (2 * power)
+        a = parameters.get(name, law.damping(restitution) / at**law.speed)
+        # T = (M/K)^(1/(n + 1)) v^power D, where D is over L/v.
+        power = (1 - law.n) / (1 + law.n)
+        lasts = v**power * law.duration(a, v)
+        scale = math.exp(float(np.mean(np.log(measured / lasts))))
         found.append(
             Timed(
                 law=name,
-                duration=float(law.duration(a, np.asarray(at))) * length / at,
-                rms=float(np.sqrt(np.mean(errors**2))) if len(v) > 1 else math.nan,
-                stiffness=mass * math.exp(-scale / power),
-                damping=a * at ** (law.speed - 1) * length ** (law.n - law.m),
-                unit="N/m" if law.n == 1 else "N/m^1.5",
+                duration=scale * at**power * float(law.duration(a, np.array(at))),
+                rms=_rms(measured / (scale * lasts) - 1) if len(v) > 1 else math.nan,
+                stiffness=(mass or 1.0) / scale ** (law.n + 1),
+                damping=a * scale ** (law.n - law.m),
+                unit=("N/m" if law.n == 1 else f"N/m^{law.n:g}") + ("" if mass else "/kg"),
             )
         )
-    return found
+    return tuple(found)
 
 
-def _rest(covariances: Array, columns: Array, y: Array) -> Array:
-    """Return the weighted squares that are left by generalized least squares."""
-    roots = np.linalg.cholesky(covariances)
-    both = np.column_stack([columns, y])
-    white = np.linalg.solve(roots, np.broadcast_to(both, (len(roots), *both.shape)))
-    x = white[:, :, :-1]
-    z = white[:, :, -1]
-    best = np.linalg.solve(np.swapaxes(x, 1, 2) @ x, (np.swapaxes(x, 1, 2) @ z[..., None]))
-    return np.sum((z - (x @ best)[..., 0]) ** 2, axis=1)
-
-
-def _verdict(probability: float, some_rejected: bool, is_known: bool) -> str:
-    if probability < REJECTED:
-        return "incompatible" if is_known else "deviates"
-    if probability > ACCEPTED and some_rejected:
-        return "compatible"
-    return "undecided"
+# The answer.
 
 
 @dataclass(frozen=True, repr=False)
@@ -589,95 +606,71 @@ class Fit(Page):
     notes: tuple[str, ...]
 
     @property
-    def table(self) -> list[list[str]]:
-        """The cells of the table of laws, the headings first."""
-        head = ["law", f"r at {self.speed:.3g} m/s", "rms", "left out", "errors needed", "verdict"]
-        rows = [
-            [
-                each.law,
-                f"{each.restitution:.4f}",
-                f"{each.rms:.4f}",
-                f"{each.left_out:.4f}",
-                f"{each.needed:.4f}" if math.isfinite(each.needed) else "–",
-                each.verdict,
-            ]
+    def intervals(self) -> list[str]:
+        """The lines of single impacts: r, the plain ratio of the flights, and the drag's part."""
+        plain = impacts_of(self.recording).restitution
+        rows = zip(self.impacts.speed, self.impacts.restitution, plain, strict=True)
+        cells = [[f"{v:.5g}", f"{r:.5f}", f"{q:.5f}", f"{q - r:+.5f}"] for v, r, q in rows]
+        return aligned([["v in m/s", "r", "ratio", "by drag"], *cells])
+
+    @property
+    def tables(self) -> list[list[list[str]]]:
+        """The cells of the tables of laws, by r and by contact times, the headings first."""
+        at = f"at {self.speed:.3g} m/s"
+        by_r = [
+            [each.law]
+            + [f"{x:.4f}" for x in (each.restitution, each.rms, each.left_out, each.needed)]
+            + [each.verdict]
             for each in self.laws
         ]
-        return [head, *rows]
-
-    @property
-    def lines(self) -> list[str]:
-        """The answer, line by line."""
-        v = self.impacts.speed
-        title = self.recording.head.get("title", self.recording.name)
-        speeds = span(v.min(), v.max(), form="g")
-        interval = span(*self.interval, 4)
-        if self.without_scatter is not None:
-            still = span(*self.without_scatter, 4)
-            interval += f" if impacts scatter, {still} if they do not"
-        return [
-            f"{title}: {len(v)} impacts at {speeds} m/s, from {self.recording.kind}",
-            f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {interval}",
-            f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}",
-            *(["", *aligned(self.table)] if self.laws else []),
-            *self.timed,
-            *(f"! {note}" for note in self.notes),
-        ]
-
-    @property
-    def timed(self) -> list[str]:
-        """The lines of the laws by their contact times, if there are some."""
-        if not self.times:
-            return []
-        per = "" if self.mass else "/kg"
-        head = ["law", f"contact time at {self.speed:.3g} m/s", "rms", "stiffness", "damping"]
-        rows = [
+        by_time = [
             [
                 each.law,
                 show(each.duration, "s", 4),
-                f"{100 * each.rms:.1f} %" if math.isfinite(each.rms) else "–",
-                show(each.stiffness, each.unit, 4) + per,
+                "–" if math.isnan(each.rms) else f"{100 * each.rms:.1f} %",
+                show(each.stiffness, each.unit, 4),
                 f"{each.damping:.4g}",
             ]
             for each in self.times
         ]
-        return ["", *aligned([head, *rows])]
-
-    @property
-    def intervals(self) -> list[str]:
-        """The lines of single impacts: r, the plain ratio of the flights, and the drag's part."""
-        plain = np.exp(impacts_of(self.recording).log_r)
-        r = self.impacts.restitution
-        rows = [
-            [f"{v:.5g}", f"{each:.5f}", f"{ratio:.5f}", f"{ratio - each:+.5f}"]
-            for v, each, ratio in zip(self.impacts.speed, r, plain, strict=True)
+        return [
+            [["law", f"r {at}", "rms", "left out", "errors needed", "verdict"], *by_r],
+            [["law", f"contact time {at}", "rms", "stiffness", "damping"], *by_time],
         ]
-        return aligned([["v in m/s", "r", "ratio", "by drag"], *rows])
 
     def __repr__(self) -> str:
-        return "\n".join(self.lines[:3])
+        v = self.impacts.speed
+        title = self.recording.head.get("title", self.recording.name)
+        intervals = span(*self.interval, 4)
+        if self.without_scatter is not None:
+            intervals += f" if impacts scatter, {span(*self.without_scatter, 4)} if they do not"
+        return (
+            f"{title}: {len(v)} impacts at {v.min():.3g} to {v.max():.3g} m/s, "
+            f"from {self.recording.kind}\n"
+            f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {intervals}\n"
+            f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}"
+        )
 
     def __str__(self) -> str:
-        return "\n".join(self.lines)
+        lines = [repr(self)]
+        for table in self.tables:
+            lines += ["", *aligned(table)] if len(table) > 1 else []
+        return "\n".join(lines + [f"! {note}" for note in self.notes])
 
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
         """Return the bounce at this speed, with the contact time of the recording if it has one.
 
         That of a bounce is the one of a linear contact without damping.
         """
-        body = self.mass if mass is None else mass
-        if body is None:
-            raise Refused("the mass is missing: the recording does not say it, give --mass '46 g'")
-        given = {"penetration", "stiffness", "contact_time"} & {
-            name for name, value in more.items() if value is not None
-        }
-        if self.times and not given:
-            x = _LINEAR.damping(self.restitution)
-            lasts = float(_LINEAR.duration(x, np.asarray(self.speed)))
-            more["contact_time"] = self.times[0].duration * math.pi / lasts
-        if self.diameter is not None and more.get("radius") is more.get("density") is None:
-            more["radius"] = self.diameter / 2
-        return Bounce(mass=body, restitution=self.restitution, speed=self.speed, **more)
+        given = {name: value for name, value in more.items() if value is not None}
+        if self.diameter is not None and not given.keys() & {"radius", "density"}:
+            given["radius"] = self.diameter / 2
+        if self.times and not given.keys() & {"penetration", "stiffness", "contact_time"}:
+            # The linear law is the first one, and its stiffness may be that of one kilogram.
+            ratio = (self.mass or 1.0) / self.times[0].stiffness
+            given["contact_time"] = math.pi * math.sqrt(ratio)
+        mass = self.mass if mass is None else mass
+        return Bounce(mass=mass, restitution=self.restitution, speed=self.speed, **given)
 
     def design(
         self, engine: str | Engine = "generic", time_step: Quantity = None, **more: Any
@@ -686,7 +679,19 @@ class Fit(Page):
         return design(self.bounce(**more), engine, time_step)
 
 
+def _drag(mass: float, diameter: float) -> float:
+    """Return the drag ρ C A/(2 m) of a ball in 1/m, and refuse a ball that no material has."""
+    density = mass / (math.pi / 6 * diameter**3)
+    if not _AIR < density < _DENSEST:
+        raise Refused(
+            f"a ball of {show(mass, 'kg')} with a diameter of {show(diameter, 'm')} has a density "
+            f"of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
+        )
+    return _AIR * _DRAG * math.pi / 8 * diameter**2 / mass
+
+
 def _of_logs(estimate: Estimate) -> tuple[float, float]:
+    """Return the ends of an interval of r, which is at most 1."""
     return min(math.exp(estimate.low), 1.0), min(math.exp(estimate.high), 1.0)
 
 
@@ -728,89 +733,74 @@ def fit(
         If the recording cannot be read, no impact lies between two flights, or r is above 1.
     """
     recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
-    head = recording.head
-    notes = list(recording.notes)
 
-    def known_of(name: str, given: Quantity, unit: str) -> float | None:
-        """Return what is given, or else what the head of the recording says."""
-        value = head.get(name) if given is None else given
-        return None if value is None else positive(name, value, unit)
+    def given(name: str, value: Quantity, unit: str) -> float | None:
+        said = recording.head.get(name) if value is None else value
+        return None if said is None else positive(name, said, unit)
 
-    kilograms = known_of("mass", mass, "kg")
-    wide = known_of("diameter", diameter, "m")
-    drag = 0.0
-    if kilograms is not None and wide is not None:
-        density = 6 * kilograms / (math.pi * wide**3)
-        if not _AIR < density < _DENSEST:
-            raise Refused(
-                f"a ball of {show(kilograms, 'kg')} with a diameter of {show(wide, 'm')} has "
-                f"a density of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
-            )
-    if recording.kind in ("flights", "heights", "drops"):
-        if kilograms is not None and wide is not None:
-            drag = _AIR * _DRAG * math.pi * wide**2 / 8 / kilograms
-            notes.append(f"the drag of the air is removed, {drag:.2g} of the speed per metre")
-        else:
-            notes.append("the drag of the air is not removed: give the mass and the diameter")
-    durations = recording.durations
-    if contact_time is not None:
-        durations = np.array([positive("contact time", contact_time, "s")])
-    if recording.kind == "flights" and durations is not None:
+    known = given("resolution", resolution, _KINDS[recording.kind][0]) or recording.uncertainty
+    kilograms = given("mass", mass, "kg")
+    metres = given("diameter", diameter, "m")
+    drag = _drag(kilograms, metres) if kilograms and metres else 0.0
+    contact = given("contact time", contact_time, "s")
+    durations = recording.durations if contact is None else np.array([contact])
+    if durations is None:
+        # A contact that is not known is taken to have no duration.
+        durations = np.zeros(1)
+    lasts = float(np.mean(durations))
+    is_heard = recording.kind == "flights"
+    if is_heard:
         recording = without_contacts(recording, durations)
-        # The first and the last touch are no impacts between two flights.
-        durations = durations[1:-1] if len(durations) > 2 else durations
-        lasts = show(float(durations.mean()), "s")
-        notes.append(f"the contact, {lasts}, is taken off each time between two impacts")
     impacts = impacts_of(recording, drag)
-    n = len(impacts.log_r)
-    middle = math.exp(float(np.mean(np.log(impacts.speed))))
+    v = impacts.speed
+    middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    unit = {"flights": "s", "heights": "m", "drops": "m", "speeds": "m/s", "coefficients": ""}
-    stated = known_of("resolution", resolution, unit[recording.kind])
-    known = recording.uncertainty if stated is None else stated
     curves = curves_of(impacts, known, at)
     scattering, still = estimates(impacts, curves)
-    above = f"r = {math.exp(scattering.value):.4f} is above 1"
+    r = math.exp(scattering.value)
     if scattering.low > 0:
-        raise Refused(f"{recording.name}: {above} by more than its error: no ball bounces so")
-    restitution = min(math.exp(scattering.value), 1.0)
-    if recording.kind == "flights" and durations is None:
-        tried = 0.01 * min(float(chain.min(initial=1.0)) for chain in recording.chains)
-        shorter = impacts_of(without_contacts(recording, np.array([tried])), drag)
-        low, high = _of_logs(still or scattering)
-        falls = restitution * float(np.mean(impacts.log_r - shorter.log_r)) / tried
-        if falls * _LONG_CONTACT > (high - low) / 2:
-            notes.append(
-                f"times between impacts include the contact: r is lower by {falls / 1000:.1g} for "
-                f"each ms that it lasts, which matters from {show((high - low) / 2 / falls, 's')} "
-                "on; give --contact-time"
-            )
-    laws = judge(impacts, curves, at) if n >= _FEWEST else []
-    is_near = 0.9 * impacts.speed.min() <= at <= 1.1 * impacts.speed.max()
-    fits = [each for each in laws if not each.probability < REJECTED]
-    further = {
-        "too few impacts for an interval of their own: it is wide": n < _FEWEST,
-        f"{above} within its error: 1 is taken": scattering.value > 0,
-        f"{at:.3g} m/s is outside of the measured speeds": not is_near,
+        raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
+    interval = _of_logs(scattering)
+    second = None if still is None else _of_logs(still)
+    low, high = second or interval
+    # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
+    lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
+    matters = (high - low) / (2 * lower) if lower > 0 else math.inf
+    laws = tuple(judge(impacts, curves, at)) if len(v) > 2 else ()
+    flies = recording.kind in _WITH_DRAG
+    notes = {
+        f"the drag of the air is removed, {drag:.2g} of the speed per metre": flies and drag > 0,
+        "the drag of the air is not removed: give the mass and the diameter": flies and not drag,
+        f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard
+        and lasts > 0,
+        # Contacts of rubber, the longest ones, last for 10 ms.
+        f"times between impacts include the contact: r is lower by {lower / 1000:.2g} for each ms "
+        f"that it lasts, which matters from {show(matters, 's')} on; give --contact-time": is_heard
+        and not lasts
+        and matters < 0.01,
+        f"r = {r:.4f} is above 1 within its error: 1 is taken": r > 1,
+        # A speed that is typed is rounded.
+        f"{show(at, 'm/s')} is outside of the measured speeds": not 0.99 * v.min()
+        <= at
+        <= 1.01 * v.max(),
+        "too few impacts for an interval of their own: it is wide": not laws,
         "no errors are given: a law can only be said to deviate": known is None,
-        "no law fits: r is that of a smooth curve": bool(laws) and not fits,
+        "no law fits: r is that of a smooth curve": bool(laws)
+        and all(each.probability < REJECTED for each in laws),
     }
-    notes += [text for text, holds in further.items() if holds]
-    times: list[Timed] = []
-    if durations is not None:
-        times = by_contact_time(impacts, durations, laws, at, restitution, kilograms or 1.0)
+    r = min(r, 1.0)
     return Fit(
         recording=recording,
         impacts=impacts,
         speed=at,
-        restitution=restitution,
-        interval=_of_logs(scattering),
-        without_scatter=None if still is None else _of_logs(still),
-        scatter=scatter_of(impacts, curves),
+        restitution=r,
+        interval=interval,
+        without_scatter=second,
+        scatter=curves.scatter,
         slope=scattering.slope,
-        laws=tuple(laws),
-        times=tuple(times),
+        laws=laws,
+        times=by_contact_time(impacts, durations, laws, r, at, kilograms) if lasts else (),
         mass=kilograms,
-        diameter=wide,
-        notes=tuple(notes),
+        diameter=metres,
+        notes=recording.notes + tuple(text for text, holds in notes.items() if holds),
     )

@@ -46,6 +46,7 @@ from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
+from bouncing_ball_contacts.flights import drag_of, heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
@@ -63,9 +64,10 @@ _KINDS = {
     "heights": ("m", 2e-3, (0.5, 0.5)),
     "drops": ("m", 2e-3, (0.5, 0.5)),
     "speeds": ("m/s", 2e-2, (1.0, 1.0)),
+    "track": ("m/s", 2e-2, (1.0, 1.0)),
     "coefficients": ("", 1.1e-2, (0.0, 1.0)),
 }
-_WITH_DRAG = ("flights", "heights", "drops")
+_WITH_DRAG = ("flights", "heights", "drops", "track")
 # The priors: the middle of scatter, the width of the logarithms of both sizes, and that of s.
 _SCATTER = 0.011
 _WIDTH = 2.0
@@ -76,10 +78,6 @@ _SHARES = np.array([0.0, *special.expit(np.arange(-6.0, 7.0, 2.0))])
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # Squares of differences of ln r that are rounding errors.
 _ROUNDING = 1e-20
-# Of the air: its density in kg/m³ and the drag coefficient of a ball. The densest ball is osmium.
-_AIR = 1.2
-_DRAG = 0.47
-_DENSEST = 22600.0
 
 
 # Readings to impacts.
@@ -116,26 +114,6 @@ def _derivatives(kind: str, values: Array) -> Array:
     return np.diff(power[0] * each / values[:, None], axis=0)
 
 
-def _height(flight: Array, drag: float) -> Array:
-    """Return the height of flights of some time in s, with a drag D in 1/m.
-
-    A ball that starts with a √(g/D) rises for atan(a)/√(g D) to ln(1 + a²)/(2 D), and falls for
-    asinh(a)/√(g D). The sum of both functions is below 2 a and above asinh(a).
-    """
-    lasts = math.sqrt(STANDARD_GRAVITY * drag) * flight
-    found = elementwise.find_root(
-        lambda a, wanted: np.arctan(a) + np.arcsinh(a) - wanted,
-        (lasts / 2, np.sinh(lasts)),
-        args=(lasts,),
-    )
-    return np.log1p(found.x**2) / (2 * drag)
-
-
-def _speed(height: Array, drag: Array) -> Array:
-    """Return √(g (e^(2 D h) - 1)/D), the speed of a rise to a height, and with -D of a fall."""
-    return np.sqrt(STANDARD_GRAVITY * np.expm1(2 * drag * height) / drag)
-
-
 def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     """Return the impacts of a recording; drag is ρ C A/(2 m) in 1/m.
 
@@ -145,10 +123,14 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         If there is no impact between two flights.
     """
     kind = recording.kind
+    chains = recording.chains
+    if kind == "track":
+        found = np.array([impact_of(each, drag) for each in chains])
+        chains = (found[:, :2] * STANDARD_GRAVITY / found[:, 2:3],)
     pairs = np.concatenate(
         [
             values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
-            for values in recording.chains
+            for values in chains
         ]
     )
     if not len(pairs):
@@ -156,16 +138,14 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
             f"{recording.name}: no impact lies between two flights: three times or two heights are "
             "needed"
         )
-    # Without drag the formulas have limits, to which they are close at 1e-12/m.
-    drag = drag or 1e-12
-    if kind == "coefficients":
-        pairs[:, 1] *= pairs[:, 0]
-    if kind == "flights":
-        pairs = _height(pairs, drag)
-    if kind in _WITH_DRAG:
-        pairs = _speed(pairs, np.array([-drag, drag]))
     before, after = pairs.T
-    readings = linalg.block_diag(*(_derivatives(kind, values) for values in recording.chains))
+    if kind == "coefficients":
+        after = before * after
+    if kind == "flights":
+        before, after = heights_of(pairs, drag).T
+    if kind in ("flights", "heights", "drops"):
+        before, after = speeds_of(before, drag)[0], speeds_of(after, drag)[1]
+    readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
     return Impacts(before, np.log(after / before), readings, _KINDS[kind][1])
 
 
@@ -679,17 +659,6 @@ class Fit(Page):
         return design(self.bounce(**more), engine, time_step)
 
 
-def _drag(mass: float, diameter: float) -> float:
-    """Return the drag ρ C A/(2 m) of a ball in 1/m, and refuse a ball that no material has."""
-    density = mass / (math.pi / 6 * diameter**3)
-    if not _AIR < density < _DENSEST:
-        raise Refused(
-            f"a ball of {show(mass, 'kg')} with a diameter of {show(diameter, 'm')} has a density "
-            f"of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
-        )
-    return _AIR * _DRAG * math.pi / 8 * diameter**2 / mass
-
-
 def _of_logs(estimate: Estimate) -> tuple[float, float]:
     """Return the ends of an interval of r, which is at most 1."""
     return min(math.exp(estimate.low), 1.0), min(math.exp(estimate.high), 1.0)
@@ -741,7 +710,7 @@ def fit(
     known = given("resolution", resolution, _KINDS[recording.kind][0]) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
-    drag = _drag(kilograms, metres) if kilograms and metres else 0.0
+    drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
     contact = given("contact time", contact_time, "s")
     durations = recording.durations if contact is None else np.array([contact])
     if durations is None:

@@ -34,6 +34,7 @@ from xml.etree import ElementTree
 import numpy as np
 from numpy.typing import NDArray
 
+from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
 
@@ -149,12 +150,13 @@ class Recording:
     """What was measured.
 
     ``kind`` is "flights" (durations of successive flights in s), "heights" (successive tops),
-    "drops" (pairs of heights), "speeds" (pairs) or "coefficients" (pairs of speed and r).
+    "drops" (pairs of heights), "speeds" (pairs), "coefficients" (pairs of speed and r), or "track".
 
-    ``chains`` are arrays, one for each recording; those of pairs have two columns. A flight is the
-    time from touch to touch, which includes the contact at its begin. ``uncertainty`` has standard
-    deviations of r, ``durations`` contact times in s, one or one for each impact (of flights: for
-    each touch); ``head`` has what the file says of the ball.
+    ``chains`` are arrays, one for each recording; those of pairs have two columns. A track has one
+    for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
+    the time from touch to touch, which includes the contact at its begin. ``uncertainty`` has
+    standard deviations of r, ``durations`` contact times in s, one or one for each impact (of
+    flights: for each touch); ``head`` has what the file says of the ball.
     """
 
     name: str
@@ -631,26 +633,6 @@ def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
     return flights, bottoms
 
 
-def _impact(t: Array, up: Array, before: Lines, after: Lines) -> tuple[float, float, float] | None:
-    """Return the speeds before and after an impact, and gravity; None if these are no flights.
-
-    Parabolas of one curvature are fitted to both flights; their slopes are those where they meet.
-    """
-    both = np.concatenate([before, after])
-    since = t[both] - t[after].min(initial=math.inf)
-    first = np.isin(both, before)
-    columns = np.column_stack([since**2, first, first * since, ~first, ~first * since])
-    best = np.linalg.lstsq(columns, up[both], rcond=None)[0]
-    bend, start, slope, start_after, slope_after = best
-    meet = (start_after - start) / (slope - slope_after)
-    down = -2 * bend * meet - slope
-    rise = 2 * bend * meet + slope_after
-    miss = math.sqrt(float(np.mean((columns @ best - up[both]) ** 2)))
-    # What misses the positions by more than a twentieth of the height is no flight.
-    is_flight = bend < 0 < rise and miss < 0.05 * min(down, rise) ** 2 / (-4 * bend)
-    return (float(down), float(rise), float(-2 * bend)) if is_flight else None
-
-
 def _samples(
     table: _Table, columns: list[_Column], rows: NDArray[np.bool_]
 ) -> tuple[Array, Array, Lines]:
@@ -674,22 +656,26 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     turn = -1 if np.sum(np.diff(y, 2) ** 3) < 0 else 1
     flights, bottoms = _flights_of_track(turn * y)
     even = _even(t)
-    impacts = {
-        bottom: _impact(even, turn * y, before, after)
-        for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True)
-        if min(len(before), len(after)) >= _FEWEST
-    }
-    kept = {bottom: each for bottom, each in impacts.items() if each is not None}
-    if not kept:
+    impacts = {}
+    for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
+        both = np.concatenate([before, after])
+        track = np.column_stack([even[both], turn * y[both], np.isin(both, after)])
+        if min(len(before), len(after)) < _FEWEST:
+            continue
+        down, up, gravity, misfit = impact_of(track)
+        # What misses the positions by more than a twentieth of the height is no flight.
+        lowest = min(down, up) ** 2 / (2 * gravity)
+        if min(down, up, gravity) > 0 and misfit < 0.05 * lowest:
+            impacts[bottom] = track, down, up, gravity
+    if not impacts:
         raise Refused(f"{name}: no impact between two flights of four positions in the track")
-    down, rise, gravities = np.array(list(kept.values())).T
-    pairs = np.column_stack([down, rise]) * (STANDARD_GRAVITY / gravities)[:, None]
+    tracks, downs, ups, gravities = zip(*impacts.values(), strict=True)
     # Without a scale, as of pixels, nothing contradicts gravity.
     scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
-    gravity = scale * float(gravities.mean())
+    gravity = scale * float(np.mean(gravities))
     slow = math.sqrt(STANDARD_GRAVITY / gravity)
     further = {
-        f"{len(kept)} of {len(bottoms)} impacts were found between flights that can be fitted; "
+        f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
         "gravity is the scale": True,
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
@@ -697,8 +683,10 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
         "unit": max(slow, 1 / slow) > math.sqrt(2),
     }
     notes = tuple(text for text, holds in further.items() if holds)
-    _check_pairs(table, "speeds", pairs, lines[list(kept)])
-    return Recording(name, "speeds", (pairs,), notes=notes)
+    metres = STANDARD_GRAVITY / np.array(gravities)
+    pairs = np.column_stack([downs, ups]) * metres[:, None]
+    _check_pairs(table, "speeds", pairs, lines[list(impacts)])
+    return Recording(name, "track", tracks, notes=notes)
 
 
 def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -> Recording:

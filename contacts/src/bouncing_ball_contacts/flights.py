@@ -1,0 +1,106 @@
+"""A flight of a ball in air, whose drag goes as the square of the speed.
+
+With the drag D = ρ C A/(2 m) in 1/m the speed v upwards follows v′ = -g - D v |v|. From the top of
+a flight on, with a = √(g D), the equation has the solutions::
+
+    on the way up, t < 0:    v = -√(g/D) tan(a t),     y = ln(cos(a t))/D
+    on the way down, t > 0:  v = -√(g/D) tanh(a t),    y = -ln(cosh(a t))/D
+
+so that a ball leaves with v = √(g (e^(2 D h) - 1)/D) for a height h, and falls from it to
+v = √(g (1 - e^(-2 D h))/D). Without drag these have the limits -g t, -g t²/2 and √(2 g h), with
+which they agree for a drag of 1e-12/m.
+"""
+
+import math
+
+import numpy as np
+from scipy.optimize import elementwise
+
+from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
+
+# Of the air: its density in kg/m³ and the drag coefficient of a ball. The densest ball is osmium.
+_AIR = 1.2
+_DRAG = 0.47
+_DENSEST = 22600.0
+_NO_DRAG = 1e-12
+
+
+def drag_of(mass: float, diameter: float) -> float:
+    """Return the drag ρ C A/(2 m) of a ball in 1/m, and refuse a ball that no material has."""
+    density = mass / (math.pi / 6 * diameter**3)
+    if not _AIR < density < _DENSEST:
+        raise Refused(
+            f"a ball of {show(mass, 'kg')} with a diameter of {show(diameter, 'm')} has a density "
+            f"of {density:.3g} kg/m³: is a unit missing, as in '46 g' and '43 mm'?"
+        )
+    return _AIR * _DRAG * math.pi / 8 * diameter**2 / mass
+
+
+def heights_of(durations: Array, drag: float) -> Array:
+    """Return the heights of flights that last for some time in s.
+
+    A ball that starts with b √(g/D) rises for atan(b)/√(g D) to ln(1 + b²)/(2 D), and falls for
+    asinh(b)/√(g D). The sum of both functions is below 2 b and above asinh(b).
+    """
+    drag = max(drag, _NO_DRAG)
+    lasts = math.sqrt(STANDARD_GRAVITY * drag) * durations
+    found = elementwise.find_root(
+        lambda b, wanted: np.arctan(b) + np.arcsinh(b) - wanted,
+        (lasts / 2, np.sinh(lasts)),
+        args=(lasts,),
+    )
+    return np.log1p(found.x**2) / (2 * drag)
+
+
+def speeds_of(heights: Array, drag: float) -> tuple[Array, Array]:
+    """Return the speeds with which a ball falls from a height, and with which it rises to it."""
+    both = max(drag, _NO_DRAG) * np.array([-1.0, 1.0])
+    down, up = (np.sqrt(STANDARD_GRAVITY * np.expm1(2 * each * heights) / each) for each in both)
+    return down, up
+
+
+def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
+    """Return -y/g and -v/g of a ball, a time after the top, which is negative on the way up."""
+    a = math.sqrt(STANDARD_GRAVITY * max(drag, _NO_DRAG))
+    # A ball rises for less than π/2a.
+    rise = np.clip(a * since_top, -1.5, 0.0)
+    fall = a * np.maximum(since_top, 0.0)
+    # ln(cosh x) and ln(cos x), also of small x.
+    depth = (np.log1p(np.sinh(fall) ** 2) - np.log1p(-(np.sin(rise) ** 2))) / (2 * a**2)
+    return depth, (np.tan(rise) + np.tanh(fall)) / a
+
+
+def impact_of(track: Array, drag: float = 0.0) -> tuple[float, float, float, float]:
+    """Return the speeds before and after an impact, gravity, and the misfit of the track.
+
+    ``track`` has the columns time in s, position upwards, and 1 after the impact or else 0. Both
+    flights have one gravity, which is in the unit of the position, and the speeds are those where
+    they meet. The misfit is the root mean square of what the flights miss of the positions.
+
+    A flight is a parabola but for what the drag changes, which depends on its top and on gravity:
+    parabolas are fitted again to the positions without that until nothing changes any more.
+    """
+    t, y, after = track.T
+    since = t - t[after > 0].min()
+    columns = np.column_stack(
+        [-(since**2) / 2, 1 - after, after, (1 - after) * since, after * since]
+    )
+    by_drag = np.zeros_like(y)
+    for _ in range(8):
+        found = np.linalg.lstsq(columns, y - by_drag, rcond=None)[0]
+        gravity = found[0]
+        start, slope = found[1:].reshape(2, 2)
+        tops = slope / gravity
+        since_top = since - np.where(after > 0, tops[1], tops[0])
+        by_drag = gravity * (since_top**2 / 2 - _fall(since_top, drag)[0])
+    heights = start + gravity * tops**2 / 2
+    meet = (start[1] - start[0]) / (slope[0] - slope[1])
+    # Newton's method, from where the parabolas meet.
+    for _ in range(4):
+        depths, speeds = _fall(meet - tops, drag)
+        apart = np.diff(heights - gravity * depths)[0]
+        meet += apart / (gravity * np.diff(speeds)[0])
+    down, up = gravity * _fall(meet - tops, drag)[1] * [1, -1]
+    misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
+    return float(down), float(up), float(gravity), misfit

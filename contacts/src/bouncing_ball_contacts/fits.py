@@ -215,9 +215,9 @@ def curves_of(impacts: Impacts, known: float | Array | None, at: float) -> Curve
     share = _SHARES[:, None]
     # Readings that are nearly redundant have eigenvalues of about 0.
     variances = (1 - share) * (eigenvalues + 1e-9) + share
-    # If the size of errors is known, it gives σ; otherwise the posterior of ln σ gets narrower as
-    # impacts get more.
-    unknown = np.geomspace(1e-5, 0.5, 28 + n) * np.ones_like(share)
+    # If the size of errors is known, it gives σ. Otherwise the posterior of ln σ, whose width is at
+    # least 1/√(2 n), is summed in steps below twice that.
+    unknown = np.geomspace(1e-5, 0.5, 20 + int(8 * math.sqrt(n))) * np.ones_like(share)
     sizes = unknown if known is None else error / np.sqrt(1 - share)
     # The squares of the logarithms of both sizes, in units of the width of their priors.
     prior = (np.log(sizes * np.sqrt(1 - share) / error) / _WIDTH) ** 2
@@ -275,16 +275,6 @@ def _estimate(curves: Curves, shares: slice) -> Estimate:
     )
 
 
-def _rest(impacts: Impacts, curves: Curves, degree: int) -> tuple[Array, Array]:
-    """Return n - degree - 1 sums of ln r in which polynomials of ln v of that degree vanish.
-
-    Their covariances over σ² are for each share.
-    """
-    free = linalg.null_space(np.vander(np.log(impacts.speed), degree + 1).T)
-    turned = free.T @ curves.basis
-    return impacts.log_r @ free, (turned * curves.variances[:, None]) @ turned.T
-
-
 def without_scatter(impacts: Impacts, curves: Curves) -> float:
     """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
 
@@ -293,9 +283,11 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
     it is larger than the measured one if a sum of squares of normal numbers with the factors
     1 - q λᵢ is positive, whose probability is an integral of J. P. Imhof, Biometrika 48 (1961) 419.
     """
-    rest, covariances = _rest(impacts, curves, 1)
-    eigenvalues, turn = np.linalg.eigh(covariances[0])
-    squares = (rest @ turn) ** 2
+    # Sums of ln r in which powers of the speed vanish.
+    free = linalg.null_space(np.vander(np.log(impacts.speed), 2).T)
+    turned = free.T @ curves.basis
+    eigenvalues, turn = np.linalg.eigh((turned * curves.variances[0]) @ turned.T)
+    squares = (impacts.log_r @ free @ turn) ** 2
     statistic = float(np.sum(squares / eigenvalues))
     if curves.is_known:
         # Two impacts leave no deviations, which any number of degrees of freedom allows.
@@ -491,8 +483,15 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     # One more row has independent errors of ln r.
     rows = [curves.variances, np.ones(len(impacts.log_r))]
     curves = replace(curves, variances=np.vstack(rows))
-    rest, covariances = _rest(impacts, curves, 2)
-    parabola = np.linalg.solve(covariances, rest[:, None])[..., 0] @ rest + _ROUNDING
+    x = np.log(impacts.speed / at)
+    powers = curves.basis.T @ np.column_stack([np.ones_like(x), x, x**2])
+    y = impacts.log_r @ curves.basis
+    rest = []
+    for deviation in np.sqrt(curves.variances):
+        white = powers / deviation[:, None]
+        best = np.linalg.lstsq(white, y / deviation, rcond=1e-9)[0]
+        rest.append(np.sum((y / deviation - white @ best) ** 2))
+    parabola = np.array(rest) + _ROUNDING
     found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)
     return sorted(

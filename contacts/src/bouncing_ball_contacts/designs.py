@@ -1,21 +1,33 @@
 """From the bounce that is wanted to the numbers of an engine.
 
-The engine's own scheme is stepped over all instants of the impact within a step
-(:mod:`.schemes`), and the damping is found by a secant rule in ln r. Implicit steps, gravity during
-the contact and strong damping therefore need no formulas of their own.
+A contact is known by its undamped depth δ, to which it sinks without damping and gravity, and by a
+ratio of damping (:mod:`.schemes`). Without damping it lasts T ∝ δ/v, and a step h makes n = T/h
+steps of it. Of δ, h and n two are given in each question, and the third follows:
+
+* *What you want* has the δ that keeps a permitted depth, or that of a given stiffness or contact
+  time; n is the least number of steps with which r is within half of the tolerance.
+* *Your step* has the same δ and your h. If r leaves the tolerance there, it has your h and the
+  least n, which is the stiffest contact, with which r does not.
+
+The ratio of damping is always the one with which the mean r is the wanted one. It is read from a
+scan: the engine's own scheme is stepped for many ratios at once, over all instants of the impact
+within a step. Implicit steps, gravity and strong damping therefore need no formulas of their own.
 """
 
+import html
 import math
-from collections.abc import Mapping
+from bisect import bisect_left
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from html import escape
-from typing import Any
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_contacts import units
 from bouncing_ball_contacts.engines import (
+    ENGINES,
     Engine,
+    Parameters,
     Setting,
     engine_named,
     filled,
@@ -23,18 +35,16 @@ from bouncing_ball_contacts.engines import (
 )
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
-    Array,
     Drops,
     Law,
     OfSolver,
     Solved,
     Trials,
     drop,
-    exact,
     nearby,
-    offsets,
 )
 from bouncing_ball_contacts.units import (
+    DENSITIES,
     STANDARD_GRAVITY,
     Refused,
     density_of,
@@ -44,72 +54,77 @@ from bouncing_ball_contacts.units import (
     span,
     within,
 )
+from bouncing_ball_contacts.units import time_step as step_in_si
 
 Quantity = Any
 """A number in SI units, a text with a unit, or a pint quantity."""
 
 TOLERANCE = 0.02
-"""The default of the largest deviation of r at a step."""
+"""Of r, if none is given."""
 LEAST_RESTITUTION = 0.01
-"""The r that stands for less, which lifts no body visibly: r² is 10⁻⁴ of the height."""
+"""Below it a damping, and what it makes of a depth, hardly depend on r."""
+
 WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
-# For the mean r, for the search of a contact, and for what a row shows.
-_MEAN = exact(offsets(21))
-_COARSE = nearby(3, 21)
-_FINE = nearby(9, 201)
-# Steps in a contact without damping: first those that most designs need, then finer ones, in groups
-# because a group costs as much as its finest one.
-_STEPS = (
-    np.array([4.0, 5, 6, 8, 10, 12, 14, 17, 20, 25, 32, 40, 50]),
-    np.array([65.0, 85, 120]),
-    np.array([170.0, 250]),
-    np.array([400.0, 600]),
-)
-_AT_STEP = (
-    np.geomspace(2.5, 100, 14),
-    np.array([120.0, 150, 190]),
-    np.array([240.0, 300, 380]),
-    np.array([480.0, 600, 760]),
-    np.array([950.0, 1200, 1500]),
-)
-# A solver with error control is as good as this many steps in a contact.
-_CONTROLLED = 1000
-# Ratios of damping for an r of about 0.
-_STRONG = np.geomspace(0.03, 30.0, 40)
-# ln r is found to this error, a tenth of the last printed digit of r.
-_LN_R = 1e-4
-_DIGITS = 6
-# Of what a bounce is given by, in the order in which it is said.
-_UNITS = {
-    "mass": "kg",
-    "restitution": "",
-    "drop_height": "m",
-    "speed": "m/s",
-    "radius": "m",
-    "penetration": "m",
-    "stiffness": "N/m",
-    "contact_time": "s",
-    "other_mass": "kg",
-    "density": "kg/m^3",
-    "friction": "",
-    "gravity": "m/s^2",
-}
-# Of each of these at most one is given.
-_ALTERNATIVES = (
-    ("drop height", "speed"),
-    ("radius", "density"),
-    ("penetration", "stiffness", "contact time"),
-)
+# Of a contact with error control, whose steps are short.
+_SHORT = 1000
+# Steps in a contact: of those that choose the step, and of those that choose the stiffness.
+_COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250, 400, 600)
+_FINE_COUNTS = tuple(2.5 * 40 ** (np.arange(117) / 78))
+_SEARCH = nearby(2, 15)
+_ALL = nearby(9, 201)
+# A permitted depth is aimed at from below: it is found to within half a percent.
+_AIM = 0.995
 
 
 class Page:
     """A result that a notebook shows as it is printed."""
 
     def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
+        return f"<pre>{html.escape(str(self))}</pre>"
+
+
+def aligned(table: Sequence[Sequence[str]]) -> list[str]:
+    """Return the lines of a table with columns of equal width."""
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    return [
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in table
+    ]
+
+
+def holding(said: Iterable[tuple[Any, str]]) -> list[str]:
+    """Return those sentences whose conditions hold."""
+    return [text for holds, text in said if holds]
+
+
+def refuse(said: Iterable[tuple[Any, str]]) -> None:
+    """Raise the first of those sentences whose conditions hold."""
+    for text in holding(said):
+        raise Refused(text)
+
+
+_QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
+    "mass": ("kg", positive),
+    "restitution": ("", lambda name, value, _: within(name, value, 0, 1)),
+    "drop_height": ("m", positive),
+    "speed": ("m/s", positive),
+    "radius": ("m", positive),
+    "density": ("kg/m^3", lambda _, value, __: density_of(value)),
+    "penetration": ("m", positive),
+    "stiffness": ("N/m", positive),
+    "contact_time": ("s", positive),
+    "points": ("", lambda _, value, __: value),
+    "other_mass": ("kg", positive),
+    "friction": ("", lambda name, value, _: within(name, value, 0, math.inf)),
+    "gravity": ("m/s^2", in_si),
+}
+"""The unit of each quantity of a bounce, and how it is read."""
+_CONTACT = ("penetration", "stiffness", "contact_time")
+_EITHER = (("drop_height", "speed"), ("radius", "density"), *combinations(_CONTACT, 2))
+"""Quantities of which one at most is given."""
 
 
 @dataclass(frozen=True)
@@ -159,92 +174,88 @@ class Bounce:
     other_mass: Quantity = None
     friction: Quantity = None
     gravity: Quantity = STANDARD_GRAVITY
-    given: Mapping[str, str] = field(init=False, default_factory=dict, repr=False, hash=False)
+    given: Mapping[str, str] = field(init=False, repr=False, compare=False)
+    """What was given, in words."""
 
     def __post_init__(self) -> None:
-        if self.mass is None:
-            raise Refused("the mass is missing: --mass '50 g' or mass='50 g'")
-        shown: dict[str, str] = {}
-        for name, unit in _UNITS.items():
+        refuse(
+            [
+                (self.mass is None, "the mass is missing: --mass '50 g' or mass='50 g'"),
+                (
+                    not isinstance(self.points, int) or self.points < 1,
+                    f"points = {self.points!r} is no whole number from 1 on",
+                ),
+            ]
+        )
+        given = {}
+        for name, (unit, read) in _QUANTITIES.items():
+            default = getattr(Bounce, name)
             value = getattr(self, name)
-            if value is None:
-                continue
-            words = name.replace("_", " ")
-            if name in ("restitution", "friction"):
-                value = within(words, value, 0, 1 if name == "restitution" else math.inf)
-            elif name == "density":
-                value = density_of(value)
-            elif name == "gravity":
-                value = in_si(words, value, unit)
-            else:
-                value = positive(words, value, unit)
-            object.__setattr__(self, name, value)
-            if name != "gravity" or value != STANDARD_GRAVITY:
-                shown[words] = show(value, unit, 4 if unit else 6)
-        if self.gravity < 0 or (self.gravity == 0 and self.speed is None):
-            raise Refused(
-                f"gravity = {show(self.gravity, 'm/s^2')} is not positive; without any, give "
-                "the speed, --speed '2 m/s'"
-            )
-        for names in _ALTERNATIVES:
-            given = [name for name in names if name in shown]
-            if len(given) > 1:
-                raise Refused(f"give either the {given[0]} or the {given[1]}, not both")
-        if not (isinstance(self.points, int) and self.points >= 1):
-            raise Refused(f"points = {self.points!r} is no whole number from 1 on")
-        if self.points > 1:
-            shown["points"] = str(self.points)
-        if self.penetration is not None and self.penetration > self.size:
-            raise Refused(
-                f"the penetration of {shown['penetration']} is deeper than the {self.size_name} of "
-                f"{show(self.size, 'm')}"
-            )
-        if self.other_mass is not None and self.speed is None:
-            raise Refused(
-                "two free bodies need the speed at which they approach each other: --speed '2 m/s'"
-            )
-        object.__setattr__(self, "given", shown)
+            if value is not None or default is not None:
+                words = name.replace("_", " ")
+                number = read(words, value, unit)
+                object.__setattr__(self, name, number)
+                if number != default:
+                    given[words] = show(number, unit, 6)
+        object.__setattr__(self, "given", given)
+        both = [
+            f"give either the {one} or the {other}, not both".replace("_", " ")
+            for one, other in _EITHER
+            if None not in (getattr(self, one), getattr(self, other))
+        ]
+        refuse(
+            [
+                *((True, text) for text in both),
+                (
+                    self.gravity < 0 or (self.gravity == 0 and self.speed is None),
+                    f"gravity = {show(self.gravity, 'm/s^2')} is not positive; without any, give "
+                    "the speed, --speed '2 m/s'",
+                ),
+                (
+                    self.other_mass is not None and self.speed is None,
+                    "two free bodies need the speed at which they approach each other: "
+                    "--speed '2 m/s'",
+                ),
+                (
+                    self.penetration is not None and self.penetration > self.size,
+                    f"the penetration of {show(self.penetration or 0, 'm')} is deeper than the "
+                    f"{self.size_name} of {show(self.size, 'm')}",
+                ),
+            ]
+        )
 
     @property
     def reduced_mass(self) -> float:
         """m, or m M/(m + M) of two free bodies, in kg."""
-        if self.other_mass is None:
-            return float(self.mass)
-        return float(self.mass * self.other_mass / (self.mass + self.other_mass))
+        return self.mass if self.other_mass is None else 1 / (1 / self.mass + 1 / self.other_mass)
 
     @property
     def load(self) -> float:
         """The gravity that acts during the contact in m/s², which is none between free bodies."""
-        return 0.0 if self.other_mass is not None else float(self.gravity)
+        return self.gravity if self.other_mass is None else 0.0
 
     @property
     def impact_speed(self) -> float:
         """In m/s."""
-        if self.speed is not None:
-            return float(self.speed)
-        height = 1.0 if self.drop_height is None else self.drop_height
-        return math.sqrt(2 * self.gravity * height)
-
-    @property
-    def size(self) -> float:
-        """The radius of the body in m, or half the height of a box; by its density if not given."""
-        if self.radius is not None:
-            return float(self.radius)
-        density = density_of("steel") if self.density is None else self.density
-        shape = 4 * math.pi / 3 if self.points == 1 else 8.0
-        return float((self.mass / (shape * density)) ** (1 / 3))
+        return self.speed or math.sqrt(2 * self.gravity * (self.drop_height or 1.0))
 
     @property
     def size_name(self) -> str:
         """What the size is."""
-        return "radius" if self.points == 1 else "half height"
+        return "half height" if self.points > 1 else "radius"
+
+    @property
+    def size(self) -> float:
+        """The radius of the body in m, or half the height of a box; by its density if not given."""
+        # Its volume over the cube of its size.
+        solid = 8 if self.points > 1 else 4 / 3 * math.pi
+        volume = self.mass / (self.density or DENSITIES["steel"])
+        return self.radius or (volume / solid) ** (1 / 3)
 
     @property
     def other_size(self) -> float:
         """The size of a second free body of the same density in m, infinite of the ground."""
-        if self.other_mass is None:
-            return math.inf
-        return self.size * float(self.other_mass / self.mass) ** (1 / 3)
+        return self.size * ((self.other_mass or math.inf) / self.mass) ** (1 / 3)
 
     @property
     def reduced_radius(self) -> float:
@@ -254,34 +265,39 @@ class Bounce:
     @property
     def limit(self) -> float:
         """The penetration in m that must not be exceeded."""
-        if self.penetration is not None:
-            return float(self.penetration)
-        if not self.load:
-            return self.size / 10
-        return min(self.size / 10, self.impact_speed**2 / (10 * self.load))
+        fifth = self.impact_speed**2 / (10 * self.load) if self.load else math.inf
+        return self.penetration or min(self.size / 10, fifth)
+
+    @property
+    def gives_contact(self) -> bool:
+        """Whether a depth or a contact was given."""
+        return any(getattr(self, name) is not None for name in _CONTACT)
 
     @property
     def assumed_body(self) -> list[str]:
         """What was not given of the drop and of the body, in words."""
-        found = []
-        if self.drop_height is None and self.speed is None:
-            found.append("a drop from 1 m (--drop-height or --speed)")
-        if self.radius is None:
-            of = "steel (give its size or --density)" if self.density is None else "this density"
-            body = "ball" if self.points == 1 else "cube"
-            found.append(f"a solid {body} of {of}, {self.size_name} {show(self.size, 'm')}")
-        return found
+        solid = "a solid cube" if self.points > 1 else "a solid ball"
+        of = "this density" if self.density else "steel (give its size or --density)"
+        return holding(
+            [
+                (
+                    self.drop_height is self.speed is None,
+                    "a drop from 1 m (--drop-height or --speed)",
+                ),
+                (
+                    self.radius is None,
+                    f"{solid} of {of}, {self.size_name} {show(self.size, 'm')}",
+                ),
+            ]
+        )
 
     @property
     def assumed(self) -> list[str]:
         """What was not given of a design, in words."""
-        found = self.assumed_body
-        if (self.penetration, self.stiffness, self.contact_time) == (None, None, None):
-            by = f"a tenth of the {self.size_name}"
-            if self.limit < self.size / 10:
-                by = "a fifth of the drop height"
-            found.append(f"it may sink {show(self.limit, 'm')}, {by} (--penetration)")
-        return found
+        tenth = f"a tenth of the {self.size_name}"
+        share = tenth if self.limit == self.size / 10 else "a fifth of the drop height"
+        depth = f"it may sink {show(self.limit, 'm')}, {share} (--penetration)"
+        return self.assumed_body + holding([(not self.gives_contact, depth)])
 
 
 @dataclass(frozen=True)
@@ -297,22 +313,21 @@ class Outcome:
     force: tuple[float, float]
     restitution: tuple[float, float, float]
 
+    def deviation(self, wanted: float) -> float:
+        """Return the largest distance of r from the wanted one."""
+        low, _, high = self.restitution
+        return max(wanted - low, high - wanted)
+
     @property
     def error(self) -> float:
         """The largest distance of r from its mean."""
         return self.deviation(self.restitution[1])
 
-    def deviation(self, wanted: float) -> float:
-        """Return the largest distance of r from the wanted one."""
-        return max(abs(r - wanted) for r in self.restitution)
-
     @property
     def around(self) -> str:
         """r as it is printed: mean ± largest distance from it, or the range if r reaches 0."""
         low, mean, high = self.restitution
-        if self.error > mean:
-            return f"{low:.3f} to {high:.3f}"
-        return f"{mean:.3f} ± {self.error:.3f}"
+        return span(low, high) if low == 0 < high else f"{mean:.3f} ± {self.error:.3f}"
 
 
 @dataclass(frozen=True)
@@ -329,56 +344,88 @@ class Row:
     parameters: dict[str, Any]
 
 
+class Contact(NamedTuple):
+    """A contact by its undamped depth δ in m and its ratio of damping, at a step in s."""
+
+    depth: float
+    ratio: float
+    step: float
+
+
+def _written(value: Any) -> Any:
+    """Return a number, or several, as snippets write them."""
+    if isinstance(value, tuple):
+        return tuple(map(_written, value))
+    return float(f"{value:.6g}")
+
+
 @dataclass(frozen=True)
 class Problem:
-    """A bounce in an engine, for which contacts are tried."""
+    """A bounce in an engine, for which contacts are tried.
+
+    ``one_body`` is whether the other body keeps its defaults, ``drag`` that of
+    :func:`.schemes.drop`, and ``tolerance`` the largest deviation of r.
+    """
 
     bounce: Bounce
     engine: Engine
     one_body: bool = False
     drag: float = 0.0
+    tolerance: float = TOLERANCE
 
     @property
     def deepest(self) -> float:
         """The depth in m from which on the engine loses the body, or two bodies change places."""
-        of_engine = self.engine.deepest * self.bounce.size
-        return min(of_engine, self.bounce.size + self.bounce.other_size)
+        size = self.bounce.size
+        return min(self.engine.deepest * size, size + self.bounce.other_size)
 
     @property
     def lost(self) -> str:
         """What happens beyond the deepest depth."""
-        deepest = show(self.deepest, "m")
-        if self.bounce.other_mass is None:
-            return f"{self.engine.name} loses a body that sinks more than {deepest}"
-        return f"bodies that sink more than {deepest} pass through each other"
-
-    def miss(self, row: "Row") -> float:
-        """Return the largest distance of r from the wanted one."""
-        return row.outcome.deviation(self.bounce.restitution)
+        depth = show(self.deepest, "m")
+        return (
+            f"{self.engine.name} loses a body that sinks more than {depth}"
+            if self.bounce.other_mass is None
+            else f"bodies that sink more than {depth} pass through each other"
+        )
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
-        bounce = self.bounce
-        points = bounce.points if self.engine.points_share else 1
-        both_free = bounce.other_mass is not None
-        return Setting(bounce.reduced_mass, step, points, bounce.reduced_radius, both_free)
+        return Setting(
+            mass=self.bounce.reduced_mass,
+            step=step,
+            points=self.bounce.points,
+            radius=self.bounce.reduced_radius,
+            both_free=self.bounce.other_mass is not None,
+        )
 
-    def law(self, depth: Array, ratio: Array) -> Law:
+    def law(self, depth: Any, ratio: Any) -> Law:
         """Return contacts by their undamped depths in m and ratios of damping."""
         return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
 
-    def drops(self, law: Law, step: Array | float, trials: Trials = _COARSE) -> Drops:
-        """Return the drops of contacts at time steps in s."""
-        scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
-        speed = self.bounce.impact_speed
-        return drop(law, scheme, step, speed, self.bounce.load, trials, drag=self.drag)
+    def law_of(self, parameters: Parameters, step: float) -> Law:
+        """Return the contact of written parameters at a time step in s."""
+        one = {**self.engine.defaults, **parameters}
+        other = self.engine.defaults if self.one_body else one
+        return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
-    def outcome(self, law: Law, step: float, trials: Trials = _FINE) -> Outcome:
+    def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
+        """Return the drops of contacts at a time step in s."""
+        return drop(
+            law,
+            OfSolver() if isinstance(law, Solved) else self.engine.scheme,
+            step,
+            self.bounce.impact_speed,
+            self.bounce.load,
+            trials,
+            drag=self.drag,
+        )
+
+    def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
         """Return what one contact does at a time step in s."""
-        # With error control it does not matter where in a step an impact begins.
-        found = self.drops(law, step, trials if self.engine.fixed_steps else _COARSE)
-        force = self.bounce.reduced_mass * found.peak
+        found = self.drops(law, step, trials)
         r = found.restitution
+        force = found.peak * self.bounce.reduced_mass
         return Outcome(
             depth=(float(found.depth.min()), float(found.depth.max())),
             rest=float(law.rest(self.bounce.load)) if self.bounce.load else 0.0,
@@ -386,85 +433,139 @@ class Problem:
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
 
-    def row(self, law: Law, step: float) -> Row:
-        """Return a contact with the parameters as they are written, and what these do."""
-        step = _rounded(step)
-        combined = {**self.engine.write(law, self.setting(step)), **self.engine.beside}
-        of_body = self.engine.of_one if self.one_body else self.engine.of_each
-        parameters = {name: _rounded(value) for name, value in of_body(combined).items()}
-        stiffness = float(law.stiffness) * self.bounce.reduced_mass
-        outcome = self.outcome(self.law_of(parameters, step), step)
-        return Row(step, stiffness, outcome, parameters)
+    @property
+    def duration(self) -> float:
+        """T/δ in s/m: how long an undamped contact lasts."""
+        return float(self.law(1.0, 0.0).duration(self.bounce.impact_speed))
 
-    def law_of(self, parameters: Mapping[str, Any], step: float) -> Law:
-        """Return the contact of written parameters at a time step in s."""
-        one = {**self.engine.defaults, **parameters}
-        other = self.engine.defaults if self.one_body else one
-        return self.engine.read(self.engine.combined(one, other), self.setting(step))
+    @property
+    def given_depth(self) -> float | None:
+        """δ in m of a contact that was given."""
+        time = self.bounce.contact_time
+        if self.bounce.stiffness is not None:
+            time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
+        return None if time is None else time / self.duration
 
-    def ratios(self, depth: Array, step: Array, start: Array | None = None) -> Array:
-        """Return the ratios of damping with which the mean r is the wanted one.
+    def ratio(self, depth: float, step: float) -> float:
+        """Return the ratio of damping with which the mean r is the wanted one.
 
-        If r may be 0 within the tolerance, it is the ratio with the least error among many: a
-        contact that no body leaves does not depend on where in a step it begins, and too much
-        damping throws the body away.
+        It is interpolated where r falls below. If r may be 0 within the tolerance, or does not
+        fall so far, it is the middle of those with the least error: a contact that no body leaves
+        does not depend on where in a step it begins, and too much damping throws the body away.
         """
-        if self.bounce.restitution > TOLERANCE:
-            return self._ratios_of_mean(depth, step, start)
-        tried = np.broadcast_to(_STRONG, (*np.shape(depth), len(_STRONG)))
-        if self.bounce.restitution >= LEAST_RESTITUTION:
-            mean = self._ratios_of_mean(depth, step, start)
-            tried = np.concatenate([tried, mean[..., None]], axis=-1)
-        law = self.law(np.broadcast_to(depth[..., None], tried.shape), tried)
-        steps = np.broadcast_to(step[..., None], tried.shape)
-        error = self.drops(law, steps).error(self.bounce.restitution)
-        best = np.argmin(error, axis=-1, keepdims=True)
-        return np.take_along_axis(tried, best, axis=-1)[..., 0]
+        wanted = self.bounce.restitution
+        # No law needs more than 1/r, to which that of Hunt and Crossley tends.
+        most = 1 / max(wanted, LEAST_RESTITUTION)
+        ratios = np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
+        for _ in range(2):
+            found = self.drops(self.law(np.full(ratios.shape, depth), ratios), step, _SEARCH)
+            falling = np.minimum.accumulate(found.mean)
+            ratio = float(np.interp(-wanted, -falling, ratios))
+            if wanted <= self.tolerance or wanted < falling[-1]:
+                errors = found.error(wanted)
+                # r is printed with three digits.
+                ratio = float(np.median(ratios[errors <= errors.min() + 1e-3]))
+            # Its neighbours in the first scan are not farther off.
+            ratios = ratio * np.linspace(0.65, 1.5, 17)
+        return ratio
 
-    def _ratios_of_mean(self, depth: Array, step: Array, start: Array | None) -> Array:
-        """Return the ratios by the secant rule in ln r, which is nearly linear in the ratio.
+    def tried(self, contact: Contact) -> Drops:
+        """Return the drops of a contact."""
+        law = self.law(np.array([contact.depth]), np.array([contact.ratio]))
+        return self.drops(law, contact.step)
 
-        It stays within a bracket. Where the steps or gravity alone take more, the ratio is 0.
-        """
-        goal = math.log(self.bounce.restitution)
-        x = np.full(np.shape(depth), 0.05 - goal / 4) if start is None else start
-        low = np.zeros(x.shape)
-        high = np.full(x.shape, np.inf)
-        best = x
-        least = np.full(x.shape, np.inf)
-        slope = np.full(x.shape, np.nan)
-        x_before = x
-        y_before = np.full(x.shape, np.nan)
-        for _ in range(12):
-            r = self.drops(self.law(depth, x), step, _MEAN).mean
-            y = np.log(np.maximum(r, 1e-3)) - goal
-            best = np.where(np.abs(y) < least, x, best)
-            least = np.minimum(np.abs(y), least)
-            # An r above the target at ratio 0 means that the damping has to grow from there.
-            low = np.where(y > 0, np.maximum(low, x), low)
-            high = np.where(y <= 0, np.minimum(high, x), high)
-            if np.all((least < _LN_R) | (high < 1e-5)):
+    def miss(self, contact: Contact) -> float:
+        """Return the largest distance of r from the wanted one."""
+        return float(self.tried(contact).error(self.bounce.restitution)[0])
+
+    def at(self, depth: float, step: float) -> Contact:
+        """Return the contact of an undamped depth in m at a time step in s."""
+        return Contact(depth, self.ratio(depth, step), step)
+
+    def step_of(self, count: float) -> Callable[[float], float]:
+        """Return the step of an undamped depth with which a contact has so many steps."""
+        return lambda depth: _written(self.duration * depth / count)
+
+    def keeping(self, step_of: Callable[[float], float]) -> Contact:
+        """Return the contact that keeps what is given, at the step of its undamped depth."""
+        if self.given_depth is not None:
+            return self.at(self.given_depth, step_of(self.given_depth))
+        # A contact that is stopped by its damper sinks about √r times its undamped depth.
+        depth = self.bounce.limit / math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
+        for _ in range(8):
+            contact = self.at(depth, step_of(depth))
+            sunk = max(float(self.tried(contact).depth.max()), self.bounce.limit / 100)
+            change = _AIM * self.bounce.limit / sunk
+            # Between δ, of a fast body, and δ², of one that its weight presses in.
+            depth *= change**0.75
+            if abs(change - 1) < 0.01:
                 break
-            with np.errstate(divide="ignore", invalid="ignore"):
-                secant = (y - y_before) / (x - x_before)
-            # Without damping r is about 1, which gives the first slope.
-            first = np.minimum(y + goal, -1e-2) / np.maximum(x, 1e-6)
-            slope = np.where(np.isfinite(slope), slope, first)
-            slope = np.where(np.isfinite(secant) & (secant < -1e-2), secant, slope)
-            x_before = x
-            y_before = y
-            guess = x - y / slope
-            middle = np.where(np.isfinite(high), (low + high) / 2, 2 * x + 0.1)
-            inside = (guess > low) & (guess < np.minimum(high, 4 * x + 0.3))
-            x = np.where(inside, guess, middle)
-            x = np.where(least < _LN_R, best, x)
-        return np.where((low == 0) & (least > _LN_R), 0.0, best)
+        return Contact(depth, contact.ratio, step_of(depth))
 
+    def keeps(self, contact: Contact) -> bool:
+        """Return whether r is within the tolerance, and the depth at most the permitted one."""
+        deepest = self.bounce.limit if self.given_depth is None else math.inf
+        is_allowed = self.tried(contact).depth.max() <= deepest
+        return bool(is_allowed) and self.miss(contact) <= self.tolerance
 
-def _rounded(value: Any) -> Any:
-    if isinstance(value, tuple):
-        return tuple(_rounded(each) for each in value)
-    return float(f"{value:.{_DIGITS}g}")
+    def works(self, contact: Contact) -> bool:
+        """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
+        rest = self.law(contact.depth, contact.ratio).rest(self.bounce.load)
+        is_seen = self.tried(contact).depth.max() < self.deepest and rest < self.bounce.size
+        return bool(is_seen) and self.miss(contact) <= self.tolerance
+
+    def wanted(self) -> Contact:
+        """Return the contact that keeps what is given, with the longest step in the tolerance.
+
+        If there is none, it is that of the shortest step.
+        """
+        for count in _COUNTS if self.engine.fixed_steps else (_SHORT,):
+            contact = self.keeping(self.step_of(count))
+            if self.keeps(contact):
+                break
+        return contact
+
+    def stiffest(self, step: float) -> Contact:
+        """Return the stiffest contact at a time step in s with which r is within the tolerance.
+
+        It is found by halving, because r misses less the more steps there are. If there is none,
+        it is the most compliant one.
+        """
+        depths = [count * step / self.duration for count in _FINE_COUNTS]
+        place = bisect_left(
+            depths, True, key=lambda depth: self.miss(self.at(depth, step)) <= self.tolerance
+        )
+        return self.at(depths[min(place, len(depths) - 1)], step)
+
+    def row(self, contact: Contact) -> Row:
+        """Return a contact with the parameters as they are written, and what these do."""
+        law = self.law(contact.depth, contact.ratio)
+        combined = {**self.engine.write(law, self.setting(contact.step)), **self.engine.beside}
+        values = self.engine.of_one if self.one_body else self.engine.of_each
+        parameters = {name: _written(value) for name, value in values(combined).items()}
+        stiffness = float(law.stiffness) * self.bounce.reduced_mass
+        outcome = self.outcome(self.law_of(parameters, contact.step), contact.step)
+        return Row(contact.step, stiffness, outcome, parameters)
+
+    def impulse(self, step: float) -> Row:
+        """Return the restitution by number that has the wanted mean r, without a spring.
+
+        The number and r differ by little, so that it is corrected by their difference. It is
+        PyBullet's if the engine has none.
+        """
+        engine = self.engine if self.engine.number else ENGINES["pybullet"]
+        problem = replace(self, engine=engine, one_body=False)
+        number = self.bounce.restitution
+        tried = []
+        for _ in range(12):
+            alike = _written(engine.rules[engine.number].alike(number))
+            parameters = {engine.number: alike, **engine.undisturbed}
+            outcome = problem.outcome(problem.law_of(parameters, step), step)
+            tried.append(Row(step, math.nan, outcome, parameters))
+            # Half of it, because r may depend on the number by jumps.
+            short = (self.bounce.restitution - outcome.restitution[1]) / 2
+            number = float(np.clip(number + short, 0, 1))
+        return min(tried, key=lambda row: row.outcome.deviation(self.bounce.restitution))
 
 
 def design(
@@ -500,276 +601,140 @@ def design(
     """
     if not isinstance(bounce, Bounce):
         raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
-    if bounce.restitution is None:
-        raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
-    row = engine_named(engine)
-    problem = Problem(bounce, row, one_body)
-    largest = within("tolerance", tolerance, 1e-4, 1)
-    step = None if time_step is None else units.time_step(time_step)
-    if step is not None and not row.fixed_steps:
-        raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
-    kept = _undamped_depth(problem)
-    rows = {WANTED: _wanted(problem, largest, kept)}
-    chosen = WANTED
+    problem = Problem(
+        bounce=bounce,
+        engine=engine_named(engine),
+        one_body=one_body,
+        tolerance=within("tolerance", tolerance, 1e-4, 1),
+    )
+    refuse(
+        [
+            (
+                bounce.restitution is None,
+                "the restitution is missing: --restitution 0.8 or restitution=0.8",
+            ),
+            (
+                bounce.stiffness is not None and problem.engine.unit != "N/m",
+                f"{problem.engine.name} has no stiffness in N/m: give the penetration",
+            ),
+            (
+                time_step is not None and not problem.engine.fixed_steps,
+                f"{problem.engine.name} chooses its steps itself: leave the time step out",
+            ),
+        ]
+    )
+    step = None if time_step is None else _written(step_in_si(time_step))
+    # Half of the tolerance is left for what is known of the body.
+    strict = replace(problem, tolerance=problem.tolerance / 2)
+    rows = {WANTED: problem.row(strict.wanted())}
     keeps = False
     if step is not None:
-        # The r of a shorter step is nearer, unless it is about 0.
-        if step <= rows[WANTED].step and bounce.restitution > TOLERANCE:
-            yours: Row | None = _kept(
-                problem, kept or bounce.limit, step, is_fixed=kept is not None
-            )
-        else:
-            yours = _keeping(problem, step, largest, kept)
-        keeps = yours is not None
-        yours = yours or _at_step(problem, step, largest)
-        if yours is not None:
-            rows[YOURS] = yours
-            keeps = keeps or (not kept and _is_good(problem, yours, largest, bounce.limit))
-            if keeps or (bounce.penetration, kept) == (None, None):
-                chosen = YOURS
-        if bounce.points == 1 and (row.number or yours is None):
-            rows[IMPULSE] = _impulse(problem, step)
-    if pick is not None:
-        chosen = _picked(pick, rows, problem)
-    notes = [] if step is None or keeps else _too_long(problem, step, rows, largest, chosen)
-    notes += _notes(problem, rows[chosen], largest, chosen == WANTED)
-    return Design(
+        kept = problem.keeping(lambda _: step)
+        keeps = problem.keeps(kept)
+        contact = kept if keeps else problem.stiffest(step)
+        if keeps or problem.works(contact):
+            rows[YOURS] = problem.row(contact)
+        if bounce.points == 1 and (problem.engine.number or YOURS not in rows):
+            rows[IMPULSE] = problem.impulse(step)
+    usual = YOURS if YOURS in rows and (keeps or not bounce.gives_contact) else WANTED
+    chosen = usual if pick is None else pick.strip().lower()
+    is_impulse_written = text_of(f"{problem.engine.name}-{IMPULSE}") and not one_body
+    written = [name for name in rows if name != IMPULSE or is_impulse_written]
+    names = ", ".join(map(repr, written))
+    refuse([(chosen not in written, f"row {pick!r} is not one that is written here: {names}")])
+    found = Design(
         bounce=bounce,
-        engine=row.name,
+        engine=problem.engine.name,
         one_body=one_body,
         time_step=step,
         rows=rows,
         chosen=chosen,
-        notes=tuple(notes),
+        notes=(),
     )
+    return replace(found, notes=tuple(_notes(found, problem, keeps)))
 
 
-def _is_good(problem: Problem, row: Row, tolerance: float, limit: float) -> bool:
-    """Return whether a row keeps the tolerance and a limit of the penetration in m."""
-    return problem.miss(row) <= tolerance and row.outcome.depth[1] <= limit
-
-
-def _keeping(problem: Problem, step: float, tolerance: float, kept: float | None) -> Row | None:
-    """Return the most compliant contact that keeps what was given and the tolerance at a step."""
-    depth = kept or problem.bounce.limit
-    _, error, _ = _tried(problem, np.array([depth]), step)
-    # Damped, the contact becomes more compliant, and its r better.
-    if not np.any(error <= 2 * tolerance):
-        return None
-    row = _kept(problem, depth, step, is_fixed=kept is not None)
-    limit = math.inf if kept else depth
-    return row if _is_good(problem, row, tolerance, limit) else None
-
-
-def _picked(pick: str, rows: Mapping[str, Row], problem: Problem) -> str:
-    name = pick.strip().lower()
-    if name == IMPULSE and not text_of(f"{problem.engine.name}-impulse"):
-        raise Refused(f"no impulse is written for {problem.engine.name}: only for pybullet")
-    if name not in rows:
-        raise Refused(f"row {pick!r} is none of this answer: {', '.join(map(repr, rows))}")
-    if name == IMPULSE and problem.one_body:
-        raise Refused("pybullet multiplies the restitution of both bodies: one body has none alone")
-    return name
-
-
-def _undamped_depth(problem: Problem) -> float | None:
-    """Return the depth in m, without damping, of a contact that is given; None if none is."""
+def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
+    """Return what a user has to know of the row that is written, and of the one that is not."""
     bounce = problem.bounce
-    unit = problem.law(np.asarray(1.0), np.asarray(0.0))
-    if bounce.stiffness is not None:
-        if problem.engine.unit != "N/m":
-            raise Refused(f"{problem.engine.name} has no stiffness in N/m: give the penetration")
-        # The stiffness of an undamped depth d is proportional to 1/d².
-        return math.sqrt(float(unit.stiffness) * bounce.reduced_mass / bounce.stiffness)
-    if bounce.contact_time is not None:
-        # A contact lasts a time that is proportional to the depth.
-        return float(bounce.contact_time / unit.duration(bounce.impact_speed))
-    return None
-
-
-def _wanted(problem: Problem, tolerance: float, kept: float | None) -> Row:
-    """Return the contact that keeps the limit, at the longest step with half of the tolerance."""
-    limit = problem.bounce.limit
-    if not problem.engine.fixed_steps:
-        step = math.pi * (kept or limit) / problem.bounce.impact_speed / _CONTROLLED
-        return _kept(problem, kept or limit, step, is_fixed=kept is not None)
-    for counts in _STEPS:
-        depth = np.full(counts.shape, kept or limit)
-        ratio: Array | None = None
-        for _ in range(1 if kept else 3):
-            step = math.pi * depth / problem.bounce.impact_speed / counts
-            ratio = problem.ratios(depth, step, ratio)
-            found = problem.drops(problem.law(depth, ratio), step)
-            if kept is None:
-                depth = depth * 0.998 * limit / found.depth.max(axis=-1)
-        good = np.flatnonzero(found.error(problem.bounce.restitution) <= tolerance / 2)
-        if good.size:
-            break
-    best = int(good[0]) if good.size else int(np.argmin(found.error(problem.bounce.restitution)))
-    step_of = math.pi * float(depth[best]) / problem.bounce.impact_speed / counts[best]
-    return _kept(problem, float(depth[best]), step_of, is_fixed=kept is not None)
-
-
-def _kept(problem: Problem, depth: float, step: float, *, is_fixed: bool) -> Row:
-    """Return the contact at a step that keeps the limit, or that has the depth if it `is_fixed`."""
-    limit = problem.bounce.limit
-    ratio: Array | None = None
-    for _ in range(20):
-        ratio = problem.ratios(np.array([depth]), np.array([step]), ratio)
-        law = problem.law(np.asarray(depth), ratio[0])
-        row = problem.row(law, step)
-        sinks = row.outcome.depth[1]
-        if is_fixed or 0.99 * limit <= sinks <= limit:
-            break
-        depth *= 0.998 * limit / sinks
-    return row
-
-
-def _at_step(problem: Problem, step: float, tolerance: float) -> Row | None:
-    """Return the stiffest contact within the tolerance at a step in s.
-
-    If none is within the tolerance it is the one with the least error. None if no spring works:
-    if all miss r by more than twice the tolerance, or if the body would lie deeper than its radius
-    or be lost by the engine.
-    """
-    per_step = problem.bounce.impact_speed * step / math.pi
-    rows = []
-    stiffer = None
-    for counts in _AT_STEP:
-        depth, error, ratio = _tried(problem, counts * per_step, step)
-        if not depth.size:
-            break
-        # The tolerance holds over all trials, and not only over those of the search.
-        for i in dict.fromkeys([*np.flatnonzero(error <= tolerance), np.argmin(error)]):
-            row = problem.row(problem.law(depth[i], ratio[i]), step)
-            rows.append(row)
-            if problem.miss(row) <= tolerance:
-                before = depth[i - 1] if i else stiffer
-                finer = before and _between(problem, before, depth[i], step, tolerance)
-                return finer or row
-        stiffer = depth[-1]
-    nearest = min(rows, key=problem.miss, default=None)
-    if nearest is None or problem.miss(nearest) > 2 * tolerance:
-        return None
-    return nearest
-
-
-def _between(
-    problem: Problem, fails: float, holds: float, step: float, tolerance: float
-) -> Row | None:
-    """Return the stiffest of some contacts between two depths that is within the tolerance."""
-    depth, error, ratio = _tried(problem, np.geomspace(fails, holds, 7)[1:-1], step)
-    for i in np.flatnonzero(error <= tolerance):
-        row = problem.row(problem.law(depth[i], ratio[i]), step)
-        if problem.miss(row) <= tolerance:
-            return row
-    return None
-
-
-def _tried(problem: Problem, depth: Array, step: float) -> tuple[Array, Array, Array]:
-    """Return those depths that work, with the errors of r and the ratios of damping."""
-    steps = np.full(depth.shape, step)
-    ratio = problem.ratios(depth, steps)
-    law = problem.law(depth, ratio)
-    found = problem.drops(law, steps)
-    seen = found.depth.max(axis=-1) < problem.deepest
-    seen &= law.rest(problem.bounce.load) < problem.bounce.size
-    return depth[seen], found.error(problem.bounce.restitution)[seen], ratio[seen]
-
-
-def _impulse(problem: Problem, step: float) -> Row:
-    """Return the restitution by number with which the mean r is the wanted one at a step in s.
-
-    It is the engine's own, or PyBullet's if the engine has none.
-    """
-    engine = problem.engine if problem.engine.number else engine_named("pybullet")
-    own = replace(problem, engine=engine, one_body=False)
-    step = _rounded(step)
-    law: Any = own.law_of({**engine.undisturbed, engine.number: 0.0}, step)
-    numbers = np.linspace(0.0, 1.0, 21)
-    mean = own.drops(replace(law, restitution=numbers), step, _MEAN).mean
-    best = float(np.interp(problem.bounce.restitution, mean, numbers))
-    each = _rounded(engine.rules[engine.number].alike(best))
-    parameters = {engine.number: each, **engine.undisturbed}
-    return Row(step, math.nan, own.outcome(own.law_of(parameters, step), step), parameters)
-
-
-def _too_long(
-    problem: Problem, step: float, rows: Mapping[str, Row], tolerance: float, chosen: str
-) -> list[str]:
-    """Return what a step that is too long for the wanted contact costs."""
-    bounce = problem.bounce
-    wanted = rows[WANTED]
-    what = f"at {show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
-    way = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
-    if YOURS not in rows:
-        depth = f"lies less deep than the {bounce.size_name} of {show(bounce.size, 'm')}"
-        if bounce.other_mass is not None:
-            depth = f"sinks less than {show(problem.deepest, 'm')}"
-        return [
-            f"at {show(step, 's')} no spring works in {problem.engine.name}: none keeps r within "
-            f"{2 * tolerance:g} and {depth}, because {way}; {what}"
-        ]
-    sinks = rows[YOURS].outcome.depth[1]
-    found = []
-    if sinks > bounce.limit:
-        how = f"{100 * sinks / bounce.size:.0f} % of its {bounce.size_name}"
-        if sinks > bounce.size:
-            how = "its centre passes the surface"
-        reason = f", because {way}" if bounce.impact_speed * step > bounce.limit else ""
-        found.append(f"at your step it sinks {show(sinks, 'm')}, {how}{reason}; {what}")
-    if problem.miss(rows[YOURS]) > tolerance:
-        found.append(f"at your step no spring has r within {tolerance:g}: the nearest one is shown")
-    if bounce.penetration is not None or _undamped_depth(problem) is not None:
-        other = YOURS if chosen == WANTED else WANTED
-        found.append(
-            f"your step of {show(step, 's')} cannot keep what you gave: the row for "
-            f"{show(rows[chosen].step, 's')} is written (--pick {other!r} for the other one)"
-        )
-    return found
-
-
-def _notes(problem: Problem, row: Row, tolerance: float, is_wanted: bool) -> list[str]:
-    """Return what a user of a row has to know."""
-    bounce = problem.bounce
-    found = []
+    row = found.row
+    outcome = row.outcome
+    low, mean, high = outcome.restitution
     law = problem.law_of(row.parameters, row.step)
-    low, mean, high = row.outcome.restitution
-    # Half of the last printed digit.
-    if bounce.restitution < LEAST_RESTITUTION and mean > 5e-4:
-        found.append(
-            f"r = {bounce.restitution:g}: the damping leaves about {mean:.3f}, by which a body "
-            f"rises {mean**2:.1g} of its height"
-        )
-    elif is_wanted and problem.miss(row) > tolerance:
-        found.append(f"r is {span(low, high)}: no damping of this contact is nearer")
-    if float(law.damping) == 0 and mean < bounce.restitution - 5e-4:
-        found.append(
-            f"this contact has no damping, and r is still {mean:.3f} at most, because the steps "
-            "damp by themselves: a shorter step has more"
-        )
-    if high > 1.0005:
-        found.append(f"r is up to {high:.3f}: at some instants the body gains energy")
-    sinks = row.outcome.depth[1]
-    if sinks > problem.deepest:
-        found.append(problem.lost)
-    elif sinks > bounce.size and (bounce.stiffness or bounce.contact_time):
-        found.append(f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}")
-    if law.duration(bounce.impact_speed) > MOST_STEPS * row.step:
-        found.append(
-            f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
-            "not computed, and change r by less than 0.001"
-        )
-    if bounce.load:
-        slow = replace(bounce, drop_height=None, speed=math.sqrt(0.1) * bounce.impact_speed)
-        slower = replace(problem, bounce=slow).outcome(law, row.step)
-        if slower.deviation(bounce.restitution) > max(tolerance, 2 * row.outcome.error):
-            found.append(f"from a tenth of the height r is {slower.around}")
-    if bounce.friction:
-        found.append(problem.engine.friction)
-        if "@friction@" not in text_of(problem.engine.name):
-            found.append(f"a friction of {bounce.friction:g} is not in what is pasted")
-    return found
+    is_undamped = not law.is_number and float(law.damping) == 0 and mean < bounce.restitution
+    slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
+    slow = replace(problem, bounce=slower).outcome(law, row.step)
+    wanted = found.rows[WANTED]
+    depth = found.rows.get(YOURS, wanted).outcome.depth[1]
+    is_deeper = not keeps and depth > 1.01 * wanted.outcome.depth[1]
+    share = f"{100 * depth / bounce.size:.0f} % of its {bounce.size_name}"
+    step = found.time_step or wanted.step
+    at_yours = show(step, "s", 4)
+    moves = (
+        f"because it moves {show(bounce.impact_speed * step, 'm')} in a step; at "
+        f"{show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
+    )
+    size = f"{bounce.size_name} of {show(bounce.size, 'm')}"
+    no_deeper = (
+        f"sinks less than {show(problem.deepest, 'm')}"
+        if math.isfinite(problem.deepest)
+        else f"lies less deep than the {size}"
+    )
+    return holding(
+        [
+            (
+                found.time_step and YOURS not in found.rows,
+                f"at {at_yours} no spring works in {found.engine}: none keeps r within "
+                f"{problem.tolerance:g} and {no_deeper}, {moves}",
+            ),
+            (
+                is_deeper,
+                f"at your step it sinks {show(depth, 'm')}, "
+                f"{'its centre passes the surface' if depth > bounce.size else share}, {moves}",
+            ),
+            (
+                YOURS in found.rows and bounce.gives_contact and not keeps,
+                f"your step of {at_yours} cannot keep what you gave: the row for "
+                f"{show(row.step, 's')} is written (--pick "
+                f"{(WANTED if found.chosen == YOURS else YOURS)!r} for the other one)",
+            ),
+            (
+                outcome.depth[1] > bounce.size and not (found.chosen == YOURS and is_deeper),
+                f"it sinks deeper than its {size}",
+            ),
+            (
+                found.chosen == WANTED
+                and problem.given_depth is None
+                and outcome.depth[1] > bounce.limit,
+                f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
+            ),
+            (outcome.depth[1] > problem.deepest, problem.lost),
+            (
+                law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
+                f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
+                "not computed, and change r by less than 0.001",
+            ),
+            (
+                is_undamped,
+                f"this contact has no damping, and r is still {mean:.3f} at most, because the "
+                "steps damp by themselves: a shorter step has more",
+            ),
+            (
+                outcome.deviation(bounce.restitution) > problem.tolerance and not is_undamped,
+                f"r is {span(low, high)}: no number of this row is nearer",
+            ),
+            (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
+            (
+                abs(slow.restitution[1] - mean) > TOLERANCE / 2,
+                f"at a third of the speed r is {slow.around}",
+            ),
+            (bounce.friction, problem.engine.friction),
+            (
+                bounce.friction and "@friction@" not in found.template,
+                f"a friction of {bounce.friction or 0:g} is not in what is pasted",
+            ),
+        ]
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -798,83 +763,76 @@ class Design(Page):
         return self.row.parameters
 
     @property
+    def template(self) -> str:
+        """What is pasted, with places for the numbers."""
+        bodies = "ground" if self.bounce.other_mass is None else "pair"
+        kind = IMPULSE if self.chosen == IMPULSE else bodies
+        return text_of(f"{self.engine}-{kind}") or text_of(self.engine)
+
+    @property
     def snippet(self) -> str:
         """What is pasted into the engine."""
-        name = self.engine
-        if self.chosen == IMPULSE:
-            name = f"{name}-impulse"
-        elif self.bounce.other_mass is not None and text_of(f"{name}-pair"):
-            name = f"{name}-pair"
         values = {
             "step": self.row.step,
-            "mass": show(self.bounce.mass, "kg", 4),
-            "friction": self.bounce.friction or 0,
+            "friction": self.bounce.friction or 0.0,
             "bodies": "one of both bodies" if self.one_body else "both bodies alike",
             "names": "(one,)" if self.one_body else "(one, other)",
         }
-        return filled(text_of(name), values | self.parameters).rstrip()
+        return filled(self.template, values | self.parameters).rstrip()
 
     @property
     def table(self) -> list[list[str]]:
         """The cells of the table, the headings first."""
         engine = engine_named(self.engine)
-        rows = [
-            [
-                f"{name} *" if name == self.chosen else name,
-                show(row.step, "s") if engine.fixed_steps else "–",
-                show(row.stiffness, engine.unit),
-                show(row.outcome.depth[1], "m"),
-                show(row.outcome.rest, "m") if self.bounce.load else "–",
-                show(row.outcome.force[1], "N"),
-                row.outcome.around,
-            ]
-            for name, row in self.rows.items()
+        return [
+            ["", "step", "k", "sinks", "at rest", "force", "r"],
+            *(
+                [
+                    f"{name} *" if name == self.chosen else name,
+                    show(row.step, "s") if engine.fixed_steps else "–",
+                    show(row.stiffness, engine.unit),
+                    show(row.outcome.depth[1], "m"),
+                    show(row.outcome.rest, "m") if self.bounce.load else "–",
+                    show(row.outcome.force[1], "N"),
+                    row.outcome.around,
+                ]
+                for name, row in self.rows.items()
+            ),
         ]
-        return [["", "step", "k", "sinks", "at rest", "force", "r"], *rows]
 
     @property
     def remarks(self) -> list[str]:
         """The lines below the snippet: what was given and assumed, and what the engine needs."""
-        row = engine_named(self.engine)
-        given = dict(self.bounce.given)
-        if self.time_step is not None:
-            given["time step"] = show(self.time_step, "s", 4)
-        # So that a wrong unit is seen.
-        lines = [f"Given: {', '.join(f'{name} {value}' for name, value in given.items())}."]
-        if self.bounce.assumed:
-            lines.append(f"Assumed: {'; '.join(self.bounce.assumed)}.")
-        if self.bounce.other_mass is not None:
-            reduced = show(self.bounce.reduced_mass, "kg", 4)
-            lines.append(f"Two free bodies act as one of the reduced mass {reduced}.")
-        if IMPULSE in self.rows:
-            how = "PyBullet's, because this engine has none"
-            if row.number:
-                values = self.rows[IMPULSE].parameters
-                how = ", ".join(f"{name} = {value:g}" for name, value in values.items())
-                how += f" ({row.rules[row.number].text})"
-            if text_of(f"{self.engine}-impulse"):
-                how = f"{how}; --pick impulse writes it"
-            lines.append(f"The row of the impulse is a restitution by number: {how}.")
-        if not row.ran:
-            lines.append(f"The row of {row.name} was never run in its engine.")
-        lines += [f"{note}." for note in row.notes]
-        if row.box and self.bounce.points > 1:
-            lines.append(f"{row.box}.")
-        if row.floor and self.bounce.other_mass is None:
-            lines.append(f"{row.floor}.")
-        return lines
+        bounce = self.bounce
+        engine = engine_named(self.engine)
+        at = "" if self.time_step is None else f", time step {show(self.time_step, 's', 4)}"
+        given = ", ".join(f"{name} {value}" for name, value in bounce.given.items()) + at
+        impulse = self.rows[IMPULSE].parameters if IMPULSE in self.rows else {}
+        numbers = ", ".join(f"{name} = {value:g}" for name, value in impulse.items())
+        source = engine if engine.number else ENGINES["pybullet"]
+        said = [
+            (True, f"Given: {given}"),
+            (bounce.assumed, f"Assumed: {'; '.join(bounce.assumed)}"),
+            (
+                bounce.other_mass,
+                f"Two free bodies act as one of {show(bounce.reduced_mass, 'kg', 4)}, their "
+                "reduced mass",
+            ),
+            (
+                impulse,
+                f"The row of the impulse is a restitution by number in {source.name}: {numbers}, "
+                f"{source.rules[source.number].text}",
+            ),
+            (impulse and text_of(f"{self.engine}-{IMPULSE}"), f"--pick {IMPULSE} writes it"),
+            (not engine.ran, f"The row of {self.engine} was never run in its engine"),
+            *((True, note) for note in engine.notes),
+            (bounce.points > 1, engine.box),
+            (bounce.other_mass is None, engine.floor),
+        ]
+        return [f"{text}." for text in holding(said) if text]
 
     def __repr__(self) -> str:
         return "\n".join([*aligned(self.table), *(f"! {note}" for note in self.notes)])
 
     def __str__(self) -> str:
-        return "\n".join([repr(self), "", self.snippet, "", *self.remarks])
-
-
-def aligned(table: list[list[str]]) -> list[str]:
-    """Return the lines of a table with columns of equal width."""
-    widths = [max(map(len, column)) + 2 for column in zip(*table, strict=True)]
-    return [
-        "".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip()
-        for line in table
-    ]
+        return "\n\n".join([repr(self), self.snippet, "\n".join(self.remarks)])

@@ -668,6 +668,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     depth = found.rows.get(YOURS, wanted).outcome.depth[1]
     is_deeper = not keeps and depth > 1.01 * wanted.outcome.depth[1]
     share = f"{100 * depth / bounce.size:.0f} % of its {bounce.size_name}"
+    passes = "its centre passes the surface, so that a table has to be twice as thick"
     step = found.time_step or wanted.step
     at_yours = show(step, "s", 4)
     moves = (
@@ -688,9 +689,13 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 f"{problem.tolerance:g} and {no_deeper}, {moves}",
             ),
             (
+                found.time_step and YOURS not in found.rows and 0 < bounce.restitution < 0.1,
+                "bodies that hardly bounce rest at once at longer steps: try --restitution 0",
+            ),
+            (
                 is_deeper,
                 f"at your step it sinks {show(depth, 'm')}, "
-                f"{'its centre passes the surface' if depth > bounce.size else share}, {moves}",
+                f"{passes if depth > bounce.size else share}, {moves}",
             ),
             (
                 YOURS in found.rows and bounce.gives_contact and not keeps,

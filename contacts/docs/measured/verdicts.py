@@ -34,8 +34,9 @@ def draw(found):
         axes.plot(v, one.impacts.restitution, "ko", markersize=3)
         speeds = np.geomspace(v.min(), v.max(), 100)
         of = {law.law: law.parameter for law in one.laws}
-        for name_of_law, law in LAWS.items():
-            axes.plot(speeds, np.exp(law.log_r(of[name_of_law], speeds)), label=name_of_law)
+        for (name_of_law, law), dashes in zip(LAWS.items(), ["-", "--", ":"], strict=True):
+            r = np.exp(law.log_r(of[name_of_law], speeds))
+            axes.plot(speeds, r, dashes, label=name_of_law)
         spread = np.ptp(one.impacts.restitution)
         middle = float(np.mean(one.impacts.restitution))
         axes.set(
@@ -45,6 +46,8 @@ def draw(found):
         axes.set_axis_off()
     for axes in slots[-1]:
         axes.set_xlabel("impact speed in m/s")
+    for axes in slots[:, 0]:
+        axes.set_ylabel("restitution coefficient")
     handles, labels = slots.flat[0].get_legend_handles_labels()
     of = dict(zip(labels, handles, strict=True))
     figure.legend(of.values(), of.keys(), loc="lower right")

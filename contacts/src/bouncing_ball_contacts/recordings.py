@@ -72,10 +72,12 @@ _QUANTITIES = (
     ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
-    ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
-    ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
-    ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
-    ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
+    ("count", r"^n\b|\b(no|nr|number|count|index|step|frame)\b"),
+    ("unused", r"\b(x|energy|mass|diameter|radius)\b"),
+    ("error", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
+    ("error", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
+    ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bs[de]m?\b|sigma|[±σ]|fehler"),
+    ("uncertainty", r"unsicherheit|^[dδ] ?(e|cor)\b"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
     ("duration", r"duration|dauer|contact|kontakt"),
@@ -95,6 +97,8 @@ _SIDES = (
     ("before", r"\b[hv] ?[0i]\b"),
     ("after", r"average|mean\b|(trial|run|test|measurement) \d"),
 )
+# Such intervals are free of contact.
+_IN_THE_AIR = r"flight|flug|air ?time|hang"
 _AVERAGE = r"average|mean\b"
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
@@ -127,15 +131,15 @@ _SERIES: _Layouts = (
 )
 # Numbers of a pair that lacks its other half are no series.
 _HALVES = {"height before", "height after", "speed before", "speed after", "coefficient"}
-# Of each quantity: its name, the most that is plausible without a unit and with one, and the unit
-# that was perhaps meant. An error of its reading may let an r exceed 1.
+# Of each quantity: its name, the least that is plausible, the most without a unit and with one, and
+# the unit that was perhaps meant. An error of its reading may let an r exceed 1.
 _PLAUSIBLE = {
-    "interval": ("flight", 9.0, 9.0, "ms"),
-    "height": ("height", 10.0, 100.0, "cm"),
-    "speed": ("speed", 100.0, 100.0, "cm/s"),
-    "coefficient": ("restitution coefficient", 1.05, 1.05, "%"),
-    "uncertainty": ("uncertainty", 1.0, 1.0, "%"),
-    "duration": ("contact time", 1.0, 1.0, "ms"),
+    "interval": ("flight", 1e-3, 9.0, 9.0, "ms"),
+    "height": ("height", 1e-6, 10.0, 100.0, "cm"),
+    "speed": ("speed", 1e-6, 100.0, 100.0, "cm/s"),
+    "coefficient": ("restitution coefficient", 0.0, 1.05, 1.05, "%"),
+    "uncertainty": ("uncertainty", 0.0, 1.0, 1.0, "%"),
+    "duration": ("contact time", 0.0, 1.0, 1.0, "ms"),
 }
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
@@ -257,13 +261,17 @@ def _text_of(source: Any) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class _Table:
-    """Cells below headings, with the numbers of their lines, and what the head says."""
+    """Cells below headings, with the numbers of their lines, and what the head says.
+
+    One column is bare if it has no heading, which is then "time".
+    """
 
     name: str
     head: dict[str, str]
     headings: list[str]
     cells: list[list[str]]
     lines: Lines
+    is_bare: bool
 
     def refuse(self, is_bad: NDArray[np.bool_], lines: Lines, text: str, *numbers: Array) -> None:
         """Refuse the first number that is bad; the text has places for numbers of that line."""
@@ -333,6 +341,7 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     lines = lines[::step]
     if unknown := set(leave_out) - set(lines.tolist()):
         raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
+    is_bare = False
     if not above:
         # One line of numbers is a column.
         rows = [[cell] for cell in rows[0]] if len(rows) == 1 else rows
@@ -344,6 +353,7 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
         if not (are_labels | np.isnan(ends).all()).all():
             raise Refused(f"{name}: no bounces in a table without headings: {_HEADINGS}")
         above = [["time"]]
+        is_bare = bool(np.isnan(ends).all())
     headings = above[-1]
     if len(above) > 1 and all(re.fullmatch(rf"\W?{_UNIT}?\W?", unit) for unit in headings):
         headings = [
@@ -351,8 +361,12 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
             for one, unit in itertools.zip_longest(*above[-2:], fillvalue="")
         ]
     rows = [[] if line in leave_out else row for line, row in zip(lines, rows, strict=True)]
+    for line, row in zip(lines, rows, strict=True):
+        if np.isnan([*map(_number, row)]).all() and _are_headings(row):
+            raise Refused(f"{name}: line {line} is a second heading: write one table in each file")
     width = len(headings)
-    return _Table(name, head, headings, [[*row, *[""] * width][:width] for row in rows], lines)
+    filled = [[*row, *[""] * width][:width] for row in rows]
+    return _Table(name, head, headings, filled, lines, is_bare)
 
 
 # Headings to quantities.
@@ -367,6 +381,12 @@ class _Column:
     role: str
     texts: list[str]
     numbers: Array
+
+
+def _counts(numbers: Array) -> bool:
+    """Return whether numbers count, mostly by one."""
+    steps = np.diff(numbers)
+    return bool(np.sum(steps == 1) > len(steps) / 2 and not np.any((steps < 1) | (steps % 1 > 0)))
 
 
 def _column(heading: str, texts: list[str]) -> _Column:
@@ -393,12 +413,13 @@ def _column(heading: str, texts: list[str]) -> _Column:
     quantity = first(_QUANTITIES, words)
     side = first(_SIDES, words)
     numbers = np.array([_number(text) for text in texts])
+    # "bounce" above 1, 2, 4 is the number of the bounce.
+    bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
+    may_count = quantity in ("", "interval") and not (bare and side == "before")
+    if may_count and not unit and _counts(numbers):
+        quantity = "count"
     if not quantity and side:
-        bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
         quantity = first(_BY_UNIT, unit) or bare
-        # "bounce" above 1, 2, 3 is the number of the bounce.
-        if bare and side == "after" and len(texts) > 1 and (np.diff(numbers) == 1).all():
-            quantity = ""
     role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
     if "%" in unit and role not in ("coefficient", "uncertainty"):
         role = "derived"
@@ -461,12 +482,14 @@ def _values(table: _Table, column: _Column, unit: str = "") -> Array:
 
 def _check(table: _Table, quantity: str, has_unit: bool, values: Array, lines: Lines) -> None:
     """Refuse values in SI units that no ball has."""
-    what, bare, with_unit, perhaps = _PLAUSIBLE[quantity]
+    what, least, bare, with_unit, perhaps = _PLAUSIBLE[quantity]
     said = f"a {what} of {{}} {_SI[quantity]}".strip()
     most = with_unit if has_unit else bare
     hint = "" if has_unit else " without a unit"
     hint += f": is it in {perhaps}? write ({perhaps}) behind the heading"
     table.refuse(values <= 0, lines, f"{said} is not positive", values)
+    small = f"{said} is too small for a bounce: write the unit that it has behind the heading"
+    table.refuse(values < least, lines, small, values)
     table.refuse(values > most, lines, f"{said}{hint}", values)
 
 
@@ -479,16 +502,20 @@ def _runs(values: Array, lines: Lines) -> list[_Run]:
     return [(values[piece], lines[piece]) for piece in pieces]
 
 
-def _groups(roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
-    """Return the rows of each recording."""
-    if "recording" not in roles:
-        return [np.arange(len(is_missing))]
-    texts = roles["recording"][0].texts
+def _groups(
+    roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_], is_jump: NDArray[np.bool_]
+) -> list[Lines]:
+    """Return the rows of each recording, divided where the count of bounces jumps."""
+    texts = roles["recording"][0].texts if "recording" in roles else [""] * len(is_missing)
     # A name that is empty, or never beside a number, is that of the row above.
     known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
     name = ""
-    names = np.array([name := text if text in known else name for text in texts])
-    return [np.flatnonzero(names == each) for each in dict.fromkeys(names)]
+    names = [name := text if text in known else name for text in texts]
+    parts = [*zip(names, np.cumsum(is_jump).tolist(), strict=True)]
+    return [
+        np.array([i for i, each in enumerate(parts) if each == part])
+        for part in dict.fromkeys(parts)
+    ]
 
 
 def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[_Run]:
@@ -520,7 +547,12 @@ def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[
 
 
 def _flights(table: _Table, runs: list[_Run]) -> list[_Run]:
-    """Return the flights between times; times that fall are flights already."""
+    """Return the flights between times; times below a heading that fall are flights already."""
+    if table.is_bare and any((np.diff(times) <= 0).any() for times, _ in runs):
+        raise Refused(
+            f"{table.name}: a column without a heading is taken as times in s, which rise: write a "
+            "heading, such as interval (s) or height (cm)"
+        )
     if all((np.diff(times) < 0).all() for times, _ in runs):
         return runs
     flights = [(np.diff(times), lines[1:]) for times, lines in runs]
@@ -552,6 +584,10 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
         "a flight of {} s, after which one of {} s has less than half of the ratio that the next "
         "one has: an impact is missing within it (--leave-out its line)"
     )
+    fallen = (
+        "a flight of {} s is short beside the two after it: it begins with the release, or the "
+        "next one has an impact within it (--leave-out the first line, or that of the next one)"
+    )
     for values, lines in runs:
         _check(table, quantity, bool(columns[0].unit), values, lines)
         is_grown = values[1:] > _GROWTH * values[:-1]
@@ -561,6 +597,10 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
             ratios = values[1:] / values[:-1]
             is_missed = ratios[:-1] < ratios[1:] / 2
             table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
+            # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
+            # that and r, in the logarithms that scatter alike, is √2 r.
+            is_fall = ratios[:1] > math.sqrt(2) * ratios[1:2]
+            table.refuse(is_fall, lines, fallen, values, values[1:])
     kind = "heights" if quantity == "height" else "flights"
     return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
 
@@ -639,6 +679,8 @@ def _samples(
     """Return times in s, values as they are written, and lines."""
     t = _values(table, columns[0])[rows]
     lines = table.lines[rows]
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(f"{table.name}: {len(t)} lines of a track or a signal are too few")
     table.refuse(np.diff(t) < 0, lines[1:], f"the time is not after {_UNSORTED}")
     gap = np.diff(t) > 20 * np.mean(np.diff(t))
     table.refuse(gap, lines[1:], "a gap in the time: one recording of positions or signals is read")
@@ -650,10 +692,12 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     name = table.name
     t, y, lines = _samples(table, columns, rows)
     unit = columns[1].unit
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{name}: a track of {len(t)} positions is too short")
-    # Impacts bend a track much more than gravity does, and upwards.
-    turn = -1 if np.sum(np.diff(y, 2) ** 3) < 0 else 1
+    # Impacts bend a track upwards, which skews second differences. Over the time from frame to
+    # frame noise may hide that: of the times, that counts over which they are skewed the most.
+    strides = [2**i for i in range(8) if 2**i < len(y) / 4]
+    bends = [y[: -2 * n] - 2 * y[n:-n] + y[2 * n :] for n in strides]
+    skewness = [float(np.mean(each**3)) / (float(np.std(each)) or 1.0) ** 3 for each in bends]
+    turn = -1 if max(skewness, key=abs) < 0 else 1
     flights, bottoms = _flights_of_track(turn * y)
     even = _even(t)
     impacts = {}
@@ -685,6 +729,12 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     notes = tuple(text for text, holds in further.items() if holds)
     metres = STANDARD_GRAVITY / np.array(gravities)
     pairs = np.column_stack([downs, ups]) * metres[:, None]
+    table.refuse(
+        np.any((pairs > 100) | (pairs < STANDARD_GRAVITY / 2 * 1e-3), axis=1),
+        lines[list(impacts)],
+        "a speed of {} m/s by gravity: write the unit of the times behind their heading",
+        pairs[:, 0],
+    )
     _check_pairs(table, "speeds", pairs, lines[list(impacts)])
     return Recording(name, "track", tracks, notes=notes)
 
@@ -710,6 +760,11 @@ def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -
         quiet = np.flatnonzero(size <= max(size[peak] / 20, 4 * noise))
         starts.append(int(quiet[quiet < first].max(initial=-1)) + 1)
         ends.append(int(quiet[quiet > peak].min(initial=len(t) - 1)))
+    if np.median(np.subtract(ends, starts)) < 2:
+        raise Refused(
+            f"{table.name}: impacts have one sample each, so that others may lie between two: "
+            "sample faster"
+        )
     found = _of_series(table, columns[:1], [(t[starts], lines[starts])])
     lasts = t[ends] - t[starts]
     # A force that lasts longer rings on.
@@ -730,7 +785,13 @@ def _layout(
         layouts = (("flights", ("interval",)),)
     found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
     if found is None:
-        said = {"": "not known", "unused": "not used", "derived": "no reading, but derived"}
+        said = {
+            "": "not known",
+            "unused": "not used",
+            "count": "a count",
+            "error": "an error",
+            "derived": "no reading, but derived",
+        }
         there = ", ".join(
             f"{column.name!r} is {said.get(role, role)}"
             for role, columns in roles.items()
@@ -808,12 +869,15 @@ def read(
     kind, columns = _layout(table, roles, intervals)
     is_missing = np.any(np.isnan([each.numbers for each in columns]), axis=0)
     is_complete = np.logical_not(is_missing)
+    is_jump = np.zeros(len(table.lines), bool)
+    for each in roles.get("count", []):
+        is_jump[1:] |= _counts(each.numbers) & (np.diff(each.numbers) > 1)
     if kind == "signal":
         recording = _of_signal(table, columns, is_complete)
     elif kind == "track":
         recording = _of_track(table, columns, is_complete)
     elif kind in ("flights", "heights") or _are_successive(table, columns):
-        runs = _series(table, columns, _groups(roles, is_missing))
+        runs = _series(table, columns, _groups(roles, is_missing, is_jump))
         recording = _of_series(table, columns, runs)
     else:
         recording = _of_pairs(table, kind, columns)
@@ -824,6 +888,10 @@ def read(
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
         durations = np.array([positive("contact time", head["contact time"], "s")])
+    if durations is not None and re.search(_IN_THE_AIR, columns[0].name, re.I):
+        # Flights of recordings are from touch to touch.
+        chains = tuple(chain + float(durations.mean()) for chain in recording.chains)
+        recording = replace(recording, chains=chains)
     gaps = is_missing & ~np.isin(table.lines, leave_out)
     missing = ", ".join(map(str, table.lines[gaps]))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
@@ -833,7 +901,17 @@ def read(
         if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
     has_both = columns[0].role == "time" and "interval" in roles
-    derived = ", ".join(repr(each.name) for each in roles.get("derived", []))
+    used = {each.name for each in columns}
+    beside = {"count", "recording", "duration"} | (
+        {"uncertainty"} if uncertainty is not None else set()
+    )
+    unread = [
+        each.name
+        for role, group in roles.items()
+        for each in group
+        if role not in beside and each.name not in used and not np.isnan(each.numbers).all()
+    ]
+    has_errors = "error" in roles or ("uncertainty" in roles and uncertainty is None)
     # A column of texts that recur has names, as of balls or surfaces.
     kinds = {
         each.name: set(each.texts) - {""}
@@ -845,14 +923,12 @@ def read(
         for name, texts in kinds.items()
         if 1 < len(texts) <= len(table.lines) / 2
     )
-    components = roles[columns[-1].role] if recording.notes else columns[-1:]
     further = {
         "the file has times and intervals: it is read by its times": has_both,
         f"{pooled}: one r is fitted to all of them": bool(pooled),
-        f"{derived} is left out: by its heading it has no readings, but what is derived or "
-        "expected": bool(derived),
-        f"of {', '.join(each.name for each in components)} the one with the sharpest changes is "
-        f"read, {columns[-1].name}": len(components) > 1,
+        f"columns not used: {', '.join(map(repr, unread))}": bool(unread),
+        "errors of readings in columns are not used: give their size by --resolution": has_errors,
+        "no heading: taken as times in s": table.is_bare,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
         f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
     }

@@ -14,6 +14,7 @@ Positions over time and signals are samples, of which a missing one does not mat
 ball cannot have are refused, with their line.
 """
 
+import contextlib
 import csv
 import difflib
 import functools
@@ -42,7 +43,19 @@ Lines = NDArray[np.intp]
 _Run = tuple[Array, Lines]
 _Layouts = tuple[tuple[str, tuple[str, ...]], ...]
 
-_USED = ("mass", "diameter", "contact time", "resolution")
+# What the head may say, and the words for it.
+_KEYS = {
+    "mass": r"(ball )?(mass[ae]?|masa)( of (the )?ball)?",
+    "diameter": r"(ball )?(diam\S*|durchmesser)( of (the )?ball)?",
+    "contact time": "contact time|kontaktzeit",
+    "resolution": "resolution",
+    "frame rate": "fps|frame ?rate|frames per second|bildrate",
+}
+# A key, its unit, and what is said, which is a number if a comma or a tab is between them.
+_NAMED = (
+    r"\W*([^\d:=(\[]+?)\s*(?:[(\[]([^)\]]*)[)\]])?\s*"
+    r"(?:[:=]|[,;\t]\s*(?=[-+]?\d[\d.,]*(?:[\s,;]|$)))\s*(.*[^\s,;\"])"
+)
 _HEADINGS = (
     "write headings such as time, interval, height, drop_height and rebound_height, speed_before "
     "and speed_after, speed and COR, or t and y"
@@ -53,25 +66,30 @@ _NO_RECORDING = (
 )
 _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
 _UNSORTED = "the one before: sort the lines, or leave an empty line where another recording begins"
-# A number with or without a unit, as the head of a file may have it.
-_QUANTITY = r"[-+]?\d[\d.,]*\s*[^\s\d]{0,6}"
+# A number with or without a unit, in a sentence or in cells of the head, and remarks behind it.
+_QUANTITY = (
+    r"([-+]?\d+(?:[.,]\d+)?)(?:\s*±\s*[\d.,]+)?[\s,;]*([^\W\d][^\s,;(]*|%)?[\s,;]*(?:[±(].*)?"
+)
 # A unit behind a heading without brackets, or in a row of units. Inches are "inch", because "in"
 # is a word.
 _UNIT = (
     r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch|ft|feet|[cm]?m/s|km/h|mph"
     r"|px|k?N|m?V|%|-)"
 )
+_RECORDING = r"recording|aufnahme|series|experiment|\b(?:ball|run|set|trial)\b"
 # The quantity of a heading is that of the first row with which its words agree. Accents
 # are removed, and most signs are spaces. What is derived from readings or expected is no reading.
 _QUANTITIES = (
     ("derived", r"^(?!.*(restitution|\bcor\b)).*(\bratio|efficien|percent|calcul|berechn|verhalt)"),
     (
         "derived",
-        r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^]|^1 (e|cor)\b",
+        r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^/]|^1 (e|cor)\b",
     ),
     ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
+    ("signal", r"^a\s*[xyz]\b"),
+    ("frame", r"^(\w+ )?(frames?|bild)( (number|no|nr|index))?$"),
     ("count", r"^n\b|\b(no|nr|number|count|index|step|frame)\b"),
     ("unused", r"\b(x|energy|mass|diameter|radius)\b"),
     ("error", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
@@ -84,8 +102,8 @@ _QUANTITIES = (
     ("speed", r"speed|\bq?vel|geschwindigkeit|vitesse|\bv'?\b|\bv[012ifxyz]\b|\bv(in|out)\b"),
     ("height", r"height|altitude|hohe|hauteur|altura|altezza|\bh'?\b|\bh[\dif]\b|\bh ?prime"),
     ("time", r"time|zeit|temps|tiempo|tempo|\bt ?\d*\b"),
-    ("position", r"position|\bq?pos\b|\b[cp]?[yz]\b|^(distance|displacement)$"),
-    ("recording", r"recording|aufnahme|series|experiment|\b(ball|run|set|trial)\b(?! \d)"),
+    ("position", r"position|\bq?pos\b|\b[cp]?[yz]\d*\b|^(distance|displacement)$"),
+    ("recording", rf"{_RECORDING}(?! (\d|\w\b))"),
 )
 # In the same way, whether a height or speed is that before or after an impact.
 _SIDES = (
@@ -102,7 +120,6 @@ _IN_THE_AIR = r"flight|flug|air ?time|hang"
 _AVERAGE = r"average|mean\b"
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
-_BY_UNIT = (("speed", "/"), ("time", r"s$|sec|min"), ("height", r"m$|^in|ft|feet|met"))
 _SI = {
     "time": "s",
     "interval": "s",
@@ -282,7 +299,7 @@ class _Table:
 
 def _number(text: str) -> float:
     """Return a number, or seconds of a text such as 1:02.5; NaN if it is neither."""
-    plain = text.strip().replace("−", "-").replace(",", ".")
+    plain = text.split("±")[0].strip().replace("−", "-").replace(",", ".")
     if not re.fullmatch(r"(\d+:){0,2}[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain):
         return math.nan
     parts = plain.split(":")
@@ -307,31 +324,43 @@ def _split(name: str, lines: list[str]) -> list[list[str]]:
     return cells
 
 
+def _said(line: str) -> dict[str, str]:
+    """Return what the head says: '# Mass = 46 g', 'Mass: 46 g, Diameter: 4 cm' or 'Mass (g),46'."""
+    said = {}
+    for part in re.split(r"[,;]\s*(?=[^\W\d][^\d,;:=]*[:=]\s*[-+\d])", line):
+        if named := re.match(_NAMED, part):
+            key = named[1].lower().replace("_", " ")
+            alike = (each for each, words in _KEYS.items() if re.fullmatch(words, key))
+            number = re.fullmatch(_QUANTITY, named[3])
+            value = f"{number[1]} {number[2] or named[2] or ''}".strip() if number else named[3]
+            said[next(alike, key)] = value
+    return said
+
+
 def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     """Return the table of a text, without the cells of lines that are left out."""
     head: dict[str, str] = {}
     kept: dict[int, str] = {}
     for i, line in enumerate(text.rstrip().splitlines(), 1):
-        if named := re.match(r"\s*#\s*([^:=]+?)\s*[:=]\s*(.*\S)", line):
-            key = named[1].lower().replace("_", " ")
-            head[key] = f"{head.get(key, '')} {named[2]}".strip()
         # Audacity writes frequencies in lines with a backslash.
-        elif not re.match(r"\s*[#\\]", line):
+        if not re.match(r"\s*[#\\]", line):
             kept[i] = line.strip(" ")
+        for key, said in _said(line).items() if re.match(r"\s*#", line) else ():
+            head[key] = f"{head.get(key, '')} {said}".strip()
     if not any(kept.values()):
         raise Refused(f"{name} is empty")
-    cells = _split(name, list(kept.values()))
+    texts = list(kept.values())
+    cells = _split(name, texts)
     has_numbers = [not np.isnan([*map(_number, row)]).all() for row in cells]
     # Lines such as "Mass,46,g" may stand above the headings.
-    texts = itertools.takewhile(lambda row: np.isnan(_number("".join(row[:1]))), cells)
-    headed = (i for i, row in enumerate(texts) if not has_numbers[i] and _are_headings(row))
-    above_headings = next(headed, 0)
-    for row in cells[:above_headings]:
-        if len(row) > 1:
-            head[row[0].lower()] = " ".join(row[1:]).strip()
-    begin = next((i for i in range(above_headings, len(cells)) if has_numbers[i]), None)
+    worded = itertools.takewhile(lambda row: np.isnan(_number("".join(row[:1]))), cells)
+    headed = (i for i, row in enumerate(worded) if not has_numbers[i] and _are_headings(row))
+    first = next(headed, 0)
+    begin = next((i for i in range(first, len(cells)) if has_numbers[i]), None)
     if begin is None:
-        raise Refused(f"{name} has no line of numbers; {_TIMES}")
+        raise Refused(f"{name} has no line of numbers" + (f"; {_TIMES}" if ":" in text else ""))
+    for line in texts[:begin]:
+        head |= _said(line)
     above = [row for row in cells[:begin] if any(row)]
     lines = np.array(list(kept))[begin:]
     rows = cells[begin:]
@@ -355,7 +384,7 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
         above = [["time"]]
         is_bare = bool(np.isnan(ends).all())
     headings = above[-1]
-    if len(above) > 1 and all(re.fullmatch(rf"\W?{_UNIT}?\W?", unit) for unit in headings):
+    if len(above) > 1 and all(re.fullmatch(rf"\W?({_UNIT}|in)?\W?", unit) for unit in headings):
         headings = [
             f"{one} ({unit.strip('()[]')})"
             for one, unit in itertools.zip_longest(*above[-2:], fillvalue="")
@@ -389,22 +418,34 @@ def _counts(numbers: Array) -> bool:
     return bool(np.sum(steps == 1) > len(steps) / 2 and not np.any((steps < 1) | (steps % 1 > 0)))
 
 
+@functools.cache
+def _quantity_of(unit: str) -> str:
+    """Return what has this unit: a time, a height or a speed."""
+    for quantity in ("time", "height", "speed"):
+        with contextlib.suppress(Refused):
+            in_si(quantity, f"1 {unit}" if unit else "", _SI[quantity])
+            return quantity
+    return ""
+
+
 def _column(heading: str, texts: list[str]) -> _Column:
     """Return the column of a heading such as 'h0 (cm)', 'h0/cm', 'h0_cm' or 'h0 in cm'."""
+    heading = re.sub(r"\s*±\s*[\d.,]+", "", heading)
     parts = (
-        re.fullmatch(r"(.*?)\s*[(\[]([^)\]]*)[)\]]", heading)
-        or re.fullmatch(rf"(.*?)(?:[\s_,]+in)?[\s_,]+({_UNIT})", heading)
-        or re.fullmatch(r"(.*?)\s*/\s*\(?([^)]*)\)?", heading)
+        re.fullmatch(r"(.*?)\s*[(\[](?!energ)([^)\]]*)[)\]]", heading)
+        or re.fullmatch(rf"(.*?)(?:[\s_,]+in|\s*/)?[\s_,]+({_UNIT})", heading)
+        or re.fullmatch(rf"(.*?)\s*/\s*\(?({_UNIT})\)?", heading)
     )
     name, unit = parts.groups() if parts else (heading, "")
-    # Programs write "Run 1: Time (s)".
+    # Programs write "Run 1: Time (s)", and people ms-1 for m/s.
     name = re.sub(r"^[^:]*: +", "", name).replace("²", "^2")
     # (mm:ss) is no unit, and (-) is that of a number without one.
     unit = "" if ":" in unit or unit == "-" else unit
+    unit = re.sub(r"(?<=m)[\s·]*s(\^?[-−]1|⁻¹)$", "/s", unit)
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     letters = unicodedata.normalize("NFKD", apart).casefold()
     words = re.sub(
-        r"[^\w'±√^]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
+        r"[^\w'±√^/]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
     )
 
     def first(table: Sequence[tuple[str, str]], said: str) -> str:
@@ -419,7 +460,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
     if may_count and not unit and _counts(numbers):
         quantity = "count"
     if not quantity and side:
-        quantity = first(_BY_UNIT, unit) or bare
+        quantity = _quantity_of(unit.lower()) or bare
     role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
     if "%" in unit and role not in ("coefficient", "uncertainty"):
         role = "derived"
@@ -441,6 +482,7 @@ def _are_counted(columns: list[_Column]) -> bool:
 
 def _vertical(columns: list[_Column]) -> list[_Column]:
     """Return that of the columns x, y, z of a quantity that changes most sharply, as at impacts."""
+    columns = [each for each in columns if not re.search("absolut", each.name, re.I)] or columns
     names = {each.name for each in columns}
     if len(names) < len(columns) or len({re.sub(r"[xyzXYZ]\b", "", name) for name in names}) > 1:
         return columns
@@ -454,6 +496,10 @@ def _columns(table: _Table) -> dict[str, list[_Column]]:
     for heading, *texts in zip(table.headings, *table.cells, strict=True):
         column = _column(heading.strip(), texts)
         roles.setdefault(column.role, []).append(column)
+    if "frame rate" in table.head and "frame" in roles and "time" not in roles:
+        rate = _number(table.head["frame rate"].split()[0])
+        frames = roles.pop("frame")
+        roles["time"] = [replace(each, role="time", numbers=each.numbers / rate) for each in frames]
     for bare in ("height", "speed"):
         halves = [f"{bare} before", f"{bare} after"]
         absent = [half for half in halves if half not in roles]
@@ -528,15 +574,17 @@ def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[
         for rows in groups
         for run in _runs(matrix[rows, i], lines[rows, i])
     ]
-    if len(columns) == 1:
+    named = rf"({_RECORDING})\W*\d"
+    if len(columns) == 1 or all(re.search(named, each.name, re.I) for each in columns):
         return down
     along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
     # A drop and its rebounds are in a line.
     if len(matrix) == 1 or columns[0].role != columns[1].role:
         return along
-    fitting = [way for way in (down, along) if all((np.diff(x) < 0).all() for x, _ in way)]
+    ways = [way for way in (down, along) if any(len(x) > 1 for x, _ in way)]
+    fitting = [way for way in ways if all((np.diff(x) < 0).all() for x, _ in way)]
     if columns[0].role == "time":
-        rising = [way for way in (down, along) if all((np.diff(x) > 0).all() for x, _ in way)]
+        rising = [way for way in ways if all((np.diff(x) > 0).all() for x, _ in way)]
         fitting = rising or fitting
     if len(fitting) != 1:
         raise Refused(
@@ -680,7 +728,7 @@ def _samples(
     t = _values(table, columns[0])[rows]
     lines = table.lines[rows]
     if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{table.name}: {len(t)} lines of a track or a signal are too few")
+        raise Refused(f"{table.name}: {len(t)} lines of a track or a signal are too few; {_TIMES}")
     table.refuse(np.diff(t) < 0, lines[1:], f"the time is not after {_UNSORTED}")
     gap = np.diff(t) > 20 * np.mean(np.diff(t))
     table.refuse(gap, lines[1:], "a gap in the time: one recording of positions or signals is read")
@@ -789,6 +837,7 @@ def _layout(
             "": "not known",
             "unused": "not used",
             "count": "a count",
+            "frame": "a time with a line '# fps: 240' only",
             "error": "an error",
             "derived": "no reading, but derived",
         }
@@ -796,9 +845,10 @@ def _layout(
             f"{column.name!r} is {said.get(role, role)}"
             for role, columns in roles.items()
             for column in columns
+            if column.name
         )
         wanted = "no column of intervals" if intervals else f"no bounces, as {there}"
-        raise Refused(f"{table.name}: {wanted}: {_HEADINGS}; {_TIMES}")
+        raise Refused(f"{table.name}: {wanted}: {_HEADINGS}")
     kind, needed = found
     columns = []
     for role in needed:
@@ -808,7 +858,7 @@ def _layout(
         if len(same) > 1 and not (may_be_several and _are_counted(same)):
             raise Refused(
                 f"{table.name}: two columns are both taken as {role}, {same[0].name!r} and "
-                f"{same[1].name!r}: leave one out, or {_HEADINGS}"
+                f"{same[1].name!r}: leave one out, as of several balls, or {_HEADINGS}"
             )
         columns += same
     heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
@@ -882,8 +932,9 @@ def read(
     else:
         recording = _of_pairs(table, kind, columns)
     if not sum(map(len, recording.chains)):
-        said = "all lines with them are left out" if leave_out else _TIMES
-        raise Refused(f"{name}: no bounces in {', '.join(each.name for each in columns)}: {said}")
+        there = ", ".join(each.name for each in columns)
+        said = f"; {_TIMES}" if columns[0].role == "time" else ""
+        raise Refused(f"{name}: no line that is not left out has numbers in {there}{said}")
     uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
@@ -898,11 +949,10 @@ def read(
     unused = [
         repr(f"{key}: {value}")
         for key, value in head.items()
-        if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
+        if key not in _KEYS and re.fullmatch(_QUANTITY, value)
     ]
-    has_both = columns[0].role == "time" and "interval" in roles
     used = {each.name for each in columns}
-    beside = {"count", "recording", "duration"} | (
+    beside = {"count", "frame", "recording", "duration"} | (
         {"uncertainty"} if uncertainty is not None else set()
     )
     unread = [
@@ -924,13 +974,12 @@ def read(
         if 1 < len(texts) <= len(table.lines) / 2
     )
     further = {
-        "the file has times and intervals: it is read by its times": has_both,
         f"{pooled}: one r is fitted to all of them": bool(pooled),
         f"columns not used: {', '.join(map(repr, unread))}": bool(unread),
         "errors of readings in columns are not used: give their size by --resolution": has_errors,
         "no heading: taken as times in s": table.is_bare,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
-        f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
+        f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),
     }
     notes = recording.notes + tuple(text for text, holds in further.items() if holds)
     return replace(recording, head=head, uncertainty=uncertainty, durations=durations, notes=notes)

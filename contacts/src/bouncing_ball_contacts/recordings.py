@@ -115,8 +115,6 @@ _SIDES = (
     ("before", r"\b[hv] ?[0i]\b"),
     ("after", r"average|mean\b|(trial|run|test|measurement) \d"),
 )
-# Such intervals are free of contact.
-_IN_THE_AIR = r"flight|flug|air ?time|hang"
 _AVERAGE = r"average|mean\b"
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
@@ -330,10 +328,9 @@ def _said(line: str) -> dict[str, str]:
     for part in re.split(r"[,;]\s*(?=[^\W\d][^\d,;:=]*[:=]\s*[-+\d])", line):
         if named := re.match(_NAMED, part):
             key = named[1].lower().replace("_", " ")
-            alike = (each for each, words in _KEYS.items() if re.fullmatch(words, key))
             number = re.fullmatch(_QUANTITY, named[3])
             value = f"{number[1]} {number[2] or named[2] or ''}".strip() if number else named[3]
-            said[next(alike, key)] = value
+            said[next((each for each in _KEYS if re.fullmatch(_KEYS[each], key)), key)] = value
     return said
 
 
@@ -394,14 +391,14 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
         if np.isnan([*map(_number, row)]).all() and _are_headings(row):
             raise Refused(f"{name}: line {line} is a second heading: write one table in each file")
     width = len(headings)
-    filled = [[*row, *[""] * width][:width] for row in rows]
-    return _Table(name, head, headings, filled, lines, is_bare)
+    rows = [[*row, *[""] * width][:width] for row in rows]
+    return _Table(name, head, headings, rows, lines, is_bare)
 
 
 # Headings to quantities.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Column:
     """A column with its unit, its role, such as "time" or "height before", and its cells."""
 
@@ -456,8 +453,12 @@ def _column(heading: str, texts: list[str]) -> _Column:
     numbers = np.array([_number(text) for text in texts])
     # "bounce" above 1, 2, 4 is the number of the bounce.
     bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
-    may_count = quantity in ("", "interval") and not (bare and side == "before")
-    if may_count and not unit and _counts(numbers):
+    if (
+        quantity in ("", "interval")
+        and not (bare and side == "before")
+        and not unit
+        and _counts(numbers)
+    ):
         quantity = "count"
     if not quantity and side:
         quantity = _quantity_of(unit.lower()) or bare
@@ -498,8 +499,9 @@ def _columns(table: _Table) -> dict[str, list[_Column]]:
         roles.setdefault(column.role, []).append(column)
     if "frame rate" in table.head and "frame" in roles and "time" not in roles:
         rate = _number(table.head["frame rate"].split()[0])
-        frames = roles.pop("frame")
-        roles["time"] = [replace(each, role="time", numbers=each.numbers / rate) for each in frames]
+        roles["time"] = [
+            replace(each, role="time", numbers=each.numbers / rate) for each in roles.pop("frame")
+        ]
     for bare in ("height", "speed"):
         halves = [f"{bare} before", f"{bare} after"]
         absent = [half for half in halves if half not in roles]
@@ -534,8 +536,9 @@ def _check(table: _Table, quantity: str, has_unit: bool, values: Array, lines: L
     hint = "" if has_unit else " without a unit"
     hint += f": is it in {perhaps}? write ({perhaps}) behind the heading"
     table.refuse(values <= 0, lines, f"{said} is not positive", values)
-    small = f"{said} is too small for a bounce: write the unit that it has behind the heading"
-    table.refuse(values < least, lines, small, values)
+    table.refuse(
+        values < least, lines, f"{said} is too small: write its unit behind the heading", values
+    )
     table.refuse(values > most, lines, f"{said}{hint}", values)
 
 
@@ -548,16 +551,19 @@ def _runs(values: Array, lines: Lines) -> list[_Run]:
     return [(values[piece], lines[piece]) for piece in pieces]
 
 
-def _groups(
-    roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_], is_jump: NDArray[np.bool_]
-) -> list[Lines]:
+def _groups(roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
     """Return the rows of each recording, divided where the count of bounces jumps."""
+    jumps = [
+        np.diff(each.numbers, prepend=each.numbers[0]) > 1
+        for each in roles.get("count", [])
+        if _counts(each.numbers)
+    ]
     texts = roles["recording"][0].texts if "recording" in roles else [""] * len(is_missing)
     # A name that is empty, or never beside a number, is that of the row above.
     known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
     name = ""
     names = [name := text if text in known else name for text in texts]
-    parts = [*zip(names, np.cumsum(is_jump).tolist(), strict=True)]
+    parts = [*zip(names, np.cumsum(sum(jumps, 0 * is_missing)).tolist(), strict=True)]
     return [
         np.array([i for i, each in enumerate(parts) if each == part])
         for part in dict.fromkeys(parts)
@@ -574,8 +580,10 @@ def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[
         for rows in groups
         for run in _runs(matrix[rows, i], lines[rows, i])
     ]
-    named = rf"({_RECORDING})\W*\d"
-    if len(columns) == 1 or all(re.search(named, each.name, re.I) for each in columns):
+    # Columns such as "run 1 interval" are recordings.
+    if len(columns) == 1 or all(
+        re.search(rf"(?:{_RECORDING})\W*\d", each.name, re.I) for each in columns
+    ):
         return down
     along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
     # A drop and its rebounds are in a line.
@@ -632,10 +640,6 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
         "a flight of {} s, after which one of {} s has less than half of the ratio that the next "
         "one has: an impact is missing within it (--leave-out its line)"
     )
-    fallen = (
-        "a flight of {} s is short beside the two after it: it begins with the release, or the "
-        "next one has an impact within it (--leave-out the first line, or that of the next one)"
-    )
     for values, lines in runs:
         _check(table, quantity, bool(columns[0].unit), values, lines)
         is_grown = values[1:] > _GROWTH * values[:-1]
@@ -647,8 +651,13 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
             table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
             # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
             # that and r, in the logarithms that scatter alike, is √2 r.
-            is_fall = ratios[:1] > math.sqrt(2) * ratios[1:2]
-            table.refuse(is_fall, lines, fallen, values, values[1:])
+            table.refuse(
+                ratios[:1] > math.sqrt(2) * ratios[1:2],
+                lines,
+                "a flight of {} s is short beside the two after it: it begins with the release, or "
+                "the next one has an impact within it (--leave-out the line of either)",
+                values,
+            )
     kind = "heights" if quantity == "height" else "flights"
     return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
 
@@ -742,12 +751,14 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     unit = columns[1].unit
     # Impacts bend a track upwards, which skews second differences. Over the time from frame to
     # frame noise may hide that: of the times, that counts over which they are skewed the most.
-    strides = [2**i for i in range(8) if 2**i < len(y) / 4]
-    bends = [y[: -2 * n] - 2 * y[n:-n] + y[2 * n :] for n in strides]
+    bends = [y[: -2 * n] - 2 * y[n:-n] + y[2 * n :] for n in 2 ** np.arange(8) if 4 * n < len(y)]
     skewness = [float(np.mean(each**3)) / (float(np.std(each)) or 1.0) ** 3 for each in bends]
     turn = -1 if max(skewness, key=abs) < 0 else 1
     flights, bottoms = _flights_of_track(turn * y)
     even = _even(t)
+    long = [each for each in flights if len(each) >= _FEWEST]
+    lasting = np.array([np.ptp(even[each]) for each in long])
+    _check(table, "interval", bool(columns[0].unit), lasting, lines[[each[0] for each in long]])
     impacts = {}
     for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
         both = np.concatenate([before, after])
@@ -777,12 +788,6 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     notes = tuple(text for text, holds in further.items() if holds)
     metres = STANDARD_GRAVITY / np.array(gravities)
     pairs = np.column_stack([downs, ups]) * metres[:, None]
-    table.refuse(
-        np.any((pairs > 100) | (pairs < STANDARD_GRAVITY / 2 * 1e-3), axis=1),
-        lines[list(impacts)],
-        "a speed of {} m/s by gravity: write the unit of the times behind their heading",
-        pairs[:, 0],
-    )
     _check_pairs(table, "speeds", pairs, lines[list(impacts)])
     return Recording(name, "track", tracks, notes=notes)
 
@@ -919,30 +924,29 @@ def read(
     kind, columns = _layout(table, roles, intervals)
     is_missing = np.any(np.isnan([each.numbers for each in columns]), axis=0)
     is_complete = np.logical_not(is_missing)
-    is_jump = np.zeros(len(table.lines), bool)
-    for each in roles.get("count", []):
-        is_jump[1:] |= _counts(each.numbers) & (np.diff(each.numbers) > 1)
     if kind == "signal":
         recording = _of_signal(table, columns, is_complete)
     elif kind == "track":
         recording = _of_track(table, columns, is_complete)
     elif kind in ("flights", "heights") or _are_successive(table, columns):
-        runs = _series(table, columns, _groups(roles, is_missing, is_jump))
+        runs = _series(table, columns, _groups(roles, is_missing))
         recording = _of_series(table, columns, runs)
     else:
         recording = _of_pairs(table, kind, columns)
     if not sum(map(len, recording.chains)):
-        there = ", ".join(each.name for each in columns)
-        said = f"; {_TIMES}" if columns[0].role == "time" else ""
-        raise Refused(f"{name}: no line that is not left out has numbers in {there}{said}")
+        raise Refused(
+            f"{name}: no line that is not left out has numbers in "
+            + ", ".join(each.name for each in columns)
+            + (f"; {_TIMES}" if columns[0].role == "time" else "")
+        )
     uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
         durations = np.array([positive("contact time", head["contact time"], "s")])
-    if durations is not None and re.search(_IN_THE_AIR, columns[0].name, re.I):
-        # Flights of recordings are from touch to touch.
-        chains = tuple(chain + float(durations.mean()) for chain in recording.chains)
-        recording = replace(recording, chains=chains)
+    if durations is not None and re.search("flight|flug|air ?time|hang", columns[0].name, re.I):
+        # These are free of contact, and the flights of recordings are from touch to touch.
+        touches = (chain + float(durations.mean()) for chain in recording.chains)
+        recording = replace(recording, chains=tuple(touches))
     gaps = is_missing & ~np.isin(table.lines, leave_out)
     missing = ", ".join(map(str, table.lines[gaps]))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
@@ -951,17 +955,15 @@ def read(
         for key, value in head.items()
         if key not in _KEYS and re.fullmatch(_QUANTITY, value)
     ]
-    used = {each.name for each in columns}
-    beside = {"count", "frame", "recording", "duration"} | (
-        {"uncertainty"} if uncertainty is not None else set()
-    )
     unread = [
         each.name
         for role, group in roles.items()
         for each in group
-        if role not in beside and each.name not in used and not np.isnan(each.numbers).all()
+        if role not in ("count", "frame", "recording", "duration")
+        and not (role == "uncertainty" and uncertainty is not None)
+        and each not in columns
+        and not np.isnan(each.numbers).all()
     ]
-    has_errors = "error" in roles or ("uncertainty" in roles and uncertainty is None)
     # A column of texts that recur has names, as of balls or surfaces.
     kinds = {
         each.name: set(each.texts) - {""}
@@ -976,7 +978,9 @@ def read(
     further = {
         f"{pooled}: one r is fitted to all of them": bool(pooled),
         f"columns not used: {', '.join(map(repr, unread))}": bool(unread),
-        "errors of readings in columns are not used: give their size by --resolution": has_errors,
+        "errors of readings in columns are not used: give their size by --resolution": (
+            "error" in roles or ("uncertainty" in roles and uncertainty is None)
+        ),
         "no heading: taken as times in s": table.is_bare,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
         f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),

@@ -470,7 +470,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
 
 def _are_headings(row: list[str]) -> bool:
     """Return whether two cells of a line name quantities."""
-    return sum(bool(_column(cell.strip(), []).role) for cell in row) > 1
+    return sum(_column(cell.strip(), []).role not in ("", "unused") for cell in row) > 1
 
 
 def _are_counted(columns: list[_Column]) -> bool:

@@ -154,8 +154,6 @@ FILES = {
     + "\n".join(f"{i},{t}" for i, t in enumerate(TIMES) if i != 3),
     "a count with a gap, heights": "Bounce,Height (cm)\n"
     + "\n".join(f"{i},{100 * 0.6724**i}" for i in (1, 2, 3, 5, 6, 7)),
-    "a count of intervals": '"Interval","Time (s)"\n'
-    + "\n".join(f"{i},{x}" for i, x in enumerate(FLIGHTS, 1)),
     "a ball in each line": "ball,t1,t2,t3,t4\n"
     + "\n".join(",".join([name, *map(str, a * FLIGHTS[:4])]) for name, a in BALLS),
     "runs in columns": "run 1 interval (s),run 2 interval (s)\n"
@@ -208,10 +206,12 @@ def test_units_are_words_too(unit, tmp_path):
     assert found.restitution == pytest.approx(0.8, abs=1e-6)
 
 
-@pytest.mark.parametrize("unit", ["ms^-1", "ms-1", "m s-1", "m s⁻¹"])
+@pytest.mark.parametrize("unit", ["ms^-1", "ms-1", "m s-1"])
 def test_units_of_speeds_have_powers(unit):
-    found = fit({f"speed before ({unit})": [1, 2, 3], f"speed after ({unit})": [0.8, 1.6, 2.4]})
-    assert found.restitution == pytest.approx(0.8, abs=1e-6)
+    for form in ("{} ({})", "{} / {}"):
+        names = [form.format(name, unit) for name in ("speed before", "speed after")]
+        found = fit({names[0]: [1, 2, 3], names[1]: [0.8, 1.6, 2.4]})
+        assert found.restitution == pytest.approx(0.8, abs=1e-6)
 
 
 def test_a_row_of_units_may_have_inches(tmp_path):
@@ -795,9 +795,7 @@ def test_impacts_that_may_lie_between_samples_are_refused():
         fit({"time (s)": t, "acceleration (m/s^2)": 900 * np.maximum(1 - near / 0.0015, 0)})
 
 
-@pytest.mark.parametrize(
-    ("rate", "noise"), [(240, 0.005), (240, 0.008), (480, 0.003), (960, 0.001)]
-)
+@pytest.mark.parametrize(("rate", "noise"), [(240, 0.008), (480, 0.008)])
 def test_noise_of_many_frames_hides_no_impacts(rate, noise):
     """It turned tracks upside down, at random."""
     t = np.arange(0, TIMES[-1] - 0.05, 1 / rate)
@@ -807,3 +805,14 @@ def test_noise_of_many_frames_hides_no_impacts(rate, noise):
         found = fit({"t (s)": t, "y (m)": exact + noise * rng.normal(size=len(t))})
         assert found.restitution == pytest.approx(0.82, abs=0.01)
         assert not any("turned" in note for note in found.notes)
+
+
+def test_a_count_of_intervals_is_none(tmp_path):
+    """As phyphox exports a stopwatch: the count was read as intervals in s."""
+    path = tmp_path / "stopwatch.csv"
+    lines = [f"{i},{x:.6f}" for i, x in enumerate(FLIGHTS, 1)]
+    path.write_text("\n".join(['"Interval","Time (s)"', *lines]))
+    assert fit(path).restitution == pytest.approx(0.82, abs=1e-4)
+    assert not read(path).notes
+    with pytest.raises(Refused, match="no column of intervals"):
+        read(path, intervals=True)

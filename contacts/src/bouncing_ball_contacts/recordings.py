@@ -356,8 +356,7 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     begin = next((i for i in range(first, len(cells)) if has_numbers[i]), None)
     if begin is None:
         raise Refused(f"{name} has no line of numbers" + (f"; {_TIMES}" if ":" in text else ""))
-    for line in texts[:begin]:
-        head |= _said(line)
+    head |= {key: said for line in texts[:begin] for key, said in _said(line).items()}
     above = [row for row in cells[:begin] if any(row)]
     lines = np.array(list(kept))[begin:]
     rows = cells[begin:]
@@ -387,8 +386,8 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
             for one, unit in itertools.zip_longest(*above[-2:], fillvalue="")
         ]
     rows = [[] if line in leave_out else row for line, row in zip(lines, rows, strict=True)]
-    for line, row in zip(lines, rows, strict=True):
-        if np.isnan([*map(_number, row)]).all() and _are_headings(row):
+    for line, row, has_one in zip(lines, rows, has_numbers[begin::step], strict=False):
+        if not has_one and _are_headings(row):
             raise Refused(f"{name}: line {line} is a second heading: write one table in each file")
     width = len(headings)
     rows = [[*row, *[""] * width][:width] for row in rows]
@@ -418,7 +417,7 @@ def _counts(numbers: Array) -> bool:
 @functools.cache
 def _quantity_of(unit: str) -> str:
     """Return what has this unit: a time, a height or a speed."""
-    for quantity in ("time", "height", "speed"):
+    for quantity in ("height", "speed", "time"):
         with contextlib.suppress(Refused):
             in_si(quantity, f"1 {unit}" if unit else "", _SI[quantity])
             return quantity
@@ -427,18 +426,19 @@ def _quantity_of(unit: str) -> str:
 
 def _column(heading: str, texts: list[str]) -> _Column:
     """Return the column of a heading such as 'h0 (cm)', 'h0/cm', 'h0_cm' or 'h0 in cm'."""
+    # People write m s-1 for m/s, and (cm ± 0.5).
+    heading = re.sub(r"\b([ckm]?m)[\s·]*s(\^?[-−]1|⁻¹)", r"\1/s", heading)
     heading = re.sub(r"\s*±\s*[\d.,]+", "", heading)
     parts = (
         re.fullmatch(r"(.*?)\s*[(\[](?!energ)([^)\]]*)[)\]]", heading)
         or re.fullmatch(rf"(.*?)(?:[\s_,]+in|\s*/)?[\s_,]+({_UNIT})", heading)
-        or re.fullmatch(rf"(.*?)\s*/\s*\(?({_UNIT})\)?", heading)
+        or re.fullmatch(rf"(.*?)\s*/\s*\(?({_UNIT}|in)\)?", heading)
     )
     name, unit = parts.groups() if parts else (heading, "")
-    # Programs write "Run 1: Time (s)", and people ms-1 for m/s.
+    # Programs write "Run 1: Time (s)".
     name = re.sub(r"^[^:]*: +", "", name).replace("²", "^2")
     # (mm:ss) is no unit, and (-) is that of a number without one.
     unit = "" if ":" in unit or unit == "-" else unit
-    unit = re.sub(r"(?<=m)[\s·]*s(\^?[-−]1|⁻¹)$", "/s", unit)
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     letters = unicodedata.normalize("NFKD", apart).casefold()
     words = re.sub(

@@ -45,8 +45,8 @@ _Layouts = tuple[tuple[str, tuple[str, ...]], ...]
 
 # What the head may say, and the words for it.
 _KEYS = {
-    "mass": r"(ball )?(mass[ae]?|masa)( of (the )?ball)?",
-    "diameter": r"(ball )?(diam\S*|durchmesser)( of (the )?ball)?",
+    "mass": r"(?:ball )?(?:mass[ae]?|masa)(?: of (?:the )?ball)?",
+    "diameter": r"(?:ball )?(?:diam\w*|durchmesser)(?: of (?:the )?ball)?",
     "contact time": "contact time|kontaktzeit",
     "resolution": "resolution",
     "frame rate": "fps|frame ?rate|frames per second|bildrate",
@@ -54,7 +54,7 @@ _KEYS = {
 # A key, its unit, and what is said, which is a number if a comma or a tab is between them.
 _NAMED = (
     r"\W*([^\d:=(\[]+?)\s*(?:[(\[]([^)\]]*)[)\]])?\s*"
-    r"(?:[:=]|[,;\t]\s*(?=[-+]?\d[\d.,]*(?:[\s,;]|$)))\s*(.*[^\s,;\"])"
+    r"(?:[:=]|[,;\t]\s*(?=[-+]?\d[\d.,]*(?:[\s,;]|$)))\s*(.*\S)"
 )
 _HEADINGS = (
     "write headings such as time, interval, height, drop_height and rebound_height, speed_before "
@@ -68,7 +68,7 @@ _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
 _UNSORTED = "the one before: sort the lines, or leave an empty line where another recording begins"
 # A number with or without a unit, in a sentence or in cells of the head, and remarks behind it.
 _QUANTITY = (
-    r"([-+]?\d+(?:[.,]\d+)?)(?:\s*±\s*[\d.,]+)?[\s,;]*([^\W\d][^\s,;(]*|%)?[\s,;]*(?:[±(].*)?"
+    r"([-+]?\d+(?:[.,]\d+)?)(?:\s*±\s*[\d.,]+)?[\s,;]*([^\W\d][^\s,;(\"]*|%)?[\s,;\"]*(?:[±(].*)?"
 )
 # A unit behind a heading without brackets, or in a row of units. Inches are "inch", because "in"
 # is a word.
@@ -91,9 +91,9 @@ _QUANTITIES = (
     ("signal", r"^a\s*[xyz]\b"),
     ("frame", r"^(\w+ )?(frames?|bild)( (number|no|nr|index))?$"),
     ("count", r"^n\b|\b(no|nr|number|count|index|step|frame)\b"),
-    ("unused", r"\b(x|energy|mass|diameter|radius)\b"),
-    ("error", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
-    ("error", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
+    ("unused", r"\b(x|energy|mass|diameter|radius)\b|dur.*(uncert|err|std)"),
+    ("error", r"(uncert|err|std).*(time|height|speed|veloc|\b[hvt]\b)"),
+    ("error", r"(time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bs[de]m?\b|sigma|[±σ]|fehler"),
     ("uncertainty", r"unsicherheit|^[dδ] ?(e|cor)\b"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
@@ -325,7 +325,7 @@ def _split(name: str, lines: list[str]) -> list[list[str]]:
 def _said(line: str) -> dict[str, str]:
     """Return what the head says: '# Mass = 46 g', 'Mass: 46 g, Diameter: 4 cm' or 'Mass (g),46'."""
     said = {}
-    for part in re.split(r"[,;]\s*(?=[^\W\d][^\d,;:=]*[:=]\s*[-+\d])", line):
+    for part in re.split(rf"(?i)[,;]\s*(?=(?:{'|'.join(_KEYS.values())})\s*[:=])", line):
         if named := re.match(_NAMED, part):
             key = named[1].lower().replace("_", " ")
             number = re.fullmatch(_QUANTITY, named[3])
@@ -953,7 +953,7 @@ def read(
     unused = [
         repr(f"{key}: {value}")
         for key, value in head.items()
-        if key not in _KEYS and re.fullmatch(_QUANTITY, value)
+        if key not in _KEYS and " uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
     unread = [
         each.name

@@ -192,7 +192,7 @@ def test_two_speeds_are_those_before_and_after(heading, tmp_path):
 
 UNITS = (
     "(meters) | (centimeters) | (millimeters) | (inches) | (foot) | (yd) | (cm ± 0.5) | ± 0.5 cm"
-    " | in feet | / cm"
+    " | in feet | / cm | / yd | inches"
 )
 
 
@@ -208,7 +208,7 @@ def test_units_are_words_too(unit, tmp_path):
 
 @pytest.mark.parametrize("unit", ["ms^-1", "ms-1", "m s-1"])
 def test_units_of_speeds_have_powers(unit):
-    for form in ("{} ({})", "{} / {}"):
+    for form in ("{} ({})", "{} / {}", "{}/({})"):
         names = [form.format(name, unit) for name in ("speed before", "speed after")]
         found = fit({names[0]: [1, 2, 3], names[1]: [0.8, 1.6, 2.4]})
         assert found.restitution == pytest.approx(0.8, abs=1e-6)
@@ -535,6 +535,8 @@ def test_an_uncertainty_is_one_of_r(tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text("speed,COR (%),std\n1,80,1\n2,79,1")
     assert read(path).uncertainty == pytest.approx([0.01, 0.01])
+    path.write_text("speed,COR,uncertainty of duration (ms)\n1,0.8,1\n2,0.79,1")
+    assert read(path).uncertainty is None
     path.write_text("drop,rebound,std\n1,0.64,0.01\n0.5,0.32,0.01")
     assert read(path).uncertainty is None
 

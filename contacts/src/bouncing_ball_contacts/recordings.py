@@ -73,7 +73,7 @@ _QUANTITY = (
 # A unit behind a heading without brackets, or in a row of units. Inches are "inch", because "in"
 # is a word.
 _UNIT = (
-    r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch|ft|feet|[cm]?m/s|km/h|mph"
+    r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch(?:es)?|ft|foot|feet|yd|[cm]?m/s|km/h|mph"
     r"|px|k?N|m?V|%|-)"
 )
 _RECORDING = r"recording|aufnahme|series|experiment|\b(?:ball|run|set|trial)\b"
@@ -83,15 +83,16 @@ _QUANTITIES = (
     ("derived", r"^(?!.*(restitution|\bcor\b)).*(\bratio|efficien|percent|calcul|berechn|verhalt)"),
     (
         "derived",
-        r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^/]|^1 (e|cor)\b",
+        r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^]|^1 (e|cor)\b",
     ),
-    ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu"),
+    ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu|/(?! ?s\b)"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
     ("signal", r"^a\s*[xyz]\b"),
     ("frame", r"^(\w+ )?(frames?|bild)( (number|no|nr|index))?$"),
     ("count", r"^n\b|\b(no|nr|number|count|index|step|frame)\b"),
-    ("unused", r"\b(x|energy|mass|diameter|radius)\b|dur.*(uncert|err|std)"),
+    ("unused", r"\b(x|energy|mass|diameter|radius)\b"),
+    ("unused", r"dur.*(uncert|err|std)|(uncert|err|std).*dur"),
     ("error", r"(uncert|err|std).*(time|height|speed|veloc|\b[hvt]\b)"),
     ("error", r"(time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bs[de]m?\b|sigma|[±σ]|fehler"),
@@ -430,7 +431,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
     heading = re.sub(r"\b([ckm]?m)[\s·]*s(\^?[-−]1|⁻¹)", r"\1/s", heading)
     heading = re.sub(r"\s*±\s*[\d.,]+", "", heading)
     parts = (
-        re.fullmatch(r"(.*?)\s*[(\[](?!energ)([^)\]]*)[)\]]", heading)
+        re.fullmatch(r"(.*?)[\s/]*[(\[](?!energ)([^)\]]*)[)\]]", heading)
         or re.fullmatch(rf"(.*?)(?:[\s_,]+in|\s*/)?[\s_,]+({_UNIT})", heading)
         or re.fullmatch(rf"(.*?)\s*/\s*\(?({_UNIT}|in)\)?", heading)
     )

@@ -56,11 +56,11 @@ def track(form="{:.4f},{:.5f}", slow=1):
     return "\n".join(form.format(slow * t, position(t)) for t in FRAMES)
 
 
+BALLS = (("A", 1), ("B", 0.9))
 SPEEDS = (1.0, 2.0, 3.0, 4.0)
 FILES = {
     "times": "time [s]\n" + column(TIMES),
     "times without a heading": column(TIMES),
-    "intervals without a heading": column(FLIGHTS),
     "intervals with a unit behind": "interval_ms\n" + column(1000 * FLIGHTS),
     "semicolons and decimal commas": "Nr;Interval (s)\n"
     + "\n".join(f"{i};{x:.6f}".replace(".", ",") for i, x in enumerate(FLIGHTS)),
@@ -144,6 +144,21 @@ FILES = {
     + "\n".join(f'"ball, old",{h},{h * 0.6724}' for h in (50, 75, 100, 125)),
     "JSON": json.dumps({"interval_ms": list(1000 * FLIGHTS)}),
     "coefficients in per cent": "speed (m/s),COR (%)\n" + "\n".join(f"{v},82" for v in SPEEDS),
+    "frames": "# fps: 240\nbounce,frame\n"
+    + "\n".join(f"{i},{240 * t:.3f}" for i, t in enumerate(TIMES)),
+    "Tracker, with an acceleration": "mass_A\nt\tx\ty\tv_{y}\ta_{y}\n"
+    + "\n".join(f"{t:.4f}\t0\t{position(t):.5f}\t0\t-9.8" for t in FRAMES),
+    "a count with a gap, intervals": "n,interval (s)\n"
+    + "\n".join(f"{i},{x}" for i, x in enumerate(FLIGHTS) if i != 3),
+    "a count with a gap, times": "Bounce,Time (s)\n"
+    + "\n".join(f"{i},{t}" for i, t in enumerate(TIMES) if i != 3),
+    "a count with a gap, heights": "Bounce,Height (cm)\n"
+    + "\n".join(f"{i},{100 * 0.6724**i}" for i in (1, 2, 3, 5, 6, 7)),
+    "a ball in each line": "ball,t1,t2,t3,t4\n"
+    + "\n".join(",".join([name, *map(str, a * FLIGHTS[:4])]) for name, a in BALLS),
+    "runs in columns": "run 1 interval (s),run 2 interval (s)\n"
+    + "\n".join(f"{x},{0.9 * x}" for x in FLIGHTS),
+    "errors in cells": "Impact speed (m/s),COR\n" + "\n".join(f"{v},0.82 ± 0.01" for v in SPEEDS),
     "coefficients without unit": "speed (m/s),e (-)\n" + "\n".join(f"{v},0.82" for v in SPEEDS),
 }
 
@@ -172,6 +187,36 @@ def test_two_heights_are_a_drop_and_its_rebound(heading, tmp_path):
 def test_two_speeds_are_those_before_and_after(heading, tmp_path):
     path = tmp_path / "speeds.csv"
     path.write_text(heading + "\n1,0.8\n2,1.6\n3,2.4")
+    assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
+
+
+UNITS = (
+    "(meters) | (centimeters) | (millimeters) | (inches) | (foot) | (yd) | (cm ± 0.5) | ± 0.5 cm"
+    " | in feet | / cm | / yd | inches"
+)
+
+
+@pytest.mark.parametrize("unit", UNITS.split(" | "))
+def test_units_are_words_too(unit, tmp_path):
+    """Metres with an s at the end were times."""
+    path = tmp_path / "drops.csv"
+    path.write_text(f"Drop {unit},Rebound {unit}\n3,1.92\n2,1.28\n4,2.56")
+    found = fit(path)
+    assert (found.recording.kind, len(found.impacts.speed)) == ("drops", 3)
+    assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
+@pytest.mark.parametrize("unit", ["ms^-1", "ms-1", "m s-1"])
+def test_units_of_speeds_have_powers(unit):
+    for form in ("{} ({})", "{} / {}", "{}/({})"):
+        names = [form.format(name, unit) for name in ("speed before", "speed after")]
+        found = fit({names[0]: [1, 2, 3], names[1]: [0.8, 1.6, 2.4]})
+        assert found.restitution == pytest.approx(0.8, abs=1e-6)
+
+
+def test_a_row_of_units_may_have_inches(tmp_path):
+    path = tmp_path / "drops.csv"
+    path.write_text("Drop height,Rebound height\nft,in\n1,7.68\n2,15.36\n3,23.04")
     assert fit(path).restitution == pytest.approx(0.8, abs=1e-6)
 
 
@@ -245,6 +290,9 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
     assert found.restitution == pytest.approx(0.82, abs=1e-3)
 
 
+TWO = "Drop (cm),Rebound (cm)\n50,32\n60,38\n70,45"
+
+
 @pytest.mark.parametrize(
     ("text", "said"),
     [
@@ -281,7 +329,7 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("time [s]\n0.1\n0.9\n1.5\n1.2\n2", "line 5: the time is not after .* sort"),
         ("t,y\n" + "\n".join(reversed(track().split("\n"))), "line 3: the time .* sort"),
         ("interval [s]\n0.5\n0.4\n#\n0.45", "line 5: a flight of 0.45 s follows one of 0.4 s"),
-        ("time,height\n0.1,0.5\n0.2,0.7\n0.3,0.6", "a track of 3 positions is too short"),
+        ("time,height\n0.1,0.5\n0.2,0.7\n0.3,0.6", "3 lines of a track or a signal are too few"),
         ("height [cm]\n50\n-4", "line 3: a height of -0.04 m is not positive"),
         ("speed,COR\n1,81", "line 2: .* is it in %"),
         ("speed,COR,std (cm)\n1,0.8,0.1", "std.*does not fit"),
@@ -297,7 +345,20 @@ def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):
         ("drop [m],rebound [m]\n0.5,0.7", "line 2"),
         ("speed,COR,std\n1,0.8,0.1\n2,0.8,", "each impact needs an uncertainty"),
         ("time [s]\n0.1\n0.9", "no impact lies between"),
-        ("t\ty\n0.1\t1\n0.2\t1", "too short"),
+        ("1.0\n0.64\n0.41\n0.26", "a column without a heading is taken as times .* write a head"),
+        ("0.82\n0.81\n0.8\n0.82", "a column without a heading is taken as times"),
+        (TWO + "\n\nDrop (in),Rebound (in)\n5,3.2", "line 6 is a second heading"),
+        ("golf\n" + TWO + "\n\ntennis\nDrop (cm),Rebound (cm)\n5,3", "line 8 is a second head"),
+        ("time,z\n" + track(slow=1000), "line 5: a flight of .* is it in ms"),
+        ("time,z\n" + track("{:.0f},{:.5f}", slow=1e9), "line 5: a flight of .* is it in ms"),
+        ("time (s)\n" + column(TIMES / 86400, "{:.10f}"), "line 3: a flight of .* is too small"),
+        ("drop (m),rebound (m)\n1e-300,1e-12\n1,0.5", "line 2: a height of .* is too small"),
+        ("time;X;Y\n0:00:00:00;0,1;0,9\n0:00:00:01;0,1;0,8", "0 lines .* times are in seconds"),
+        ("Drop height (m),h2/h1\n1,0.5\n2,0.6", "'h2/h1' is no reading, but derived"),
+        ("v (m/s),restitution (energy)\n1,0.5\n2,0.6", "'restitution .energy.' is not used"),
+        ("t,y1,y2\n" + track("{0:.4f},{1:.5f},{1:.5f}"), "as position, 'y1' and 'y2': .* several"),
+        ("t,ball A,ball B\n" + track("{0:.4f},{1:.5f},{1:.5f}"), "evenly spaced times .* of what"),
+        ("t\ty\n0.1\t1\n0.2\t1", "too few"),
     ],
 )
 def test_other_files_are_refused_in_one_line(text, said, tmp_path):
@@ -352,13 +413,24 @@ def test_columns_are_read_as_those_of_a_file():
             "missing in line 3, 4, 6, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
+        (FILES["times without a heading"], "no heading: taken as times in s"),
+        (
+            "Temperature (°C),n,Drop (cm),Rebound (cm)\n5,1,50,20\n20,1,50,30\n40,1,50,32",
+            "columns not used: 'Temperature'$",
+        ),
+        ("Ball mass (g),drop (m),rebound (m)\n46,1,0.64\n58,1,0.5", "not used: 'Ball mass'"),
+        (
+            "drop (cm),± (cm),rebound (cm),± (cm)\n50,0.5,32,1\n60,0.5,38,1",
+            "errors of readings .* --resolution",
+        ),
+        ("# uncertainty: 5 mm\n" + TWO, "the head has 'uncertainty: 5 mm'"),
         (FILES["heard, with a contact time"], "the contact, 8 ms, is taken off"),
         (FILES["force plate with a row of units"], "the contact, 7.[789]"),
         # 8 ms move r by 0.0024 here.
         ("time [s]\n" + column(TOUCHES), "lower by 0.0003 for each ms that it lasts"),
         (
-            "# radius: 33 mm\n# diametre = 67 mm\n# date: 2024-05-03\n" + FILES["times"],
-            "the head has 'radius: 33 mm', 'diametre: 67 mm', but only mass, diameter",
+            "# radius: 33 mm\n# gravity = 9.79 m/s^2\n# date: 2024-05-03\n" + FILES["times"],
+            "the head has 'radius: 33 mm', 'gravity: 9.79 m/s.2', but only mass, diameter",
         ),
         (
             "t (s),y (m)\n" + track(slow=8),
@@ -463,6 +535,8 @@ def test_an_uncertainty_is_one_of_r(tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text("speed,COR (%),std\n1,80,1\n2,79,1")
     assert read(path).uncertainty == pytest.approx([0.01, 0.01])
+    path.write_text("speed,COR,uncertainty of duration (ms)\n1,0.8,1\n2,0.79,1")
+    assert read(path).uncertainty is None
     path.write_text("drop,rebound,std\n1,0.64,0.01\n0.5,0.32,0.01")
     assert read(path).uncertainty is None
 
@@ -516,7 +590,7 @@ def test_what_was_computed_is_no_reading(more):
     """With a column of ratios r was 0.818, with one of predictions 0.841, where it is 0.8."""
     found = fit(DROPS | {more: [0.9, 0.8, 0.7]})
     assert found.restitution == pytest.approx(0.8, abs=1e-6)
-    assert any("is left out: by its heading" in note for note in found.notes)
+    assert any("columns not used: " in note for note in found.notes)
     with pytest.raises(Refused, match="is no reading, but derived"):
         fit({"drop height (m)": DROPS["drop height (m)"], more: [0.9, 0.8, 0.7]})
 
@@ -597,7 +671,12 @@ def test_of_components_that_with_the_impacts_is_read():
         found = fit(columns | {name: pushes})
         # The contact of 8 ms stays in the flights.
         assert found.restitution == pytest.approx(0.8225, abs=1e-3)
-        assert any(f"is read, Acceleration {'xyz'[i]}" in note for note in found.notes)
+        others = ", ".join(f"'Acceleration {axis}'" for axis in "xyz" if axis != "xyz"[i])
+        assert f"columns not used: {others}" in found.notes
+        # As phyphox exports them.
+        absolute = {"Absolute acceleration (m/s^2)": np.abs(pushes)}
+        again = fit(columns | {name: pushes} | absolute)
+        assert again.restitution == pytest.approx(found.restitution)
 
 
 def test_of_a_log_of_an_engine_the_vertical_position_is_read():
@@ -654,11 +733,88 @@ def test_what_is_no_recording_is_said(source, said, tmp_path):
 def test_what_cannot_be_read_is_said(tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text("frame,x_px,y_px\n0,3,1\n1,3,2")
-    with pytest.raises(Refused, match="'frame' is not used, 'x' is not used, 'y' is position: w"):
+    with pytest.raises(Refused, match="'frame' is a time with a line '# fps: 240' only, 'x' is"):
         fit(path)
     path.write_text("drop,rebound\n1,0.6\n2,1.2")
-    with pytest.raises(Refused, match="no bounces in .*: all lines with them are left out"):
+    with pytest.raises(Refused, match="no line that is not left out has numbers in drop, rebound"):
         fit(path, leave_out=(2, 3))
     path.write_text("time (s)\n0\n0.4516\n1.1742\n1.7544")
     with pytest.raises(Refused, match="the first time is that of the release"):
         fit(path)
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        "mass: 2.7 g\ndiameter: 40 mm",
+        "mass = 2.7 g\ndiameter = 40 mm",
+        "% mass: 2.7 g\n% diameter: 40 mm",
+        "// mass: 2.7 g\n// diameter: 40 mm",
+        "; mass: 2.7 g\n; diameter: 40 mm",
+        '"Mass: 2.7 g"\n"Diameter: 40 mm"',
+        "Mass: 2.7 g, Diameter: 40 mm",
+        "mass (g),2.7\ndiameter (mm),40",
+        "# Masse: 2.7 g\n# Durchmesser: 40 mm",
+        "# masse: 2.7 g\n# diamètre: 40 mm",
+        "# ball mass: 2.7 g\n# ball diameter: 40 mm",
+        "Mass of ball,2.7 g\nDiameter of ball,40 mm",
+        "# mass [g]: 2.7\n# diameter [mm]: 40",
+        "# mass: 2.7 ± 0.1 g\n# diameter: 40 mm (caliper)",
+        "# mass: 2.7 g, diameter: 40 mm",
+    ],
+)
+def test_the_head_is_read_as_people_write_it(head, tmp_path):
+    path = tmp_path / "drops.csv"
+    path.write_text(f"{head}\n{TWO}")
+    found = read(path).head
+    assert (found["mass"], found["diameter"]) == ("2.7 g", "40 mm")
+
+
+@pytest.mark.parametrize("r", [0.35, 0.5])
+def test_a_release_is_refused_if_the_ball_bounces_little_too(r, tmp_path):
+    """The fall is half a flight: r of 0.5 was 0.56."""
+    flights = 0.9 * r ** np.arange(4)
+    path = tmp_path / "heard.csv"
+    path.write_text("time (s)\n" + column(np.cumsum([0, flights[0] / r / 2, *flights])))
+    with pytest.raises(Refused, match="line 3: a flight of .* begins with the release"):
+        fit(path)
+    assert fit(path, leave_out=(2,)).restitution == pytest.approx(r, abs=1e-4)
+
+
+def test_flights_are_free_of_contact_and_intervals_are_not():
+    """With the contact taken off flights r was 0.817."""
+    touches = {"contact time (ms)": [8] * len(FLIGHTS)}
+    for heading, lasting in (("flight", 0), ("air time", 0), ("interval", CONTACT)):
+        found = fit(touches | {f"{heading} (s)": FLIGHTS + lasting})
+        assert found.restitution == pytest.approx(0.82, abs=1e-6)
+
+
+def test_impacts_that_may_lie_between_samples_are_refused():
+    """Of nine impacts three were found: r was 0.43 for 0.9."""
+    t = np.arange(0, TIMES[-1] + 0.2, 1 / 400)
+    near = np.abs(t[:, None] - TIMES).min(axis=1)
+    with pytest.raises(Refused, match="impacts have one sample each"):
+        fit({"time (s)": t, "acceleration (m/s^2)": 900 * np.maximum(1 - near / 0.0015, 0)})
+
+
+@pytest.mark.parametrize(("rate", "noise"), [(240, 0.008), (480, 0.008)])
+def test_noise_of_many_frames_hides_no_impacts(rate, noise):
+    """It turned tracks upside down, at random."""
+    t = np.arange(0, TIMES[-1] - 0.05, 1 / rate)
+    exact = np.array([position(each) for each in t])
+    rng = np.random.default_rng(7)
+    for _ in range(4):
+        found = fit({"t (s)": t, "y (m)": exact + noise * rng.normal(size=len(t))})
+        assert found.restitution == pytest.approx(0.82, abs=0.01)
+        assert not any("turned" in note for note in found.notes)
+
+
+def test_a_count_of_intervals_is_none(tmp_path):
+    """As phyphox exports a stopwatch: the count was read as intervals in s."""
+    path = tmp_path / "stopwatch.csv"
+    lines = [f"{i},{x:.6f}" for i, x in enumerate(FLIGHTS, 1)]
+    path.write_text("\n".join(['"Interval","Time (s)"', *lines]))
+    assert fit(path).restitution == pytest.approx(0.82, abs=1e-4)
+    assert not read(path).notes
+    with pytest.raises(Refused, match="no column of intervals"):
+        read(path, intervals=True)

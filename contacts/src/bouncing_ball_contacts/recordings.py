@@ -14,6 +14,7 @@ Positions over time and signals are samples, of which a missing one does not mat
 ball cannot have are refused, with their line.
 """
 
+import contextlib
 import csv
 import difflib
 import functools
@@ -42,7 +43,19 @@ Lines = NDArray[np.intp]
 _Run = tuple[Array, Lines]
 _Layouts = tuple[tuple[str, tuple[str, ...]], ...]
 
-_USED = ("mass", "diameter", "contact time", "resolution")
+# What the head may say, and the words for it.
+_KEYS = {
+    "mass": r"(?:ball )?(?:mass[ae]?|masa)(?: of (?:the )?ball)?",
+    "diameter": r"(?:ball )?(?:diam\w*|durchmesser)(?: of (?:the )?ball)?",
+    "contact time": "contact time|kontaktzeit",
+    "resolution": "resolution",
+    "frame rate": "fps|frame ?rate|frames per second|bildrate",
+}
+# A key, its unit, and what is said, which is a number if a comma or a tab is between them.
+_NAMED = (
+    r"\W*([^\d:=(\[]+?)\s*(?:[(\[]([^)\]]*)[)\]])?\s*"
+    r"(?:[:=]|[,;\t]\s*(?=[-+]?\d[\d.,]*(?:[\s,;]|$)))\s*(.*\S)"
+)
 _HEADINGS = (
     "write headings such as time, interval, height, drop_height and rebound_height, speed_before "
     "and speed_after, speed and COR, or t and y"
@@ -53,14 +66,17 @@ _NO_RECORDING = (
 )
 _TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
 _UNSORTED = "the one before: sort the lines, or leave an empty line where another recording begins"
-# A number with or without a unit, as the head of a file may have it.
-_QUANTITY = r"[-+]?\d[\d.,]*\s*[^\s\d]{0,6}"
+# A number with or without a unit, in a sentence or in cells of the head, and remarks behind it.
+_QUANTITY = (
+    r"([-+]?\d+(?:[.,]\d+)?)(?:\s*±\s*[\d.,]+)?[\s,;]*([^\W\d][^\s,;(\"]*|%)?[\s,;\"]*(?:[±(].*)?"
+)
 # A unit behind a heading without brackets, or in a row of units. Inches are "inch", because "in"
 # is a word.
 _UNIT = (
-    r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch|ft|feet|[cm]?m/s|km/h|mph"
+    r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch(?:es)?|ft|foot|feet|yd|[cm]?m/s|km/h|mph"
     r"|px|k?N|m?V|%|-)"
 )
+_RECORDING = r"recording|aufnahme|series|experiment|\b(?:ball|run|set|trial)\b"
 # The quantity of a heading is that of the first row with which its words agree. Accents
 # are removed, and most signs are spaces. What is derived from readings or expected is no reading.
 _QUANTITIES = (
@@ -69,21 +85,26 @@ _QUANTITIES = (
         "derived",
         r"\blos[st]|predict|theor|expect|ideal|simulat|fitted|sqrt|squar|[√^]|^1 (e|cor)\b",
     ),
-    ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu"),
+    ("derived", r"\b(log|log10|ln|lg)\b|verlust|erwart|\bperte|\bprevu|/(?! ?s\b)"),
     ("force", r"force|kraft|^f\b|\bf ?z\b"),
     ("signal", r"amplitude|volt|spannung|sound|audio|microphone|accel|beschl|signal|pressure"),
-    ("unused", r"\b(x|n|no|nr|number|count|index|step|frame|energy|mass|diameter|radius)\b"),
-    ("unused", r"(uncert|err|std).*(dur|time|height|speed|veloc|\b[hvt]\b)"),
-    ("unused", r"(dur|time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)"),
-    ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bsd\b|sigma|±|fehler|unsicherheit"),
+    ("signal", r"^a\s*[xyz]\b"),
+    ("frame", r"^(\w+ )?(frames?|bild)( (number|no|nr|index))?$"),
+    ("count", r"^n\b|\b(no|nr|number|count|index|step|frame)\b"),
+    ("unused", r"\b(x|energy|mass|diameter|radius)\b"),
+    ("unused", r"dur.*(uncert|err|std)|(uncert|err|std).*dur"),
+    ("error", r"(uncert|err|std).*(time|height|speed|veloc|\b[hvt]\b)"),
+    ("error", r"(time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
+    ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bs[de]m?\b|sigma|[±σ]|fehler"),
+    ("uncertainty", r"unsicherheit|^[dδ] ?(e|cor)\b"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
     ("duration", r"duration|dauer|contact|kontakt"),
     ("speed", r"speed|\bq?vel|geschwindigkeit|vitesse|\bv'?\b|\bv[012ifxyz]\b|\bv(in|out)\b"),
     ("height", r"height|altitude|hohe|hauteur|altura|altezza|\bh'?\b|\bh[\dif]\b|\bh ?prime"),
     ("time", r"time|zeit|temps|tiempo|tempo|\bt ?\d*\b"),
-    ("position", r"position|\bq?pos\b|\b[cp]?[yz]\b|^(distance|displacement)$"),
-    ("recording", r"recording|aufnahme|series|experiment|\b(ball|run|set|trial)\b(?! \d)"),
+    ("position", r"position|\bq?pos\b|\b[cp]?[yz]\d*\b|^(distance|displacement)$"),
+    ("recording", rf"{_RECORDING}(?! (\d|\w\b))"),
 )
 # In the same way, whether a height or speed is that before or after an impact.
 _SIDES = (
@@ -98,7 +119,6 @@ _SIDES = (
 _AVERAGE = r"average|mean\b"
 # These words alone are heights, if no unit says otherwise.
 _HEIGHTS_ALONE = r"drop|release|bounce|rebound|rimbal|rebote|rebond|average|trial"
-_BY_UNIT = (("speed", "/"), ("time", r"s$|sec|min"), ("height", r"m$|^in|ft|feet|met"))
 _SI = {
     "time": "s",
     "interval": "s",
@@ -127,15 +147,15 @@ _SERIES: _Layouts = (
 )
 # Numbers of a pair that lacks its other half are no series.
 _HALVES = {"height before", "height after", "speed before", "speed after", "coefficient"}
-# Of each quantity: its name, the most that is plausible without a unit and with one, and the unit
-# that was perhaps meant. An error of its reading may let an r exceed 1.
+# Of each quantity: its name, the least that is plausible, the most without a unit and with one, and
+# the unit that was perhaps meant. An error of its reading may let an r exceed 1.
 _PLAUSIBLE = {
-    "interval": ("flight", 9.0, 9.0, "ms"),
-    "height": ("height", 10.0, 100.0, "cm"),
-    "speed": ("speed", 100.0, 100.0, "cm/s"),
-    "coefficient": ("restitution coefficient", 1.05, 1.05, "%"),
-    "uncertainty": ("uncertainty", 1.0, 1.0, "%"),
-    "duration": ("contact time", 1.0, 1.0, "ms"),
+    "interval": ("flight", 1e-3, 9.0, 9.0, "ms"),
+    "height": ("height", 1e-6, 10.0, 100.0, "cm"),
+    "speed": ("speed", 1e-6, 100.0, 100.0, "cm/s"),
+    "coefficient": ("restitution coefficient", 0.0, 1.05, 1.05, "%"),
+    "uncertainty": ("uncertainty", 0.0, 1.0, 1.0, "%"),
+    "duration": ("contact time", 0.0, 1.0, 1.0, "ms"),
 }
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
@@ -257,13 +277,17 @@ def _text_of(source: Any) -> tuple[str, str]:
 
 @dataclass(frozen=True)
 class _Table:
-    """Cells below headings, with the numbers of their lines, and what the head says."""
+    """Cells below headings, with the numbers of their lines, and what the head says.
+
+    One column is bare if it has no heading, which is then "time".
+    """
 
     name: str
     head: dict[str, str]
     headings: list[str]
     cells: list[list[str]]
     lines: Lines
+    is_bare: bool
 
     def refuse(self, is_bad: NDArray[np.bool_], lines: Lines, text: str, *numbers: Array) -> None:
         """Refuse the first number that is bad; the text has places for numbers of that line."""
@@ -274,7 +298,7 @@ class _Table:
 
 def _number(text: str) -> float:
     """Return a number, or seconds of a text such as 1:02.5; NaN if it is neither."""
-    plain = text.strip().replace("−", "-").replace(",", ".")
+    plain = text.split("±")[0].strip().replace("−", "-").replace(",", ".")
     if not re.fullmatch(r"(\d+:){0,2}[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain):
         return math.nan
     parts = plain.split(":")
@@ -299,31 +323,41 @@ def _split(name: str, lines: list[str]) -> list[list[str]]:
     return cells
 
 
+def _said(line: str) -> dict[str, str]:
+    """Return what the head says: '# Mass = 46 g', 'Mass: 46 g, Diameter: 4 cm' or 'Mass (g),46'."""
+    said = {}
+    for part in re.split(rf"(?i)[,;]\s*(?=(?:{'|'.join(_KEYS.values())})\s*[:=])", line):
+        if named := re.match(_NAMED, part):
+            key = named[1].lower().replace("_", " ")
+            number = re.fullmatch(_QUANTITY, named[3])
+            value = f"{number[1]} {number[2] or named[2] or ''}".strip() if number else named[3]
+            said[next((each for each in _KEYS if re.fullmatch(_KEYS[each], key)), key)] = value
+    return said
+
+
 def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     """Return the table of a text, without the cells of lines that are left out."""
     head: dict[str, str] = {}
     kept: dict[int, str] = {}
     for i, line in enumerate(text.rstrip().splitlines(), 1):
-        if named := re.match(r"\s*#\s*([^:=]+?)\s*[:=]\s*(.*\S)", line):
-            key = named[1].lower().replace("_", " ")
-            head[key] = f"{head.get(key, '')} {named[2]}".strip()
         # Audacity writes frequencies in lines with a backslash.
-        elif not re.match(r"\s*[#\\]", line):
+        if not re.match(r"\s*[#\\]", line):
             kept[i] = line.strip(" ")
+        for key, said in _said(line).items() if re.match(r"\s*#", line) else ():
+            head[key] = f"{head.get(key, '')} {said}".strip()
     if not any(kept.values()):
         raise Refused(f"{name} is empty")
-    cells = _split(name, list(kept.values()))
+    texts = list(kept.values())
+    cells = _split(name, texts)
     has_numbers = [not np.isnan([*map(_number, row)]).all() for row in cells]
     # Lines such as "Mass,46,g" may stand above the headings.
-    texts = itertools.takewhile(lambda row: np.isnan(_number("".join(row[:1]))), cells)
-    headed = (i for i, row in enumerate(texts) if not has_numbers[i] and _are_headings(row))
-    above_headings = next(headed, 0)
-    for row in cells[:above_headings]:
-        if len(row) > 1:
-            head[row[0].lower()] = " ".join(row[1:]).strip()
-    begin = next((i for i in range(above_headings, len(cells)) if has_numbers[i]), None)
+    worded = itertools.takewhile(lambda row: np.isnan(_number("".join(row[:1]))), cells)
+    headed = (i for i, row in enumerate(worded) if not has_numbers[i] and _are_headings(row))
+    first = next(headed, 0)
+    begin = next((i for i in range(first, len(cells)) if has_numbers[i]), None)
     if begin is None:
-        raise Refused(f"{name} has no line of numbers; {_TIMES}")
+        raise Refused(f"{name} has no line of numbers" + (f"; {_TIMES}" if ":" in text else ""))
+    head |= {key: said for line in texts[:begin] for key, said in _said(line).items()}
     above = [row for row in cells[:begin] if any(row)]
     lines = np.array(list(kept))[begin:]
     rows = cells[begin:]
@@ -333,6 +367,7 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
     lines = lines[::step]
     if unknown := set(leave_out) - set(lines.tolist()):
         raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
+    is_bare = False
     if not above:
         # One line of numbers is a column.
         rows = [[cell] for cell in rows[0]] if len(rows) == 1 else rows
@@ -344,21 +379,26 @@ def _table_of(name: str, text: str, leave_out: Sequence[int]) -> _Table:
         if not (are_labels | np.isnan(ends).all()).all():
             raise Refused(f"{name}: no bounces in a table without headings: {_HEADINGS}")
         above = [["time"]]
+        is_bare = bool(np.isnan(ends).all())
     headings = above[-1]
-    if len(above) > 1 and all(re.fullmatch(rf"\W?{_UNIT}?\W?", unit) for unit in headings):
+    if len(above) > 1 and all(re.fullmatch(rf"\W?({_UNIT}|in)?\W?", unit) for unit in headings):
         headings = [
             f"{one} ({unit.strip('()[]')})"
             for one, unit in itertools.zip_longest(*above[-2:], fillvalue="")
         ]
     rows = [[] if line in leave_out else row for line, row in zip(lines, rows, strict=True)]
+    for line, row, has_one in zip(lines, rows, has_numbers[begin::step], strict=False):
+        if not has_one and _are_headings(row):
+            raise Refused(f"{name}: line {line} is a second heading: write one table in each file")
     width = len(headings)
-    return _Table(name, head, headings, [[*row, *[""] * width][:width] for row in rows], lines)
+    rows = [[*row, *[""] * width][:width] for row in rows]
+    return _Table(name, head, headings, rows, lines, is_bare)
 
 
 # Headings to quantities.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Column:
     """A column with its unit, its role, such as "time" or "height before", and its cells."""
 
@@ -369,12 +409,31 @@ class _Column:
     numbers: Array
 
 
+def _counts(numbers: Array) -> bool:
+    """Return whether numbers count, mostly by one."""
+    steps = np.diff(numbers)
+    return bool(np.sum(steps == 1) > len(steps) / 2 and not np.any((steps < 1) | (steps % 1 > 0)))
+
+
+@functools.cache
+def _quantity_of(unit: str) -> str:
+    """Return what has this unit: a time, a height or a speed."""
+    for quantity in ("height", "speed", "time"):
+        with contextlib.suppress(Refused):
+            in_si(quantity, f"1 {unit}" if unit else "", _SI[quantity])
+            return quantity
+    return ""
+
+
 def _column(heading: str, texts: list[str]) -> _Column:
     """Return the column of a heading such as 'h0 (cm)', 'h0/cm', 'h0_cm' or 'h0 in cm'."""
+    # People write m s-1 for m/s, and (cm ± 0.5).
+    heading = re.sub(r"\b([ckm]?m)[\s·]*s(\^?[-−]1|⁻¹)", r"\1/s", heading)
+    heading = re.sub(r"\s*±\s*[\d.,]+", "", heading)
     parts = (
-        re.fullmatch(r"(.*?)\s*[(\[]([^)\]]*)[)\]]", heading)
-        or re.fullmatch(rf"(.*?)(?:[\s_,]+in)?[\s_,]+({_UNIT})", heading)
-        or re.fullmatch(r"(.*?)\s*/\s*\(?([^)]*)\)?", heading)
+        re.fullmatch(r"(.*?)[\s/]*[(\[](?!energ)([^)\]]*)[)\]]", heading)
+        or re.fullmatch(rf"(.*?)(?:[\s_,]+in|\s*/)?[\s_,]+({_UNIT})", heading)
+        or re.fullmatch(rf"(.*?)\s*/\s*\(?({_UNIT}|in)\)?", heading)
     )
     name, unit = parts.groups() if parts else (heading, "")
     # Programs write "Run 1: Time (s)".
@@ -384,7 +443,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
     apart = re.sub(r"(?<=[a-z])(?=[A-Z])", " ", name)
     letters = unicodedata.normalize("NFKD", apart).casefold()
     words = re.sub(
-        r"[^\w'±√^]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
+        r"[^\w'±√^/]|_", " ", re.sub(r"[’′`]", "'", re.sub(r"[\u0300-\u036f]", "", letters))
     )
 
     def first(table: Sequence[tuple[str, str]], said: str) -> str:
@@ -393,12 +452,17 @@ def _column(heading: str, texts: list[str]) -> _Column:
     quantity = first(_QUANTITIES, words)
     side = first(_SIDES, words)
     numbers = np.array([_number(text) for text in texts])
+    # "bounce" above 1, 2, 4 is the number of the bounce.
+    bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
+    if (
+        quantity in ("", "interval")
+        and not (bare and side == "before")
+        and not unit
+        and _counts(numbers)
+    ):
+        quantity = "count"
     if not quantity and side:
-        bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
-        quantity = first(_BY_UNIT, unit) or bare
-        # "bounce" above 1, 2, 3 is the number of the bounce.
-        if bare and side == "after" and len(texts) > 1 and (np.diff(numbers) == 1).all():
-            quantity = ""
+        quantity = _quantity_of(unit.lower()) or bare
     role = f"{quantity} {side}".strip() if quantity in ("height", "speed") else quantity
     if "%" in unit and role not in ("coefficient", "uncertainty"):
         role = "derived"
@@ -407,7 +471,7 @@ def _column(heading: str, texts: list[str]) -> _Column:
 
 def _are_headings(row: list[str]) -> bool:
     """Return whether two cells of a line name quantities."""
-    return sum(bool(_column(cell.strip(), []).role) for cell in row) > 1
+    return sum(_column(cell.strip(), []).role not in ("", "unused") for cell in row) > 1
 
 
 def _are_counted(columns: list[_Column]) -> bool:
@@ -420,6 +484,7 @@ def _are_counted(columns: list[_Column]) -> bool:
 
 def _vertical(columns: list[_Column]) -> list[_Column]:
     """Return that of the columns x, y, z of a quantity that changes most sharply, as at impacts."""
+    columns = [each for each in columns if not re.search("absolut", each.name, re.I)] or columns
     names = {each.name for each in columns}
     if len(names) < len(columns) or len({re.sub(r"[xyzXYZ]\b", "", name) for name in names}) > 1:
         return columns
@@ -433,6 +498,11 @@ def _columns(table: _Table) -> dict[str, list[_Column]]:
     for heading, *texts in zip(table.headings, *table.cells, strict=True):
         column = _column(heading.strip(), texts)
         roles.setdefault(column.role, []).append(column)
+    if "frame rate" in table.head and "frame" in roles and "time" not in roles:
+        rate = _number(table.head["frame rate"].split()[0])
+        roles["time"] = [
+            replace(each, role="time", numbers=each.numbers / rate) for each in roles.pop("frame")
+        ]
     for bare in ("height", "speed"):
         halves = [f"{bare} before", f"{bare} after"]
         absent = [half for half in halves if half not in roles]
@@ -461,12 +531,15 @@ def _values(table: _Table, column: _Column, unit: str = "") -> Array:
 
 def _check(table: _Table, quantity: str, has_unit: bool, values: Array, lines: Lines) -> None:
     """Refuse values in SI units that no ball has."""
-    what, bare, with_unit, perhaps = _PLAUSIBLE[quantity]
+    what, least, bare, with_unit, perhaps = _PLAUSIBLE[quantity]
     said = f"a {what} of {{}} {_SI[quantity]}".strip()
     most = with_unit if has_unit else bare
     hint = "" if has_unit else " without a unit"
     hint += f": is it in {perhaps}? write ({perhaps}) behind the heading"
     table.refuse(values <= 0, lines, f"{said} is not positive", values)
+    table.refuse(
+        values < least, lines, f"{said} is too small: write its unit behind the heading", values
+    )
     table.refuse(values > most, lines, f"{said}{hint}", values)
 
 
@@ -480,15 +553,22 @@ def _runs(values: Array, lines: Lines) -> list[_Run]:
 
 
 def _groups(roles: dict[str, list[_Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
-    """Return the rows of each recording."""
-    if "recording" not in roles:
-        return [np.arange(len(is_missing))]
-    texts = roles["recording"][0].texts
+    """Return the rows of each recording, divided where the count of bounces jumps."""
+    jumps = [
+        np.diff(each.numbers, prepend=each.numbers[0]) > 1
+        for each in roles.get("count", [])
+        if _counts(each.numbers)
+    ]
+    texts = roles["recording"][0].texts if "recording" in roles else [""] * len(is_missing)
     # A name that is empty, or never beside a number, is that of the row above.
     known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
     name = ""
-    names = np.array([name := text if text in known else name for text in texts])
-    return [np.flatnonzero(names == each) for each in dict.fromkeys(names)]
+    names = [name := text if text in known else name for text in texts]
+    parts = [*zip(names, np.cumsum(sum(jumps, 0 * is_missing)).tolist(), strict=True)]
+    return [
+        np.array([i for i, each in enumerate(parts) if each == part])
+        for part in dict.fromkeys(parts)
+    ]
 
 
 def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[_Run]:
@@ -501,15 +581,19 @@ def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[
         for rows in groups
         for run in _runs(matrix[rows, i], lines[rows, i])
     ]
-    if len(columns) == 1:
+    # Columns such as "run 1 interval" are recordings.
+    if len(columns) == 1 or all(
+        re.search(rf"(?:{_RECORDING})\W*\d", each.name, re.I) for each in columns
+    ):
         return down
     along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
     # A drop and its rebounds are in a line.
     if len(matrix) == 1 or columns[0].role != columns[1].role:
         return along
-    fitting = [way for way in (down, along) if all((np.diff(x) < 0).all() for x, _ in way)]
+    ways = [way for way in (down, along) if any(len(x) > 1 for x, _ in way)]
+    fitting = [way for way in ways if all((np.diff(x) < 0).all() for x, _ in way)]
     if columns[0].role == "time":
-        rising = [way for way in (down, along) if all((np.diff(x) > 0).all() for x, _ in way)]
+        rising = [way for way in ways if all((np.diff(x) > 0).all() for x, _ in way)]
         fitting = rising or fitting
     if len(fitting) != 1:
         raise Refused(
@@ -520,7 +604,12 @@ def _series(table: _Table, columns: list[_Column], groups: list[Lines]) -> list[
 
 
 def _flights(table: _Table, runs: list[_Run]) -> list[_Run]:
-    """Return the flights between times; times that fall are flights already."""
+    """Return the flights between times; times below a heading that fall are flights already."""
+    if table.is_bare and any((np.diff(times) <= 0).any() for times, _ in runs):
+        raise Refused(
+            f"{table.name}: a column without a heading is taken as times in s, which rise: write a "
+            "heading, such as interval (s) or height (cm)"
+        )
     if all((np.diff(times) < 0).all() for times, _ in runs):
         return runs
     flights = [(np.diff(times), lines[1:]) for times, lines in runs]
@@ -561,6 +650,15 @@ def _of_series(table: _Table, columns: list[_Column], runs: list[_Run]) -> Recor
             ratios = values[1:] / values[:-1]
             is_missed = ratios[:-1] < ratios[1:] / 2
             table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
+            # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
+            # that and r, in the logarithms that scatter alike, is √2 r.
+            table.refuse(
+                ratios[:1] > math.sqrt(2) * ratios[1:2],
+                lines,
+                "a flight of {} s is short beside the two after it: it begins with the release, or "
+                "the next one has an impact within it (--leave-out the line of either)",
+                values,
+            )
     kind = "heights" if quantity == "height" else "flights"
     return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
 
@@ -639,6 +737,8 @@ def _samples(
     """Return times in s, values as they are written, and lines."""
     t = _values(table, columns[0])[rows]
     lines = table.lines[rows]
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(f"{table.name}: {len(t)} lines of a track or a signal are too few; {_TIMES}")
     table.refuse(np.diff(t) < 0, lines[1:], f"the time is not after {_UNSORTED}")
     gap = np.diff(t) > 20 * np.mean(np.diff(t))
     table.refuse(gap, lines[1:], "a gap in the time: one recording of positions or signals is read")
@@ -650,12 +750,16 @@ def _of_track(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) ->
     name = table.name
     t, y, lines = _samples(table, columns, rows)
     unit = columns[1].unit
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{name}: a track of {len(t)} positions is too short")
-    # Impacts bend a track much more than gravity does, and upwards.
-    turn = -1 if np.sum(np.diff(y, 2) ** 3) < 0 else 1
+    # Impacts bend a track upwards, which skews second differences. Over the time from frame to
+    # frame noise may hide that: of the times, that counts over which they are skewed the most.
+    bends = [y[: -2 * n] - 2 * y[n:-n] + y[2 * n :] for n in 2 ** np.arange(8) if 4 * n < len(y)]
+    skewness = [float(np.mean(each**3)) / (float(np.std(each)) or 1.0) ** 3 for each in bends]
+    turn = -1 if max(skewness, key=abs) < 0 else 1
     flights, bottoms = _flights_of_track(turn * y)
     even = _even(t)
+    long = [each for each in flights if len(each) >= _FEWEST]
+    lasting = np.array([np.ptp(even[each]) for each in long])
+    _check(table, "interval", bool(columns[0].unit), lasting, lines[[each[0] for each in long]])
     impacts = {}
     for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
         both = np.concatenate([before, after])
@@ -710,6 +814,11 @@ def _of_signal(table: _Table, columns: list[_Column], rows: NDArray[np.bool_]) -
         quiet = np.flatnonzero(size <= max(size[peak] / 20, 4 * noise))
         starts.append(int(quiet[quiet < first].max(initial=-1)) + 1)
         ends.append(int(quiet[quiet > peak].min(initial=len(t) - 1)))
+    if np.median(np.subtract(ends, starts)) < 2:
+        raise Refused(
+            f"{table.name}: impacts have one sample each, so that others may lie between two: "
+            "sample faster"
+        )
     found = _of_series(table, columns[:1], [(t[starts], lines[starts])])
     lasts = t[ends] - t[starts]
     # A force that lasts longer rings on.
@@ -730,14 +839,22 @@ def _layout(
         layouts = (("flights", ("interval",)),)
     found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
     if found is None:
-        said = {"": "not known", "unused": "not used", "derived": "no reading, but derived"}
+        said = {
+            "": "not known",
+            "unused": "not used",
+            "count": "a count",
+            "frame": "a time with a line '# fps: 240' only",
+            "error": "an error",
+            "derived": "no reading, but derived",
+        }
         there = ", ".join(
             f"{column.name!r} is {said.get(role, role)}"
             for role, columns in roles.items()
             for column in columns
+            if column.name
         )
         wanted = "no column of intervals" if intervals else f"no bounces, as {there}"
-        raise Refused(f"{table.name}: {wanted}: {_HEADINGS}; {_TIMES}")
+        raise Refused(f"{table.name}: {wanted}: {_HEADINGS}")
     kind, needed = found
     columns = []
     for role in needed:
@@ -747,7 +864,7 @@ def _layout(
         if len(same) > 1 and not (may_be_several and _are_counted(same)):
             raise Refused(
                 f"{table.name}: two columns are both taken as {role}, {same[0].name!r} and "
-                f"{same[1].name!r}: leave one out, or {_HEADINGS}"
+                f"{same[1].name!r}: leave one out, as of several balls, or {_HEADINGS}"
             )
         columns += same
     heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
@@ -818,22 +935,36 @@ def read(
     else:
         recording = _of_pairs(table, kind, columns)
     if not sum(map(len, recording.chains)):
-        said = "all lines with them are left out" if leave_out else _TIMES
-        raise Refused(f"{name}: no bounces in {', '.join(each.name for each in columns)}: {said}")
+        raise Refused(
+            f"{name}: no line that is not left out has numbers in "
+            + ", ".join(each.name for each in columns)
+            + (f"; {_TIMES}" if columns[0].role == "time" else "")
+        )
     uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
         durations = np.array([positive("contact time", head["contact time"], "s")])
+    if durations is not None and re.search("flight|flug|air ?time|hang", columns[0].name, re.I):
+        # These are free of contact, and the flights of recordings are from touch to touch.
+        touches = (chain + float(durations.mean()) for chain in recording.chains)
+        recording = replace(recording, chains=tuple(touches))
     gaps = is_missing & ~np.isin(table.lines, leave_out)
     missing = ", ".join(map(str, table.lines[gaps]))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     unused = [
         repr(f"{key}: {value}")
         for key, value in head.items()
-        if key not in _USED and "uncertainty" not in key and re.fullmatch(_QUANTITY, value)
+        if key not in _KEYS and " uncertainty" not in key and re.fullmatch(_QUANTITY, value)
     ]
-    has_both = columns[0].role == "time" and "interval" in roles
-    derived = ", ".join(repr(each.name) for each in roles.get("derived", []))
+    unread = [
+        each.name
+        for role, group in roles.items()
+        for each in group
+        if role not in ("count", "frame", "recording", "duration")
+        and not (role == "uncertainty" and uncertainty is not None)
+        and each not in columns
+        and not np.isnan(each.numbers).all()
+    ]
     # A column of texts that recur has names, as of balls or surfaces.
     kinds = {
         each.name: set(each.texts) - {""}
@@ -845,16 +976,15 @@ def read(
         for name, texts in kinds.items()
         if 1 < len(texts) <= len(table.lines) / 2
     )
-    components = roles[columns[-1].role] if recording.notes else columns[-1:]
     further = {
-        "the file has times and intervals: it is read by its times": has_both,
         f"{pooled}: one r is fitted to all of them": bool(pooled),
-        f"{derived} is left out: by its heading it has no readings, but what is derived or "
-        "expected": bool(derived),
-        f"of {', '.join(each.name for each in components)} the one with the sharpest changes is "
-        f"read, {columns[-1].name}": len(components) > 1,
+        f"columns not used: {', '.join(map(repr, unread))}": bool(unread),
+        "errors of readings in columns are not used: give their size by --resolution": (
+            "error" in roles or ("uncertainty" in roles and uncertainty is None)
+        ),
+        "no heading: taken as times in s": table.is_bare,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
-        f"the head has {', '.join(unused)}, but only {', '.join(_USED)} are used": bool(unused),
+        f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),
     }
     notes = recording.notes + tuple(text for text, holds in further.items() if holds)
     return replace(recording, head=head, uncertainty=uncertainty, durations=durations, notes=notes)

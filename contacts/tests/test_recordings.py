@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import Refused, fit
-from bouncing_ball_contacts.recordings import experiments, read
+from bouncing_ball_contacts.recordings import read
+from bouncing_ball_contacts.tables import experiments
 
 FLIGHTS = 0.9 * 0.82 ** np.arange(6)
 TIMES = 0.3 + np.concatenate([[0.0], np.cumsum(FLIGHTS)])

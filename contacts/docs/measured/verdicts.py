@@ -9,7 +9,7 @@ import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend wi
 import numpy as np  # noqa: E402
 
 from bouncing_ball_contacts.fits import LAWS, fit  # noqa: E402
-from bouncing_ball_contacts.recordings import experiments  # noqa: E402
+from bouncing_ball_contacts.tables import experiments  # noqa: E402
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 

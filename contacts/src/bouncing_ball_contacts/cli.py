@@ -187,7 +187,7 @@ def _lines(text: str | None) -> tuple[int, ...]:
 def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
     from click.shell_completion import CompletionItem
 
-    from bouncing_ball_contacts.recordings import experiments
+    from bouncing_ball_contacts.tables import experiments
 
     names = [CompletionItem(name) for name in experiments() if name.startswith(typed)]
     return [CompletionItem(typed, type="file"), *names]

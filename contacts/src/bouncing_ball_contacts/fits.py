@@ -144,7 +144,8 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if kind == "flights":
         before, after = heights_of(pairs, drag).T
     if kind in ("flights", "heights", "drops"):
-        before, after = speeds_of(before, drag)[0], speeds_of(after, drag)[1]
+        before, _ = speeds_of(before, drag)
+        _, after = speeds_of(after, drag)
     readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
     return Impacts(before, np.log(after / before), readings, _KINDS[kind][1])
 

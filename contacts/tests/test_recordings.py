@@ -652,6 +652,18 @@ def test_names_that_are_pooled_are_said():
     assert not any("all of them" in note for note in fit(heights).notes)
 
 
+@pytest.mark.parametrize("head", ["# drop height: 1 m", "Drop height = 100 cm"])
+def test_a_drop_height_in_the_head_is_that_of_all_rebounds(head, tmp_path):
+    path = tmp_path / "rebounds.csv"
+    path.write_text(f"{head}\ntrial,Rebound (cm)\n1,64\n2,62\n3,66\n4,64\n")
+    found = read(path)
+    assert found.kind == "drops"
+    assert np.concatenate(found.chains)[:2] == pytest.approx(np.array([[1, 0.64], [1, 0.62]]))
+    path.write_text(f"{head}\nbounce,Rebound (cm)\n1,64\n2,41\n3,26\n")
+    with pytest.raises(Refused, match="fall on as those of one ball"):
+        read(path)
+
+
 def test_a_missed_impact_is_refused_with_its_line(tmp_path):
     """Its r of 0.36 was pooled with those of 0.8."""
     flights = 0.7 * 0.8 ** np.arange(8)

@@ -234,16 +234,28 @@ def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:
     is_there = ~np.isnan(pairs).any(axis=1)
     if kind != "coefficients":
         _check_pairs(table, kind, pairs[is_there], lines[is_there])
+    # Of a drop height in the head the rebounds stand in one column.
+    falls = _fall_on(np.array([[*first[:1], *others[0]]]))
+    if "drop height" in table.head and falls.size and falls.all():
+        raise Refused(
+            f"{table.name}: these rebounds fall on as those of one ball: write the drop height as "
+            "the first of the heights"
+        )
     return Recording(table.name, kind, (pairs[is_there],))
 
 
-def _are_successive(table: Table, columns: list[Column]) -> bool:
-    """Return whether heights in lines are those of one ball, and not rebounds of one drop.
+def _fall_on(heights: Array) -> NDArray[np.bool_]:
+    """Return whether heights along lines fall on, by more than the square root of the first factor.
 
-    Successive heights fall on: each by more than the square root of the first factor.
+    Those of one ball do, and rebounds of one drop do not.
     """
+    return heights[:, 2:] ** 2 * heights[:, :1] < heights[:, 1:-1] ** 2 * heights[:, 1:2]
+
+
+def _are_successive(table: Table, columns: list[Column]) -> bool:
+    """Return whether heights in lines are those of one ball, and not rebounds of one drop."""
     h = np.column_stack([values_of(table, each) for each in columns])
-    falls = h[:, 2:] ** 2 * h[:, :1] < h[:, 1:-1] ** 2 * h[:, 1:2]
+    falls = _fall_on(h)
     are_falling = falls[~np.isnan(h[:, 2:] * h[:, 1:-1] * h[:, :1])]
     if are_falling.any() and not are_falling.all():
         raise Refused(f"{table.name}: some lines fall on, others have rebounds of one drop")

@@ -42,6 +42,7 @@ KEYS = {
     "diameter": r"(?:ball )?(?:diam\w*|durchmesser)(?: of (?:the )?ball)?",
     "contact time": "contact time|kontaktzeit",
     "resolution": "resolution",
+    "drop height": "drop height|fallhöhe",
     "frame rate": "fps|frame ?rate|frames per second|bildrate",
 }
 # A key, its unit, and what is said, which is a number if a comma or a tab is between them.
@@ -429,6 +430,9 @@ def columns_of(table: Table) -> dict[str, list[Column]]:
         roles["time"] = [
             replace(each, role="time", numbers=each.numbers / rate) for each in roles.pop("frame")
         ]
+    if "drop height" in table.head and "height after" in roles:
+        height = np.full(len(table.cells), in_si("drop height", table.head["drop height"], "m"))
+        roles.setdefault("height before", [Column("drop height", "m", "height before", [], height)])
     for bare in ("height", "speed"):
         halves = [f"{bare} before", f"{bare} after"]
         absent = [half for half in halves if half not in roles]

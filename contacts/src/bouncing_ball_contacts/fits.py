@@ -717,7 +717,7 @@ def fit(
         # A contact that is not known is taken to have no duration.
         durations = np.zeros(1)
     lasts = float(np.mean(durations))
-    is_heard = recording.kind == "flights"
+    is_heard = recording.kind == "flights" and not recording.is_free
     if is_heard:
         recording = without_contacts(recording, durations)
     impacts = impacts_of(recording, drag)

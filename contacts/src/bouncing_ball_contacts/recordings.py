@@ -83,9 +83,10 @@ class Recording:
 
     ``chains`` are arrays, one for each recording; those of pairs have two columns. A track has one
     for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
-    the time from touch to touch, which includes the contact at its begin. ``uncertainty`` has
-    standard deviations of r, ``durations`` contact times in s, one or one for each impact (of
-    flights: for each touch); ``head`` has what the file says of the ball.
+    the time from touch to touch, which includes the contact at its begin, unless flights are free
+    of contact, ``is_free``. ``uncertainty`` has standard deviations of r, ``durations`` contact
+    times in s, one or one for each impact (of flights: for each touch); ``head`` has what the file
+    says of the ball.
     """
 
     name: str
@@ -93,6 +94,7 @@ class Recording:
     chains: tuple[Array, ...]
     uncertainty: Array | None = None
     durations: Array | None = None
+    is_free: bool = False
     head: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -528,10 +530,7 @@ def read(
     durations = durations if recording.durations is None else recording.durations
     if "contact time" in head:
         durations = np.array([positive("contact time", head["contact time"], "s")])
-    if durations is not None and re.search("flight|flug|air ?time|hang", columns[0].name, re.I):
-        # These are free of contact, and the flights of recordings are from touch to touch.
-        touches = (chain + float(durations.mean()) for chain in recording.chains)
-        recording = replace(recording, chains=tuple(touches))
+    is_free = bool(re.search("flight|flug|air ?time|hang", columns[0].name, re.I))
     gaps = is_missing & ~np.isin(table.lines, leave_out)
     missing = ", ".join(map(str, table.lines[gaps]))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
@@ -571,4 +570,11 @@ def read(
         f"the head has {', '.join(unused)}, but only {', '.join(KEYS)} are used": bool(unused),
     }
     notes = recording.notes + tuple(text for text, holds in further.items() if holds)
-    return replace(recording, head=head, uncertainty=uncertainty, durations=durations, notes=notes)
+    return replace(
+        recording,
+        head=head,
+        uncertainty=uncertainty,
+        durations=durations,
+        is_free=is_free,
+        notes=notes,
+    )

@@ -45,6 +45,7 @@ from bouncing_ball_contacts.schemes import (
 )
 from bouncing_ball_contacts.units import (
     DENSITIES,
+    LONGEST_STEP,
     STANDARD_GRAVITY,
     Refused,
     density_of,
@@ -325,9 +326,9 @@ class Outcome:
 
     @property
     def around(self) -> str:
-        """r as it is printed: mean ± largest distance from it, or the range if r reaches 0."""
+        """r as it is printed: mean ± largest distance, or the range if that reaches 0."""
         low, mean, high = self.restitution
-        return span(low, high) if low == 0 < high else f"{mean:.3f} ± {self.error:.3f}"
+        return span(low, high) if 0 < mean <= self.error else f"{mean:.3f} ± {self.error:.3f}"
 
 
 @dataclass(frozen=True)
@@ -426,9 +427,11 @@ class Problem:
         found = self.drops(law, step, trials)
         r = found.restitution
         force = found.peak * self.bounce.reduced_mass
+        rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
         return Outcome(
-            depth=(float(found.depth.min()), float(found.depth.max())),
-            rest=float(law.rest(self.bounce.load)) if self.bounce.load else 0.0,
+            # A body that creeps is not followed until it is at rest.
+            depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
+            rest=rest,
             force=(float(force.min()), float(force.max())),
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
@@ -469,14 +472,14 @@ class Problem:
             ratios = ratio * np.linspace(0.65, 1.5, 17)
         return ratio
 
-    def tried(self, contact: Contact) -> Drops:
-        """Return the drops of a contact."""
+    def outcome_of(self, contact: Contact) -> Outcome:
+        """Return what a contact does, before its numbers are written."""
         law = self.law(np.array([contact.depth]), np.array([contact.ratio]))
-        return self.drops(law, contact.step)
+        return self.outcome(law, contact.step)
 
     def miss(self, contact: Contact) -> float:
         """Return the largest distance of r from the wanted one."""
-        return float(self.tried(contact).error(self.bounce.restitution)[0])
+        return self.outcome_of(contact).deviation(self.bounce.restitution)
 
     def at(self, depth: float, step: float) -> Contact:
         """Return the contact of an undamped depth in m at a time step in s."""
@@ -484,7 +487,7 @@ class Problem:
 
     def step_of(self, count: float) -> Callable[[float], float]:
         """Return the step of an undamped depth with which a contact has so many steps."""
-        return lambda depth: _written(self.duration * depth / count)
+        return lambda depth: _written(min(self.duration * depth / count, LONGEST_STEP))
 
     def keeping(self, step_of: Callable[[float], float]) -> Contact:
         """Return the contact that keeps what is given, at the step of its undamped depth."""
@@ -494,7 +497,7 @@ class Problem:
         depth = self.bounce.limit / math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
         for _ in range(8):
             contact = self.at(depth, step_of(depth))
-            sunk = max(float(self.tried(contact).depth.max()), self.bounce.limit / 100)
+            sunk = max(self.outcome_of(contact).depth[1], self.bounce.limit / 100)
             change = _AIM * self.bounce.limit / sunk
             # Between δ, of a fast body, and δ², of one that its weight presses in.
             depth *= change**0.75
@@ -502,28 +505,33 @@ class Problem:
                 break
         return Contact(depth, contact.ratio, step_of(depth))
 
+    def is_shallow(self, contact: Contact) -> bool:
+        """Return whether the depth is at most the permitted one, or the contact was given."""
+        is_given = self.given_depth is not None
+        return is_given or self.outcome_of(contact).depth[1] <= self.bounce.limit
+
     def keeps(self, contact: Contact) -> bool:
         """Return whether r is within the tolerance, and the depth at most the permitted one."""
-        deepest = self.bounce.limit if self.given_depth is None else math.inf
-        is_allowed = self.tried(contact).depth.max() <= deepest
-        return bool(is_allowed) and self.miss(contact) <= self.tolerance
+        return self.is_shallow(contact) and self.miss(contact) <= self.tolerance
 
     def works(self, contact: Contact) -> bool:
         """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
-        rest = self.law(contact.depth, contact.ratio).rest(self.bounce.load)
-        is_seen = self.tried(contact).depth.max() < self.deepest and rest < self.bounce.size
-        return bool(is_seen) and self.miss(contact) <= self.tolerance
+        found = self.outcome_of(contact)
+        is_seen = found.depth[1] < self.deepest and found.rest < self.bounce.size
+        return is_seen and self.miss(contact) <= self.tolerance
 
     def wanted(self) -> Contact:
         """Return the contact that keeps what is given, with the longest step in the tolerance.
 
-        If there is none, it is that of the shortest step.
+        If there is none, it is the one with the nearest r.
         """
+        tried = []
         for count in _COUNTS if self.engine.fixed_steps else (_SHORT,):
             contact = self.keeping(self.step_of(count))
             if self.keeps(contact):
-                break
-        return contact
+                return contact
+            tried.append(contact)
+        return min(tried, key=lambda contact: (not self.is_shallow(contact), self.miss(contact)))
 
     def stiffest(self, step: float) -> Contact:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
@@ -634,7 +642,8 @@ def design(
         contact = kept if keeps else problem.stiffest(step)
         if keeps or problem.works(contact):
             rows[YOURS] = problem.row(contact)
-        if bounce.points == 1 and (problem.engine.number or YOURS not in rows):
+        is_known = problem.engine.number or YOURS not in rows
+        if bounce.points == 1 and not one_body and is_known:
             rows[IMPULSE] = problem.impulse(step)
     usual = YOURS if YOURS in rows and (keeps or not bounce.gives_contact) else WANTED
     chosen = usual if pick is None else pick.strip().lower()
@@ -667,7 +676,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     wanted = found.rows[WANTED]
     depth = found.rows.get(YOURS, wanted).outcome.depth[1]
     is_deeper = not keeps and depth > 1.01 * wanted.outcome.depth[1]
-    share = f"{100 * depth / bounce.size:.0f} % of its {bounce.size_name}"
+    share = f"{100 * depth / bounce.size:.3g} % of its {bounce.size_name}"
     passes = "its centre passes the surface, so that a table has to be twice as thick"
     step = found.time_step or wanted.step
     at_yours = show(step, "s", 4)
@@ -726,7 +735,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
             ),
             (
                 outcome.deviation(bounce.restitution) > problem.tolerance and not is_undamped,
-                f"r is {span(low, high)}: no number of this row is nearer",
+                f"r is {span(low, high)}: no contact that is nearer was found",
             ),
             (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
             (

@@ -410,6 +410,12 @@ def _read_dissipation(p: Parameters, at: Setting) -> Law:
     return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
 
 
+def _damping_ratio(e: float) -> float:
+    """Return Tsuji's β of a restitution coefficient; engines divide by the logarithm of it."""
+    log = math.log(max(e, 1e-12))
+    return -log / math.hypot(math.pi, log)
+
+
 def _hertz(
     names: tuple[str, str], stiffness: float = 1.0, least: float = -math.inf
 ) -> dict[str, Any]:
@@ -420,7 +426,7 @@ def _hertz(
 
     def write(law: Law, at: Setting) -> dict[str, Any]:
         modulus = stiffness * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-        beta = min(float(law.damping), 1 - 1e-9)
+        beta = float(law.damping)
         e = math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
         if e <= least:
             raise Refused(f"LIGGGHTS takes no {names[1]} below {least:g}, as here {e:.3g}")
@@ -428,11 +434,12 @@ def _hertz(
 
     def read(p: Parameters, at: Setting) -> Law:
         k = p[names[0]] / stiffness * math.sqrt(at.radius) * at.points / at.mass
-        log = math.log(max(p[names[1]], 1e-12))
-        return Hertz(np.asarray(k), np.asarray(-log / math.hypot(math.pi, log)))
+        return Hertz(np.asarray(k), np.asarray(_damping_ratio(p[names[1]])))
+
+    def of_depth(depth: Array, ratio: Array, speed: float) -> Hertz:
+        return Hertz.of_depth(depth, np.minimum(ratio, _damping_ratio(0.0)), speed)
 
     units = {names[0]: "Pa"}
-    of_depth = Hertz.of_depth
     return {"names": names, "units": units, "write": write, "read": read, "of_depth": of_depth}
 
 

@@ -33,7 +33,7 @@ DENSITIES = {
     "ice": 917.0,
 }
 """Of solid materials, in kg/m³."""
-_LONGEST_STEP = 0.1
+LONGEST_STEP = 0.1
 _PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 # The least and the greatest power of ten of units that are not read with all prefixes: kilometres,
 # kiloseconds and km/s are rare, and masses above a tonne stay in kilograms.
@@ -162,9 +162,9 @@ def time_step(value: Any) -> float:
         step = 1 / positive("rate of the steps", value, "Hz")
     else:
         step = positive("time step", value, "s")
-    if step > _LONGEST_STEP:
+    if step > LONGEST_STEP:
         raise Refused(
-            f"time step = {show(step, 's', 4)} is longer than {show(_LONGEST_STEP, 's')}: write "
+            f"time step = {show(step, 's', 4)} is longer than {show(LONGEST_STEP, 's')}: write "
             "'2 ms', 1/240, or '240 Hz' for a rate"
         )
     return step

@@ -344,6 +344,12 @@ def test_an_impact_may_be_without_gravity():
     assert wall.table[1][4] == "–" and "gravity 0 m/s^2" in str(wall)
 
 
+def test_lammps_takes_no_restitution_of_zero():
+    """It was written for r = 0, and LAMMPS, which takes its logarithm, gave no numbers."""
+    found = design(Bounce(mass=1, restitution=0, radius=0.05), "lammps-hertz", "0.1 ms")
+    assert found.parameters["e"] > 0 and found.row.outcome.restitution[2] < 0.02
+
+
 def test_liggghts_takes_soft_and_hard_grains_and_no_restitution_below_its_least():
     """It ended with "youngsModulus >= 5e6 required" and "0.05 < coefficientRestitution"."""
     soft = Bounce(mass="5 g", restitution=0.8, radius="20 mm", drop_height="10 cm")

@@ -410,6 +410,9 @@ def _read_dissipation(p: Parameters, at: Setting) -> Law:
     return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
 
 
+_LEAST_E = 1e-12
+
+
 def _hertz(
     names: tuple[str, str], stiffness: float = 1.0, least: float = -math.inf
 ) -> dict[str, Any]:
@@ -421,14 +424,15 @@ def _hertz(
     def write(law: Law, at: Setting) -> dict[str, Any]:
         modulus = stiffness * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
         beta = min(float(law.damping), 1 - 1e-9)
-        e = math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
+        # Of 0 LAMMPS takes the logarithm.
+        e = max(math.exp(-math.pi * beta / math.sqrt(1 - beta**2)), _LEAST_E)
         if e <= least:
             raise Refused(f"LIGGGHTS takes no {names[1]} below {least:g}, as here {e:.3g}")
         return {names[0]: modulus, names[1]: e}
 
     def read(p: Parameters, at: Setting) -> Law:
         k = p[names[0]] / stiffness * math.sqrt(at.radius) * at.points / at.mass
-        log = math.log(max(p[names[1]], 1e-12))
+        log = math.log(max(p[names[1]], _LEAST_E))
         return Hertz(np.asarray(k), np.asarray(-log / math.hypot(math.pi, log)))
 
     units = {names[0]: "Pa"}

@@ -255,6 +255,8 @@ def test_a_restitution_by_number_is_that_of_pybullet():
         ("physx", {"restitution": 0.5}, 1 / 240, (0.5097, 0.5181, 0.5270)),
         ("gazebo", {"kp": 2e5, "kd": 5, "max_vel": 3.0}, 1e-3, (0.4215, 0.4287, 0.4387)),
         ("gazebo", {"kp": 2e5, "kd": 5, "max_vel": 1.0}, 1e-3, (0.1879, 0.1896, 0.1932)),
+        # The world caps at 100 m/s as well.
+        ("gazebo", {"kp": 1e5, "kd": 0.1, "max_vel": 1000}, 2e-5, (0.9599, 0.9599, 0.9599)),
         (
             "gazebo",
             {"restitution_coefficient": 0.9, "threshold": 0.0},

@@ -459,6 +459,7 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 
 
 _GAZEBO = _forces(("kp", "kd"))
+_UNCAPPED = {"max_vel": 1e9, "contact_max_correcting_vel": 1e9}
 
 
 def _read_gazebo(p: Parameters, at: Setting) -> Law:
@@ -468,7 +469,7 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
         stiffness=linear.stiffness,
         damping=linear.damping,
         threshold=p["threshold"],
-        fastest=p["max_vel"],
+        fastest=min(p["max_vel"], p["contact_max_correcting_vel"]),
         step=at.step,
     )
 
@@ -771,9 +772,9 @@ ENGINES: Mapping[str, Engine] = {
             scheme=Implicit(),
             names=_GAZEBO["names"],
             write=_GAZEBO["write"],
-            beside={"max_vel": 1000.0},
+            beside=_UNCAPPED,
             read=_read_gazebo,
-            units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
+            units=_GAZEBO["units"] | dict.fromkeys(("threshold", *_UNCAPPED), "m/s"),
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             ran="the ODE of Gazebo 11.10.2",
             rules={
@@ -781,7 +782,7 @@ ENGINES: Mapping[str, Engine] = {
                 "kd": SUM,
                 "restitution_coefficient": LEAST,
                 "threshold": LEAST,
-                "max_vel": PAIR,
+                **dict.fromkeys(_UNCAPPED, PAIR),
             },
             defaults={
                 "kp": 1e12,
@@ -789,14 +790,16 @@ ENGINES: Mapping[str, Engine] = {
                 "restitution_coefficient": 0.0,
                 "threshold": 1e5,
                 "max_vel": 0.01,
+                "contact_max_correcting_vel": 100.0,
             },
             notes=(
                 _STEP_ONLY,
-                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default",
+                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default, and "
+                "contact_max_correcting_vel of the world, which caps stiff contacts at short steps",
             ),
             number="restitution_coefficient",
             # With such a damper the default spring takes nothing of the penetration back.
-            undisturbed={"threshold": 0.0, "max_vel": 1000.0, "kd": 1e12},
+            undisturbed={"threshold": 0.0, **_UNCAPPED, "kd": 1e12},
             caution="min_depth is taken as 0, as in the snippet; a larger one lowers r",
         ),
         Engine(

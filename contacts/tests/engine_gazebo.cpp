@@ -2,8 +2,9 @@
 // Gazebo gives it; engine_runs.py calls this program as engine_gazebo, if it is on the PATH.
 //
 // Its arguments are the radius, the mass, the other mass (0 for a plane), the gap, the speed,
-// gravity, kp, kd, restitution_coefficient, threshold and max_vel of both bodies, the step and the
-// number of steps, in SI units. It writes the gap after each step into the file heights.txt.
+// gravity, kp, kd, restitution_coefficient, threshold and max_vel of both bodies, the world's
+// contact_max_correcting_vel, the step and the number of steps, in SI units. It writes the gap after
+// each step into the file heights.txt.
 
 #include <cstdlib>
 #include <fstream>
@@ -11,11 +12,11 @@
 #include <gazebo/ode/ode.h>
 
 int main(int, char* argv[]) {
-    double values[13];
-    for (int i = 0; i < 13; i++)
+    double values[14];
+    for (int i = 0; i < 14; i++)
         values[i] = std::atof(argv[i + 1]);
-    const auto [radius, mass, other, gap, speed, gravity, kp, kd, bounce, threshold, fastest, step,
-                steps] = values;
+    const auto [radius, mass, other, gap, speed, gravity, kp, kd, bounce, threshold, fastest,
+                correcting, step, steps] = values;
 
     dInitODE2(0);
     dAllocateODEDataForThread(dAllocateMaskAll);
@@ -23,7 +24,7 @@ int main(int, char* argv[]) {
     dWorldSetGravity(world, 0, 0, -gravity);
     // The defaults of a world of Gazebo.
     dWorldSetQuickStepInertiaRatioReduction(world, true);
-    dWorldSetContactMaxCorrectingVel(world, 100);
+    dWorldSetContactMaxCorrectingVel(world, correcting);
     dWorldSetContactSurfaceLayer(world, 0.001);
     dWorldSetCFM(world, 0);
     dWorldSetERP(world, 0.2);

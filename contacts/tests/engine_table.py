@@ -151,6 +151,7 @@ CASES = [
     ),
     ("gazebo", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("gazebo", "ball", dict(mass="1 kg", restitution=0.3, radius="5 cm"), None, {}),
+    ("gazebo", "ball", dict(mass="1 kg", restitution=0.97, radius="10 cm"), "20 us", {}),
     (
         "gazebo",
         "two",

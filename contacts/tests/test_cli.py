@@ -205,7 +205,7 @@ MISTAKES = {
     "diagnose --mass 1": "time step is missing",
     "diagnose solref --mass 1": "is not NAME=VALUE",
     "diagnose =3 --mass 1": "is not NAME=VALUE",
-    f"{MUJOCO} solref=0.02": "two numbers",
+    f"{MUJOCO} solref=-0.02": "neither two negative numbers",
     f"{MUJOCO} solref=": "two numbers",
     f"{MUJOCO} solref=1,2,3": "two numbers",
     f"{MUJOCO} solreff=0.02": "did you mean solref",

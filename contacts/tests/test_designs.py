@@ -269,6 +269,16 @@ def test_one_body_may_have_the_spring_alone():
         design(Bounce(mass=1, restitution=0.5), "mujoco", one_body=True)
     with pytest.raises(Refused, match="no contact that one body alone sets"):
         design(Bounce(mass=1, restitution=0.5), "lammps", one_body=True)
+    # Genesis has no default of a time constant, and this was a KeyError.
+    with pytest.raises(Refused, match="no contact that one body alone sets"):
+        design(Bounce(mass=1, restitution=0.5), "genesis", one_body=True)
+
+
+@pytest.mark.parametrize("engine", ["pybullet", "newton", "gazebo"])
+def test_an_answer_for_one_body_does_not_speak_of_both(engine):
+    """The snippet was of one of both bodies, and below it: give both bodies these numbers."""
+    text = str(design(Bounce(mass=1, restitution=0.1, radius=0.05), engine, one_body=True))
+    assert "Of one of both bodies" in text and "Give both" not in text
 
 
 def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
@@ -332,6 +342,12 @@ def test_an_impact_may_be_without_gravity():
     assert wall.row.outcome.force == pytest.approx(heavy.row.outcome.force, rel=1e-6)
     assert wall.row.outcome.restitution == pytest.approx(heavy.row.outcome.restitution)
     assert wall.table[1][4] == "–" and "gravity 0 m/s^2" in str(wall)
+
+
+def test_lammps_takes_no_restitution_of_zero():
+    """It was written for r = 0, and LAMMPS, which takes its logarithm, gave no numbers."""
+    found = design(Bounce(mass=1, restitution=0, radius=0.05), "lammps-hertz", "0.1 ms")
+    assert found.parameters["e"] > 0 and found.row.outcome.restitution[2] < 0.02
 
 
 def test_liggghts_takes_soft_and_hard_grains_and_no_restitution_below_its_least():

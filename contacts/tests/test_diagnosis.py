@@ -2,6 +2,7 @@
 
 import functools
 import math
+import re
 
 import pytest
 
@@ -140,6 +141,12 @@ def test_vectors_are_read_as_they_are_copied():
     assert all(other.outcome == plain.outcome for other in others)
 
 
+def test_a_solref_of_one_number_has_the_damping_ratio_of_mujoco():
+    one = asked(None, "mujoco", {"solref": 0.004}, "1 ms")
+    assert one.given == {"solref": (0.004, 1.0)}
+    assert one.outcome == asked(None, "mujoco", {"solref": "0.004 1"}, "1 ms").outcome
+
+
 def test_the_defaults_of_newton_are_critical_damping_in_its_mujoco_solver():
     found = diagnose(Bounce(mass="2 kg"), "newton-mujoco", None, "1 ms")
     assert found.damping_ratio == pytest.approx(1)
@@ -161,6 +168,13 @@ def test_the_scheme_that_is_taken_for_drake_is_said():
     """Its default, lagged, ignores relaxation_time: r was 0 where 0.493 was printed."""
     assert "lagged" in str(asked(None, "drake", {}, "1 ms"))
     assert asked(None, "drake-hunt-crossley", {}, "1 ms").outcome.restitution[2] < 0.01
+
+
+def test_what_a_row_takes_as_given_is_said():
+    """The Poisson ratio of a row was assumed silently, and Gazebo's min_depth lowers r."""
+    numbers = {"youngsModulus": 1e7, "coefficientRestitution": 0.7}
+    assert "Poisson ratio is taken as 0.3" in str(asked(None, "liggghts-hertz", numbers, "0.1 ms"))
+    assert "min_depth is taken as 0" in str(asked(None, "gazebo", {}, "1 ms"))
 
 
 def test_a_damper_that_is_far_too_strong_stops_the_body():
@@ -241,6 +255,8 @@ def test_a_restitution_by_number_is_that_of_pybullet():
         ("physx", {"restitution": 0.5}, 1 / 240, (0.5097, 0.5181, 0.5270)),
         ("gazebo", {"kp": 2e5, "kd": 5, "max_vel": 3.0}, 1e-3, (0.4215, 0.4287, 0.4387)),
         ("gazebo", {"kp": 2e5, "kd": 5, "max_vel": 1.0}, 1e-3, (0.1879, 0.1896, 0.1932)),
+        # The world caps at 100 m/s as well.
+        ("gazebo", {"kp": 1e5, "kd": 0.1, "max_vel": 1000}, 2e-5, (0.9599, 0.9599, 0.9599)),
         (
             "gazebo",
             {"restitution_coefficient": 0.9, "threshold": 0.0},
@@ -448,8 +464,8 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
 @pytest.mark.parametrize(
     ("engine", "parameters", "said"),
     [
-        ("mujoco", {"solref": "0.02"}, "solref has two numbers"),
-        ("mujoco", {"solref": "0.02 1 3"}, "two numbers"),
+        ("mujoco", {"solref": "-1000"}, "neither two negative"),
+        ("mujoco", {"solref": "0.02 1 3"}, "one or two numbers"),
         ("mujoco", {"solref": "-0.02 1"}, "neither two negative"),
         ("mujoco", {"solref": "20000 86"}, "'-20000 -86'"),
         ("mujoco", {"solref": "a b"}, "does not begin with a number"),
@@ -465,11 +481,17 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
         ("ode", {"soft_erp": 0}, "soft_erp = 0 is not computed: give a small number"),
         ("physx", {"restitutionCombineMode": "mean"}, "none of average, min, multiply, max"),
         ("pybullet", {"contactStiffness": -2}, "not between 0 and inf"),
+        # Names that the engine has and the row has not; E was read as e, and the last one counted.
+        ("gazebo", {"min_depth": 1e-3}, "the row of gazebo does not use 'min_depth'"),
+        ("lammps-hertz", {"kn": 1e7, "e": 0.7, "E": 0.5}, "does not use 'E'"),
+        ("lammps", {"kn": 1e5, "gamma_n": 2, "Kn": 2e5}, "'Kn' gives kn twice"),
+        # These were an AttributeError.
+        ("mujoco", "solref", "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}"),
         ("nothing", {}, "not known"),
     ],
 )
 def test_a_wrong_parameter_is_refused_in_one_line(engine, parameters, said):
-    with pytest.raises(Refused, match=said) as refused:
+    with pytest.raises(Refused, match=re.escape(said)) as refused:
         asked(0.8, engine, parameters, "1 ms")
     assert "\n" not in str(refused.value)
 

@@ -77,9 +77,14 @@ def test_a_text_that_is_no_quantity_is_refused_in_one_line(given, unit, said):
         (float("nan"), "N/m", "–"),
         (4.429, "m/s", "4.43 m/s"),
         (999.6, "N", "1 kN"),
+        # Rounding was shown as 3.47e-09 nm, and 498000000000000012582912 GN/m.
+        (3.47e-18, "m", "0 m"),
+        (4.98e32, "N/m", "4.98e+23 GN/m"),
+        (1e14, "N/m", "100000 GN/m"),
+        (2e-11, "m", "0.02 nm"),
     ],
 )
-def test_a_number_is_shown_without_powers_of_ten(value, unit, expected):
+def test_a_number_is_shown_with_a_prefix(value, unit, expected):
     assert show(value, unit) == expected
 
 

@@ -61,7 +61,7 @@ _SHARES = (
 _DIVISORS = ("dampratio", "penetration_depth", "soft_erp", "transition_region_width")
 """Parameters that cannot be 0, besides the stiffness of each engine."""
 _VECTORS = {
-    "solref": (2, 2, "two numbers, as in '0.02 1' or '-1000 -20'"),
+    "solref": (1, 2, "one or two numbers, as in '0.02 1' or '-1000 -20'"),
     "solimp": (1, 5, "up to five numbers"),
 }
 """The least and the most numbers of parameters that have several, in figures and in words."""
@@ -250,6 +250,13 @@ def diagnose(
     Refused
         If a parameter or the step is missing, unknown or out of its range.
     """
+    if not isinstance(bounce, Bounce) or not all(
+        isinstance(body or {}, Mapping) for body in (parameters, other)
+    ):
+        raise Refused(
+            "give a bounce, an engine and parameters by their names: "
+            "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}, '2 ms')"
+        )
     row = engine_named(engine)
     if row.fixed_steps and time_step is None:
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
@@ -300,9 +307,9 @@ def _holding(said: list[tuple[Any, str]]) -> list[str]:
     return [text for holds, text in said if holds]
 
 
-def _plain(name: Any) -> str:
-    """Return a name as it is compared: SetKn, set_kn and kn are the same."""
-    return re.sub(r"^set(?!$)|[\W_]", "", str(name).lower())
+def _plain(name: str) -> str:
+    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not."""
+    return name if len(name) == 1 else re.sub(r"^set(?!$)|[\W_]", "", name.lower())
 
 
 def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
@@ -311,14 +318,16 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     Raises
     ------
     Refused
-        If a name is unknown, a value is no number or out of its range, or one is missing.
+        If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
     names = {_plain(name): name for name in engine.rules}
     found: dict[str, Any] = {}
     for each, value in typed.items():
-        name = names.get(_plain(each))
+        name = names.get(_plain(str(each)))
         if name is None:
             raise Refused(_unknown(engine, str(each)))
+        if name in found:
+            raise Refused(f"{str(each)!r} gives {name} twice")
         found[name] = _value(engine, name, value)
     body = {**engine.defaults, **found}
     if missing := [name for name in engine.rules if name not in body]:
@@ -332,12 +341,13 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _unknown(engine: Engine, typed: str) -> str:
-    """Return what is said of a name that an engine does not have."""
+    """Return what is said of a name that the row of an engine does not have."""
     near = difflib.get_close_matches(typed, engine.rules, 1)
     hints = [f"did you mean {name}?" for name in near] or [
         f"{row.name} has it" for row in ENGINES.values() if typed in row.rules
     ]
-    return "; ".join([f"{engine.name} has no {typed!r}: it has {', '.join(engine.rules)}", *hints])
+    has = f"the row of {engine.name} does not use {typed!r}: it has {', '.join(engine.rules)}"
+    return "; ".join([has, *hints])
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
@@ -365,6 +375,7 @@ def _vector(name: str, value: Any) -> tuple[float, ...]:
     if not least <= len(numbers) <= most:
         raise Refused(f"{name} has {words}, not {len(numbers)}")
     if name == "solref":
+        numbers += ENGINES["mujoco"].defaults["solref"][len(numbers) :]
         first, second = numbers
         # Numbers that lack their signs, such as 20000 86, would be a time constant of hours.
         if not (first < 0 and second <= 0) and not (0 < first <= 1 and second > 0):

@@ -170,7 +170,7 @@ class Engine:
         Refused
             If the contact is of the pair in this engine, or cannot be made by one body.
         """
-        if self.sets_pair or not self.defaults:
+        if self.sets_pair or not combined.keys() <= self.defaults.keys():
             raise Refused(f"{self.name} has no contact that one body alone sets")
         values = {
             name: self.rules[name].alone(value, self.defaults[name])
@@ -462,6 +462,7 @@ def _read_ode(p: Parameters, at: Setting) -> Law:
 
 
 _GAZEBO = _forces(("kp", "kd"))
+_UNCAPPED = {"max_vel": 1e9, "contact_max_correcting_vel": 1e9}
 
 
 def _read_gazebo(p: Parameters, at: Setting) -> Law:
@@ -471,7 +472,7 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
         stiffness=linear.stiffness,
         damping=linear.damping,
         threshold=p["threshold"],
-        fastest=p["max_vel"],
+        fastest=min(p["max_vel"], p["contact_max_correcting_vel"]),
         step=at.step,
     )
 
@@ -513,8 +514,7 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
     }
 
 
-_BOTH = "Give both bodies these numbers"
-_STEP_ONLY = "they take back what this time step damps, and hold for it only"
+_STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
 _DRAKE_BOX = (
     "A pair of shapes has one contact, a box as well; a box needs a HalfSpace below, because on a "
     "Box it tumbles (r = 0.632 in place of 0.614)"
@@ -567,7 +567,7 @@ ENGINES: Mapping[str, Engine] = {
             },
             defaults=_BULLET_DEFAULTS,
             ran="PyBullet 3.2.7",
-            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            notes=(_STEP_ONLY,),
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.598 to 0.618 for 0.500)",
             number="restitution",
@@ -585,7 +585,7 @@ ENGINES: Mapping[str, Engine] = {
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(f"{_BOTH}; {_STEP_ONLY}",),
+            notes=(_STEP_ONLY,),
             caution='the discrete_contact_approximation is taken as "sap"; with the default, '
             '"lagged", Drake ignores relaxation_time, and the row is drake-hunt-crossley',
             box=_DRAKE_BOX,
@@ -603,7 +603,7 @@ ENGINES: Mapping[str, Engine] = {
             of_depth=HuntCrossley.of_depth,
             points_share=False,
             ran="Drake 1.51.1",
-            notes=(f"{_BOTH}; r falls with the speed, and is the wanted one at this speed only",),
+            notes=("r falls with the speed, and is the wanted one at this speed only",),
             box=_DRAKE_BOX,
         ),
         Engine(
@@ -674,6 +674,7 @@ ENGINES: Mapping[str, Engine] = {
             deepest=1.0,
             notes=(_LIGGGHTS_DELAY,),
             unit="N/m^1.5",
+            caution="the Poisson ratio is taken as 0.3",
         ),
         Engine(
             name="newton",
@@ -683,7 +684,7 @@ ENGINES: Mapping[str, Engine] = {
             rules={"ke": MEAN, "kd": MEAN},
             defaults={"ke": 2500.0, "kd": 100.0},
             ran="Newton 1.8.0",
-            notes=("The damper acts while the bodies approach only", _BOTH),
+            notes=("The damper acts while the bodies approach only",),
         ),
         Engine(
             name="newton-mujoco",
@@ -711,7 +712,7 @@ ENGINES: Mapping[str, Engine] = {
             units={"timeconst": "s"},
             rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
             defaults={"solimp": _DEFAULT_SOLIMP},
-            notes=("The numbers hold for every mass", _BOTH),
+            notes=("The numbers hold for every mass",),
         ),
         PhysX(
             name="physx",
@@ -737,7 +738,8 @@ ENGINES: Mapping[str, Engine] = {
                 "bounceThresholdVelocity": 0.5,
             },
             notes=(
-                f"Use the solver PGS; {_STEP_ONLY}",
+                "Use the solver PGS",
+                _STEP_ONLY,
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
             number="restitution",
@@ -765,7 +767,7 @@ ENGINES: Mapping[str, Engine] = {
             rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
             sets_pair=True,
-            notes=(f"These are numbers of a contact joint; {_STEP_ONLY}",),
+            notes=("These are numbers of a contact joint", _STEP_ONLY),
             number="bounce",
         ),
         Engine(
@@ -773,9 +775,9 @@ ENGINES: Mapping[str, Engine] = {
             scheme=Implicit(),
             names=_GAZEBO["names"],
             write=_GAZEBO["write"],
-            beside={"max_vel": 1000.0},
+            beside=_UNCAPPED,
             read=_read_gazebo,
-            units=_GAZEBO["units"] | {"threshold": "m/s", "max_vel": "m/s"},
+            units=_GAZEBO["units"] | dict.fromkeys(("threshold", *_UNCAPPED), "m/s"),
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             ran="the ODE of Gazebo 11.10.2",
             rules={
@@ -783,7 +785,7 @@ ENGINES: Mapping[str, Engine] = {
                 "kd": SUM,
                 "restitution_coefficient": LEAST,
                 "threshold": LEAST,
-                "max_vel": PAIR,
+                **dict.fromkeys(_UNCAPPED, PAIR),
             },
             defaults={
                 "kp": 1e12,
@@ -791,14 +793,17 @@ ENGINES: Mapping[str, Engine] = {
                 "restitution_coefficient": 0.0,
                 "threshold": 1e5,
                 "max_vel": 0.01,
+                "contact_max_correcting_vel": 100.0,
             },
             notes=(
-                f"{_BOTH}; {_STEP_ONLY}",
-                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default",
+                _STEP_ONLY,
+                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default, and "
+                "contact_max_correcting_vel of the world, which caps stiff contacts at short steps",
             ),
             number="restitution_coefficient",
             # With such a damper the default spring takes nothing of the penetration back.
-            undisturbed={"threshold": 0.0, "max_vel": 1000.0, "kd": 1e12},
+            undisturbed={"threshold": 0.0, **_UNCAPPED, "kd": 1e12},
+            caution="min_depth is taken as 0, as in the snippet; a larger one lowers r",
         ),
         Engine(
             name="chrono",

@@ -197,17 +197,21 @@ def span(low: float, high: float, digits: int = 3, form: str = "f") -> str:
 
 
 def show(value: float, unit: str, digits: int = 3) -> str:
-    """Return a number with its unit and a prefix, without powers of ten: ``2.2 kN/m``."""
+    """Return a number with its unit and a prefix: ``2.2 kN/m``.
+
+    A power of ten is only shown above a million of the largest prefix.
+    """
     if unit == "kg":
         value = value * 1000
         unit = "g"
     if not math.isfinite(value):
         return "–"
-    if value == 0:
+    # Less than a thousandth of the least prefix is rounding.
+    if abs(value) < 1e-12:
         return f"0 {unit}".strip()
     rounded = float(f"{value:.{digits}g}")
     least, most = _POWERS.get(unit, (-9, 9))
     power = max(least, min(3 * math.floor(math.log10(abs(rounded)) / 3), most))
     scaled = float(f"{value / 10.0**power:.{digits}g}")
-    text = f"{scaled:.0f}" if abs(scaled) >= 100 else f"{scaled:.{digits}g}"
+    text = f"{scaled:.0f}" if 100 <= abs(scaled) < 1e6 else f"{scaled:.{digits}g}"
     return f"{text} {_PREFIXES[power]}{unit}".strip()

@@ -468,6 +468,29 @@ def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():
     assert any("3000 of these steps" in note for note in found.notes)
 
 
+@pytest.mark.parametrize("name", ["generic", "pybullet", "lammps-hertz"])
+def test_a_body_that_creeps_is_deepest_at_rest(name):
+    """It sank 13.54 mm, lay 14.54 mm deep, and 13.63 mm were permitted."""
+    wanted = Bounce(mass=83.225, restitution=0, gravity=1.62, drop_height=2.8669)
+    found = design(wanted, name, "0.3 ms")
+    assert found.chosen == YOURS
+    for row in found.rows.values():
+        assert row.outcome.rest <= row.outcome.depth[1] <= wanted.limit
+
+
+def test_a_design_for_one_body_has_no_impulse():
+    """The number of the row was that of both, with which one body alone bounced half as high."""
+    wanted = Bounce(mass="1 kg", restitution=0.5, radius="5 cm")
+    assert IMPULSE in design(wanted, "pybullet", "1 ms").rows
+    assert IMPULSE not in design(wanted, "pybullet", "1 ms", one_body=True).rows
+
+
+def test_a_design_has_a_step_that_can_be_given():
+    wanted = Bounce(mass=308, restitution=0.99, gravity=0, speed=0.1, radius=0.19, stiffness=1373)
+    step = design(wanted).row.step
+    assert design(wanted, time_step=step).row.step == step
+
+
 def test_names_of_engines_are_forgiving():
     assert engine_named("MuJoCo").name == "mujoco"
     assert engine_named("isaac_lab").name == "physx"

@@ -411,11 +411,12 @@ class Problem:
         return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
-        """Return the drops of contacts at a time step in s."""
+        """Return the drops of contacts at a time step in s, or in short steps."""
+        short = law.duration(self.bounce.impact_speed) / _SHORT
         return drop(
             law,
             OfSolver() if isinstance(law, Solved) else self.engine.scheme,
-            step,
+            step if self.engine.fixed_steps else short,
             self.bounce.impact_speed,
             self.bounce.load,
             trials,
@@ -724,7 +725,8 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
             ),
             (outcome.depth[1] > problem.deepest, problem.lost),
             (
-                law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
+                problem.engine.fixed_steps
+                and law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
                 f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
                 "not computed, and change r by less than 0.001",
             ),

@@ -274,7 +274,7 @@ def test_one_body_may_have_the_spring_alone():
         design(Bounce(mass=1, restitution=0.5), "genesis", one_body=True)
 
 
-@pytest.mark.parametrize("engine", ["pybullet", "newton", "gazebo"])
+@pytest.mark.parametrize("engine", ["pybullet", "newton", "gazebo", "physx"])
 def test_an_answer_for_one_body_does_not_speak_of_both(engine):
     """The snippet was of one of both bodies, and below it: give both bodies these numbers."""
     text = str(design(Bounce(mass=1, restitution=0.1, radius=0.05), engine, one_body=True))

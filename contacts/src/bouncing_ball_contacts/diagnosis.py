@@ -32,6 +32,7 @@ from bouncing_ball_contacts.designs import (
     Problem,
     Quantity,
     design,
+    holding,
 )
 from bouncing_ball_contacts.engines import ENGINES, MODES, Engine, Parameters, engine_named
 from bouncing_ball_contacts.schemes import (
@@ -215,7 +216,7 @@ class Diagnosis(Page):
             ),
             (not row.ran, f"The row of {row.name} was never run in its engine."),
         ]
-        return "\n".join(_holding(lines))
+        return "\n".join(holding(lines))
 
     __repr__ = __str__
 
@@ -300,11 +301,6 @@ def diagnose(
     if change is None or change.step != contact.step:
         reasons += _at_this_step(contact)
     return replace(found, reasons=tuple(reasons), change=change)
-
-
-def _holding(said: list[tuple[Any, str]]) -> list[str]:
-    """Return those sentences whose conditions hold."""
-    return [text for holds, text in said if holds]
 
 
 def _plain(name: str) -> str:
@@ -499,7 +495,7 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
         (bounce.points > 1 and row.box, row.box),
         (bounce.other_mass is None and row.floor, row.floor),
     ]
-    return _holding(facts)
+    return holding(facts)
 
 
 def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
@@ -529,7 +525,7 @@ def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
             f"r = exp(-πζ/√(1 - ζ²)); in {row.name} it ends earlier",
         ),
     ]
-    return _holding(guesses)
+    return holding(guesses)
 
 
 def _nearest(contact: Contact) -> Change:

@@ -73,6 +73,7 @@ CASES = [
     ("drake", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
     ("drake", "box", dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4), "1 ms", {}),
     ("drake", "two", EQUAL, None, {}),
+    ("drake", "ball", dict(mass="1 kg", restitution=0, radius="5 cm"), None, {}),
     (
         "drake-hunt-crossley",
         "ball",

@@ -587,7 +587,9 @@ ENGINES: Mapping[str, Engine] = {
             ran="Drake 1.51.1",
             notes=(_STEP_ONLY,),
             caution='the discrete_contact_approximation is taken as "sap"; with the default, '
-            '"lagged", Drake ignores relaxation_time, and the row is drake-hunt-crossley',
+            '"lagged", Drake ignores relaxation_time, and the row is drake-hunt-crossley; '
+            "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
+            "softer by the default of 1",
             box=_DRAKE_BOX,
         ),
         DrakeDissipation(

@@ -35,6 +35,7 @@ from bouncing_ball_contacts.engines import (
 )
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
+    SHORT_STEPS,
     Drops,
     Law,
     OfSolver,
@@ -69,8 +70,6 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
-# Of a contact with error control, whose steps are short.
-_SHORT = 1000
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
 _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250, 400, 600)
 _FINE_COUNTS = tuple(2.5 * 40 ** (np.arange(117) / 78))
@@ -412,7 +411,7 @@ class Problem:
 
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
         """Return the drops of contacts at a time step in s, or in short steps."""
-        short = law.duration(self.bounce.impact_speed) / _SHORT
+        short = law.duration(self.bounce.impact_speed) / SHORT_STEPS
         return drop(
             law,
             OfSolver() if isinstance(law, Solved) else self.engine.scheme,
@@ -478,9 +477,9 @@ class Problem:
         law = self.law(np.array([contact.depth]), np.array([contact.ratio]))
         return self.outcome(law, contact.step)
 
-    def miss(self, contact: Contact) -> float:
-        """Return the largest distance of r from the wanted one."""
-        return self.outcome_of(contact).deviation(self.bounce.restitution)
+    def is_near(self, found: Outcome) -> bool:
+        """Return whether r is within the tolerance."""
+        return found.deviation(self.bounce.restitution) <= self.tolerance
 
     def at(self, depth: float, step: float) -> Contact:
         """Return the contact of an undamped depth in m at a time step in s."""
@@ -506,20 +505,20 @@ class Problem:
                 break
         return Contact(depth, contact.ratio, step_of(depth))
 
-    def is_shallow(self, contact: Contact) -> bool:
+    def is_shallow(self, found: Outcome) -> bool:
         """Return whether the depth is at most the permitted one, or the contact was given."""
-        is_given = self.given_depth is not None
-        return is_given or self.outcome_of(contact).depth[1] <= self.bounce.limit
+        return self.given_depth is not None or found.depth[1] <= self.bounce.limit
 
     def keeps(self, contact: Contact) -> bool:
         """Return whether r is within the tolerance, and the depth at most the permitted one."""
-        return self.is_shallow(contact) and self.miss(contact) <= self.tolerance
+        found = self.outcome_of(contact)
+        return self.is_shallow(found) and self.is_near(found)
 
     def works(self, contact: Contact) -> bool:
         """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
         found = self.outcome_of(contact)
         is_seen = found.depth[1] < self.deepest and found.rest < self.bounce.size
-        return is_seen and self.miss(contact) <= self.tolerance
+        return is_seen and self.is_near(found)
 
     def wanted(self) -> Contact:
         """Return the contact that keeps what is given, with the longest step in the tolerance.
@@ -527,12 +526,17 @@ class Problem:
         If there is none, it is the one with the nearest r.
         """
         tried = []
-        for count in _COUNTS if self.engine.fixed_steps else (_SHORT,):
+        for count in _COUNTS if self.engine.fixed_steps else (SHORT_STEPS,):
             contact = self.keeping(self.step_of(count))
             if self.keeps(contact):
                 return contact
             tried.append(contact)
-        return min(tried, key=lambda contact: (not self.is_shallow(contact), self.miss(contact)))
+
+        def falls_short(contact: Contact) -> tuple[bool, float]:
+            found = self.outcome_of(contact)
+            return not self.is_shallow(found), found.deviation(self.bounce.restitution)
+
+        return min(tried, key=falls_short)
 
     def stiffest(self, step: float) -> Contact:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
@@ -542,7 +546,7 @@ class Problem:
         """
         depths = [count * step / self.duration for count in _FINE_COUNTS]
         place = bisect_left(
-            depths, True, key=lambda depth: self.miss(self.at(depth, step)) <= self.tolerance
+            depths, True, key=lambda depth: self.is_near(self.outcome_of(self.at(depth, step)))
         )
         return self.at(depths[min(place, len(depths) - 1)], step)
 

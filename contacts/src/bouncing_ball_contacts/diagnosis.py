@@ -37,6 +37,7 @@ from bouncing_ball_contacts.designs import (
 from bouncing_ball_contacts.engines import ENGINES, MODES, Engine, Parameters, engine_named
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
+    SHORT_STEPS,
     Impedance,
     Law,
     Linear,
@@ -73,9 +74,7 @@ _WHY = {
 """What parameters do that change r."""
 
 _VISIBLE = TOLERANCE / 2
-# With so many steps in a contact, steps are short; with so few, r depends on the instant of the
-# impact.
-_SHORT = 1000
+# With so few steps in a contact r depends on the instant of the impact.
 _FEW = 10
 _MEAN = exact(offsets(21))
 
@@ -276,7 +275,7 @@ def diagnose(
         step=1.0 if time_step is None else units.time_step(time_step),
     )
     if time_step is None:
-        contact = replace(contact, step=contact.steps / _SHORT)
+        contact = replace(contact, step=contact.steps / SHORT_STEPS)
     spring = _spring(contact.law)
     found = Diagnosis(
         engine=row.name,
@@ -419,7 +418,7 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     scheme = contact.problem.engine.scheme
     explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     speed = contact.problem.bounce.impact_speed
-    step = np.minimum(law.duration(speed) / _SHORT, contact.step)
+    step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
     return float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
 
 

@@ -687,7 +687,7 @@ def fit(
     resolution : Quantity, optional
         The standard deviation of a reading: of a time, a height, a speed, or r.
     mass, diameter : Quantity, optional
-        Of the ball, with which the drag of the air is removed from flights and heights.
+        Of the ball, with which the drag of the air is removed from flights, heights and tracks.
     contact_time : Quantity, optional
         A measured one, in place of those of the recording: it gives the laws their stiffness, and
         is taken off times between impacts, which are from touch to touch.

@@ -30,6 +30,8 @@ Array = NDArray[np.float64]
 
 MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""
+SHORT_STEPS = 1000
+"""In a contact, of a solver with error control."""
 # Below this share of the impact speed a body that creeps out of a contact counts as at rest. Its
 # speed then also has to be nearly constant, which it is not where the body turns.
 _REST = 2e-3

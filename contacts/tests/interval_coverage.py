@@ -22,6 +22,7 @@ from bouncing_ball_contacts.fits import (
     LAWS,
     curves_of,
     estimates,
+    frame_of,
     impacts_of,
     judge,
 )
@@ -275,6 +276,91 @@ KINDS = [
         partial(rounded, impacts=9, digits=1 / 120, scatter=0.007),
         1 / 120 / math.sqrt(12),
     ),
+    (
+        "6 impacts filmed, times rounded to 1/60 s, scatter 0.02",
+        partial(FLAT, 0.7),
+        CONSTANT,
+        partial(rounded, impacts=6, digits=1 / 60, scatter=0.02),
+    ),
+    (
+        "12 impacts filmed, times rounded to 1/240 s, scatter 0.015",
+        partial(SOFT, 0.85),
+        VISCOELASTIC,
+        partial(rounded, impacts=12, digits=1 / 240, scatter=0.015),
+    ),
+    (
+        "8 impacts filmed, times rounded to 1/30 s",
+        partial(FLAT, 0.8),
+        CONSTANT,
+        partial(rounded, impacts=8, digits=1 / 30, scatter=0),
+    ),
+    (
+        "8 impacts filmed, times rounded to 1/120 s, scatter 0.02, resolution stated",
+        partial(FLAT, 0.75),
+        CONSTANT,
+        partial(rounded, impacts=8, digits=1 / 120, scatter=0.02),
+        1 / 120 / math.sqrt(12),
+    ),
+    (
+        "6 impacts, times typed to 0.01 s, scatter 0.01",
+        partial(FLAT, 0.78),
+        CONSTANT,
+        partial(rounded, impacts=6, digits=0.01, scatter=0.01),
+    ),
+    (
+        "7 impacts heard, 0.3 ms, scatter 0.03",
+        partial(FLAT, 0.75),
+        CONSTANT,
+        partial(flights, impacts=7, error=3e-4, scatter=0.03, start=4.0),
+    ),
+    (
+        "14 impacts heard, 1 ms, scatter 0.004",
+        partial(SOFT, 0.88),
+        VISCOELASTIC,
+        partial(flights, impacts=14, error=1e-3, scatter=0.004, start=4.0),
+    ),
+    (
+        "3 recordings of 4 impacts, 0.5 ms, scatter 0.02",
+        partial(SOFT, 0.7),
+        VISCOELASTIC,
+        partial(flights, impacts=4, error=5e-4, scatter=0.02, recordings=3),
+    ),
+    (
+        "6 tops read to 5 mm, scatter 0.006",
+        partial(SOFT, 0.82),
+        VISCOELASTIC,
+        partial(tops, impacts=6, error=5e-3, scatter=0.006),
+    ),
+    (
+        "10 drops read to 2 mm, scatter 0.03",
+        partial(FLAT, 0.65),
+        CONSTANT,
+        partial(drops, heights=np.geomspace(0.2, 2, 5), each=2, error=2e-3, scatter=0.03),
+    ),
+    (
+        "30 drops read to 1 mm, scatter 0.004, v^-0.1",
+        partial(power, 0.6, -0.1),
+        None,
+        partial(drops, heights=np.geomspace(0.1, 2, 10), each=3, error=1e-3, scatter=0.004),
+    ),
+    (
+        "8 pairs of speeds to 0.05 m/s, scatter 0.005",
+        partial(FLAT, 0.9),
+        CONSTANT,
+        partial(speeds, v=np.linspace(1, 5, 8), error=0.05, scatter=0.005),
+    ),
+    (
+        "9 coefficients over a factor of 5, scatter 0.035",
+        partial(SOFT, 0.5),
+        VISCOELASTIC,
+        partial(coefficients, v=np.geomspace(1, 5, 9), error=0, scatter=0.035, stated=False),
+    ),
+    (
+        "6 coefficients with stated errors of 0.01, scatter 0.003",
+        partial(FLAT, 0.7),
+        CONSTANT,
+        partial(coefficients, v=np.linspace(1, 3, 6), error=0.01, scatter=0.003, stated=True),
+    ),
 ]
 
 
@@ -301,7 +387,7 @@ def study(kind, recordings, seed):
         impacts = impacts_of(recording)
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))
-        curves = curves_of(impacts, known, at)
+        curves = curves_of(impacts, known, at, frame_of(recording))
         scattering, still = estimates(impacts, curves)
         found = scattering if make.keywords["scatter"] or still is None else still
         truth = math.log(float(np.squeeze(r(at))))

@@ -2,32 +2,40 @@
 
 The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Their logarithms are::
 
-    ln rᵢ = β + s (e^(q xᵢ) - 1)/q + eᵢ,   xᵢ = ln(vᵢ/v₀)
-    cov e = σ² [(1 - φ) M Mᵀ + φ I],       M Mᵀ in units of the median of its diagonal
+    ln rᵢ = β + c (e^(q xᵢ) - 1)/q + eᵢ,   xᵢ = ln(vᵢ/v₀)
+    cov e = τ² M Mᵀ + s² I,                M Mᵀ in units of the median of its diagonal
 
 The exponent q is between -1/2 and 5/4: 0 for an r that is a power of the speed, about 1/5 for a law
-of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - c v, and negative for an r
-that changes at low speeds only. The slope s has a normal prior of the width 0.25, because measured
+of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - b v, and negative for an r
+that changes at low speeds only. The slope c has a normal prior of the width 0.25, because measured
 slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
-enters the flights on both of its sides. φ is the share of the scatter between impacts in the
-variance of ln r, so that scatter has the size σ √φ and errors of readings σ √(1 - φ). Both sizes
-have log-normal priors with a factor of 7 either way. That of scatter is about 0.011, the middle of
-the published experiments (0.0004 to 0.04); that of errors about what instruments have, 1 ms, 2 mm
-or 0.02 m/s. If the errors of the readings are given, σ² (1 - φ) is known.
+enters the flights on both of its sides. τ is the size of errors of readings, and s that of the
+scatter between impacts. Both have log-normal priors. That of the errors is about what instruments
+have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it times have an error of
+rounding, 0.29 frames, if all are multiples of a frame (`frame_of`). If the errors of the readings
+are given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
+published experiments have 0.0004 to 0.04.
 
-The covariances of all φ have the same eigenvectors, those of M Mᵀ. In their basis each covariance
-is a row of variances, and every question below is one of weighted sums of squares.
+The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
+covariance is a row of variances, and every question below is one of weighted sums of squares.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
-does. So there are two intervals of 95 %, by the posterior of β: for φ = 0, if impacts do not
-scatter, and for all other φ, if they do. The first one is left out if both are alike or if a test
-of φ = 0 at 5 % rejects it (`without_scatter`).
+does. So there are two intervals of 95 %. If impacts do not scatter, it is that of the posterior of
+β for s = 0. If they do, a posterior would hold r too often where scatter is hidden below the
+errors, and too seldom where it is large. In its place, τ and q have their posterior, but for each
+of these s has its confidence distribution: the sum of squares Q(s) of the deviations, over their
+variances, has the χ² distribution with n - 2 degrees of freedom, and the probability of a scatter
+below s is that of a sum above Q(s). So s = 0 has a probability of its own. (H. K. Iyer,
+C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004) 1060, have such intervals for laboratories that
+measure the same.) Above its middle the prior of scatter is a factor of these. Two impacts leave no
+deviation, and have the posterior for all s > 0. The interval without scatter is left out if both
+are alike or if a test of s = 0 at 5 % rejects it (`without_scatter`).
 
-A law is judged by how much worse it fits than a parabola in ln v, for each φ: with m impacts more
+A law is judged by how much worse it fits than a parabola in ln v, for each ρ: with m impacts more
 than the three that a parabola needs, and sums of squares Q of the law and P of the parabola, its
 probability is (P/Q)^(m/2), that of the F distribution with 2 and m degrees of freedom. The largest
-one counts of those φ that are at least 1/20 as likely as the likeliest one. If the errors are known
-it is e^(-(Q - P)/2σ²), that of the χ² distribution, averaged over φ. Scatter alone, which the
+one counts of those ρ that are at least 1/20 as likely as the likeliest one. If the errors are known
+it is e^(-(Q - P)/2τ²), that of the χ² distribution, averaged over ρ. Scatter alone, which the
 parabola has as well, therefore rejects no law. Without given errors a systematic error of the
 measurement does not show in the scatter: a law is then not called incompatible, but said to
 deviate.
@@ -68,12 +76,14 @@ _KINDS = {
     "coefficients": ("", 1.1e-2, (0.0, 1.0)),
 }
 _WITH_DRAG = ("flights", "heights", "drops", "track")
-# The priors: the middle of scatter, the width of the logarithms of both sizes, and that of s.
+# The priors: the width of the logarithm of errors, the middle of scatter and the width of its
+# logarithm, and the width of c.
+_WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
-_WIDTH = 2.0
+_WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
-# φ is 0, or else even in its logit, in which the priors of both sizes are even as well.
-_SHARES = np.array([0.0, *special.expit(np.arange(-6.0, 7.0, 2.0))])
+# Seconds of which times may be multiples: frames of cameras, and decimals.
+_FRAMES = 1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240])
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # Squares of differences of ln r that are rounding errors.
@@ -168,25 +178,40 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
     return replace(recording, chains=chains)
 
 
+def frame_of(recording: Recording) -> float:
+    """Return the longest frame in s of which all times are multiples, or 0.
+
+    One number in ten is a multiple by chance, to 1/20 of the frame. Four are needed.
+    """
+    flights = np.concatenate(recording.chains)
+    if recording.kind != "flights" or len(flights) < 4:
+        return 0.0
+    counts = flights / _FRAMES[:, None]
+    are_multiples = np.all(np.abs(counts - np.round(counts)) < 0.05, axis=1)
+    return float(np.max(_FRAMES * are_multiples))
+
+
 # Impacts to r at one speed.
 
 
 @dataclass(frozen=True)
 class Curves:
-    """The posterior of smooth curves about a speed, by share φ, size σ and exponent q.
+    """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 
-    ``basis`` has the eigenvectors of M Mᵀ, in which ``variances`` (share, n) are those of ln r over
-    σ²; ``sizes`` are the σ (share, size). The logarithms of weights, the means of β, ``value``, and
-    of s, ``slope``, and the standard deviation of β, ``spread``, have the shape (share, size,
-    exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
-    ``is_known`` says whether the errors of readings are given.
+    ``basis`` has the eigenvectors of M Mᵀ, in which ``variances`` (ratio, n) are those of ln r over
+    τ²; ``sizes`` are the τ. The logarithm of the posterior, the weights by the confidence
+    distribution of the scatter, the means of β, ``value``, and of c, ``slope``, and the standard
+    deviation of β, ``spread``, have the shape (ratio, size, exponent). ``scatter`` is the root mean
+    square of the errors of r about the mean curve. ``is_known`` says whether the errors of readings
+    are given.
     """
 
     is_known: bool
     basis: Array
     variances: Array
     sizes: Array
-    log_weights: Array
+    posterior: Array
+    confidence: Array
     value: Array
     slope: Array
     spread: Array
@@ -195,7 +220,7 @@ class Curves:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The mean of β, the ends of its interval of 95 %, and the mean of s."""
+    """The mean of β, the ends of its interval of 95 %, and the mean of c."""
 
     value: float
     low: float
@@ -203,66 +228,94 @@ class Estimate:
     slope: float
 
 
-def curves_of(impacts: Impacts, known: float | Array | None, at: float) -> Curves:
+def _confidence(posterior: Array, squares: Array, scatter: Array, n: int) -> Array:
+    """Return the weights by the confidence distribution of the scatter."""
+    scattering = special.softmax(posterior[1:])
+    if n < 3:
+        return np.concatenate([np.zeros_like(posterior[:1]), scattering])
+    below = special.chdtrc(n - 2, squares)
+    # No scatter has a weight of its own, and each other one what is nearest to it.
+    ends = (below[1:-1] + below[2:]) / 2
+    ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
+    weights = np.diff(ends, axis=0)
+    above = np.maximum(np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER, 0.0)
+    weights[1:] *= np.exp(-(above**2) / 2)[..., None]
+    return weights / weights.sum(axis=0) * scattering.sum(axis=0)
+
+
+def curves_of(
+    impacts: Impacts, known: float | Array | None, at: float, frame: float = 0.0
+) -> Curves:
     """Return the smooth curves about a speed in m/s.
 
     ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
+    Then times are multiples of ``frame`` in s, if it is not 0.
     """
     n = len(impacts.log_r)
     errors = impacts.readings * (impacts.usual if known is None else known)
     covariance = errors @ errors.T
     error = math.sqrt(float(np.median(np.diag(covariance))))
     eigenvalues, basis = np.linalg.eigh(covariance / error**2)
-    share = _SHARES[:, None]
+    # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n).
+    step = min(0.25, math.sqrt(2 / n))
+    ratio = np.exp(np.arange(-3.5, 7.5, 0.25 if known is None else step))
     # Readings that are nearly redundant have eigenvalues of about 0.
-    variances = (1 - share) * (eigenvalues + 1e-9) + share
-    # If the size of errors is known, it gives σ. Otherwise the posterior of ln σ, whose width is at
-    # least 1/√(2 n), is summed in steps below twice that.
-    unknown = np.geomspace(1e-5, 0.5, 20 + int(8 * math.sqrt(n))) * np.ones_like(share)
-    sizes = unknown if known is None else error / np.sqrt(1 - share)
-    # The squares of the logarithms of both sizes, in units of the width of their priors.
-    prior = (np.log(sizes * np.sqrt(1 - share) / error) / _WIDTH) ** 2
-    prior[1:] += (np.log((sizes * np.sqrt(share))[1:] / _SCATTER) / _WIDTH) ** 2
-    # With the weights w, e for the ones, c for the bends and means m = Σ w e y/Σ w e² and
-    # b = Σ w e c/Σ w e², the slope is (Σ w c y - b m Σ w e²)/(Σ w c² - b² Σ w e² + 1/0.25²), and β
-    # is m - b s. The middle of ln r is subtracted against rounding errors.
+    variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
+    if known is None:
+        unrounded = np.exp(np.arange(-7.0, 7.0, step))
+        sizes = error * np.hypot(unrounded, frame / math.sqrt(12) / impacts.usual)
+    else:
+        unrounded = np.ones(1)
+        sizes = np.array([error])
+    scatter = np.outer(ratio, sizes)
+    # The logarithms of the priors.
+    prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
+    prior[1:] -= (np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER) ** 2 / 2
+    # With the weights w, e for the ones, b for the bends and means m = Σ w e y/Σ w e² and
+    # d = Σ w e b/Σ w e², the slope is (Σ w b y - d m Σ w e²)/(Σ w b² - d² Σ w e² + 1/0.25²), and β
+    # is m - d c. The middle of ln r is subtracted against rounding errors.
     bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
     middle = float(np.mean(impacts.log_r))
     one = basis.sum(axis=0)
     bend = bends @ basis
     y = (impacts.log_r - middle) @ basis
-    precision = 1 / (sizes[..., None] ** 2 * variances[:, None])
-    ones = (precision @ one**2)[..., None]
-    both = precision @ (one * bend).T / ones
-    mean = (precision @ (one * y))[..., None] / ones
-    of_slope = precision @ (bend**2).T - ones * both**2 + _SLOPE**-2
-    slope = (precision @ (bend * y).T - ones * both * mean) / of_slope
-    squares = (precision @ y**2 + prior)[..., None] - ones * mean**2 - of_slope * slope**2
-    size = np.sum(np.log(precision), axis=-1)[..., None] - np.log(ones * of_slope)
-    log_weights = (size - squares) / 2
-    value = middle + mean - both * slope
-    weights = special.softmax(log_weights)
-    curve = np.sum(weights * value) + np.sum(weights * slope, axis=(0, 1)) @ bends
+    weights = 1 / variances
+    ones = (weights @ one**2)[:, None]
+    both = weights @ (one * bend).T / ones
+    mean = (weights @ (one * y))[:, None] / ones
+    precision = (1 / sizes**2)[:, None]
+    of_bends = (weights @ (bend**2).T - ones * both**2)[:, None] * precision + _SLOPE**-2
+    pull = (weights @ (bend * y).T - ones * both * mean)[:, None] * precision
+    slope = pull / of_bends
+    squares = ((weights @ y**2)[:, None] - ones * mean**2)[:, None] * precision - pull * slope
+    logarithms = np.sum(np.log(variances), axis=1)[:, None] + 2 * (n - 1) * np.log(sizes)
+    volume = (logarithms + np.log(ones))[..., None] + np.log(of_bends)
+    posterior = prior[..., None] - (squares + volume) / 2
+    value = middle + mean[:, None] - both[:, None] * slope
+    shares = special.softmax(posterior)
+    curve = np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
     deviations = np.exp(curve) - impacts.restitution
     return Curves(
         is_known=known is not None,
         basis=basis,
         variances=variances,
         sizes=sizes,
-        log_weights=log_weights,
+        posterior=posterior,
+        confidence=_confidence(posterior, squares, scatter, n),
         value=value,
         slope=slope,
-        spread=np.sqrt(1 / ones + both**2 / of_slope),
+        spread=np.sqrt(1 / (ones[:, None] * precision) + both[:, None] ** 2 / of_bends),
         # A curve has two parameters.
         scatter=math.sqrt(float(np.sum(deviations**2)) / max(n - 2, 1)),
     )
 
 
-def _estimate(curves: Curves, shares: slice) -> Estimate:
-    """Return what a recording says if only these shares are possible."""
-    weights = special.softmax(curves.log_weights[shares]).ravel()
-    value = curves.value[shares].ravel()
-    spread = curves.spread[shares].ravel()
+def _estimate(curves: Curves, weights: Array) -> Estimate:
+    """Return what a recording says; the weights begin with the first ratio."""
+    n = len(weights)
+    weights = weights.ravel()
+    value = curves.value[:n].ravel()
+    spread = curves.spread[:n].ravel()
     low, high = elementwise.find_root(
         lambda x, level: special.ndtr((x[:, None] - value) / spread) @ weights - level,
         (np.min(value - 9 * spread), np.max(value + 9 * spread)),
@@ -272,15 +325,15 @@ def _estimate(curves: Curves, shares: slice) -> Estimate:
         float(value @ weights),
         float(low),
         float(high),
-        float(curves.slope[shares].ravel() @ weights),
+        float(curves.slope[:n].ravel() @ weights),
     )
 
 
 def without_scatter(impacts: Impacts, curves: Curves) -> float:
     """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
 
-    The deviations from a power of the speed are sums of independent uᵢ with variances σ² λᵢ. If σ
-    is known, Σ u²/(σ² λ) has the χ² distribution. Otherwise the statistic is q = (Σ u²/λ)/(Σ u²):
+    The deviations from a power of the speed are sums of independent uᵢ with variances τ² λᵢ. If τ
+    is known, Σ u²/(τ² λ) has the χ² distribution. Otherwise the statistic is q = (Σ u²/λ)/(Σ u²):
     it is larger than the measured one if a sum of squares of normal numbers with the factors
     1 - q λᵢ is positive, whose probability is an integral of J. P. Imhof, Biometrika 48 (1961) 419.
     """
@@ -292,7 +345,7 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
     statistic = float(np.sum(squares / eigenvalues))
     if curves.is_known:
         # Two impacts leave no deviations, which any number of degrees of freedom allows.
-        return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0, 0] ** 2))
+        return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
     # A single deviation has no pattern.
     if len(squares) < 2 or squares.sum() < _ROUNDING:
         return 1.0
@@ -310,8 +363,8 @@ def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | No
 
     The second one is None if the impacts contradict it, or if it says the same.
     """
-    scattering = _estimate(curves, slice(1, None))
-    still = _estimate(curves, slice(0, 1))
+    scattering = _estimate(curves, curves.confidence)
+    still = _estimate(curves, special.softmax(curves.posterior[:1]))
     # An interval of nearly the same width says the same.
     says_more = still.high - still.low < 0.8 * (scattering.high - scattering.low)
     is_possible = still.low <= 0 and without_scatter(impacts, curves) >= ACCEPTED
@@ -418,7 +471,7 @@ def _rms(errors: Array) -> float:
 
 
 def _least_squares(law: ContactLaw, impacts: Impacts, curves: Curves) -> tuple[Array, Array, Array]:
-    """Return a of a law for each share, what it misses of ln r, and the derivative of ln r by a.
+    """Return a of a law for each ratio, what it misses of ln r, and the derivative of ln r by a.
 
     It is found by Gauss's method: ln r is a convex curve over a, which is approached from below.
     """
@@ -440,8 +493,8 @@ def _judged(
 ) -> Judged:
     """Return a law beside the impacts.
 
-    ``weights`` are those of the shares, and ``parabola`` has the squares that one leaves for each.
-    The last row of variances is beside the shares.
+    ``weights`` are those of the ratios, and ``parabola`` has the squares that one leaves for each.
+    The last row of variances is beside the ratios.
     """
     law = LAWS[name]
     r = impacts.restitution
@@ -450,11 +503,11 @@ def _judged(
     # A law may fit better than a parabola.
     worse = np.maximum(squares - parabola, 0.0)
     if curves.is_known:
-        of_shares = np.exp(-worse[1:-1] / (2 * curves.sizes[1:, 0] ** 2))
-        probability = np.average(of_shares, weights=weights[1:])
+        of_ratios = np.exp(-worse[1:-1] / (2 * curves.sizes[0] ** 2))
+        probability = np.average(of_ratios, weights=weights[1:])
     else:
-        of_shares = (parabola / (parabola + worse)) ** (max(len(r) - 3, 0) / 2)
-        probability = np.max(of_shares[:-1][weights > np.max(weights) / 20])
+        of_ratios = (parabola / (parabola + worse)) ** (max(len(r) - 3, 0) / 2)
+        probability = np.max(of_ratios[:-1][weights > np.max(weights) / 20])
     best = int(np.argmax(weights))
     inverse = curves.basis / curves.variances[best] @ curves.basis.T
     # An impact is left out if it has a parameter of its own, which is what the others leave of it.
@@ -480,7 +533,7 @@ def _verdict(probability: float, is_any_rejected: bool, is_known: bool) -> str:
 
 def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     """Return the laws with their verdicts, that of the smallest errors first."""
-    weights = special.softmax(curves.log_weights).sum(axis=(1, 2))
+    weights = special.softmax(curves.posterior).sum(axis=(1, 2))
     # One more row has independent errors of ln r.
     rows = [curves.variances, np.ones(len(impacts.log_r))]
     curves = replace(curves, variances=np.vstack(rows))
@@ -717,6 +770,7 @@ def fit(
         # A contact that is not known is taken to have no duration.
         durations = np.zeros(1)
     lasts = float(np.mean(durations))
+    frame = frame_of(recording) if known is None else 0.0
     is_heard = recording.kind == "flights" and not recording.is_free
     if is_heard:
         recording = without_contacts(recording, durations)
@@ -724,7 +778,7 @@ def fit(
     v = impacts.speed
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    curves = curves_of(impacts, known, at)
+    curves = curves_of(impacts, known, at, frame)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
     if scattering.low > 0:
@@ -738,6 +792,7 @@ def fit(
     laws = tuple(judge(impacts, curves, at)) if len(v) > 2 else ()
     flies = recording.kind in _WITH_DRAG
     notes = {
+        f"times are multiples of {show(frame, 's', 4)}: they are taken as rounded": frame > 0,
         f"the drag of the air is removed, {drag:.2g} of the speed per metre": flies and drag > 0,
         "the drag of the air is not removed: give the mass and the diameter": flies and not drag,
         f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard

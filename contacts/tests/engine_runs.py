@@ -363,7 +363,19 @@ def ode(trial):
     return np.array(heights), math.nan
 
 
-# Of the stage: the scene, the material, and what stands for a table.
+_MATERIAL = """    def Material "{of}" (
+        prepend apiSchemas = ["PhysicsMaterialAPI", "PhysxMaterialAPI"]
+    )
+    {{
+        float physics:dynamicFriction = 0
+        float physics:staticFriction = 0
+        float physics:restitution = {restitution!r}
+        uniform token physxMaterial:restitutionCombineMode = "{restitutionCombineMode}"
+        float physxMaterial:compliantContactStiffness = {compliantContactStiffness!r}
+        float physxMaterial:compliantContactDamping = {compliantContactDamping!r}
+    }}
+"""
+# Of the stage: the scene, the materials, and what stands for a table.
 _STAGE = """#usda 1.0
 (
     defaultPrim = "World"
@@ -382,22 +394,14 @@ def Xform "World"
         float physxScene:bounceThreshold = {bounceThresholdVelocity!r}
         uniform token physxScene:broadphaseType = "MBP"
     }}
-    def Material "Material" (prepend apiSchemas = ["PhysicsMaterialAPI", "PhysxMaterialAPI"])
-    {{
-        float physics:dynamicFriction = 0
-        float physics:staticFriction = 0
-        float physics:restitution = {restitution!r}
-        float physxMaterial:compliantContactStiffness = {compliantContactStiffness!r}
-        float physxMaterial:compliantContactDamping = {compliantContactDamping!r}
-    }}
-    def Plane "Table" (
+{materials}    def Plane "Table" (
         prepend apiSchemas = ["PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
     )
     {{
         uniform token axis = "Z"
         float physxCollision:contactOffset = {ahead!r}
         float physxCollision:restOffset = 0
-        rel material:binding:physics = </World/Material>
+        rel material:binding:physics = </World/OfTable>
     }}
     def Sphere "Ball" (
         prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysxRigidBodyAPI", "PhysicsMassAPI",
@@ -412,7 +416,7 @@ def Xform "World"
         float physxRigidBody:sleepThreshold = 0
         float physxCollision:contactOffset = {ahead!r}
         float physxCollision:restOffset = 0
-        rel material:binding:physics = </World/Material>
+        rel material:binding:physics = </World/OfBall>
     }}
 }}
 """
@@ -432,8 +436,11 @@ def _physx():
     return engine, ovphysx.types.TensorType.RIGID_BODY_POSE, ovstage
 
 
-def physx(trial):
+def physx(trial, other=None):
     engine, poses, ovstage = _physx()
+    defaults = ENGINES["physx"].defaults
+    one = defaults | trial.design.parameters
+    of_table = one if other is None else defaults | other
     r = trial.size
     gap = max(trial.gap, 0.0)
     # Contacts are found at twice the way of a step, or the body falls through them.
@@ -444,7 +451,8 @@ def physx(trial):
         radius=r,
         start=r + trial.gap,
         mass=trial.mass,
-        **ENGINES["physx"].defaults | trial.design.parameters,
+        bounceThresholdVelocity=one["bounceThresholdVelocity"],
+        materials=_MATERIAL.format(of="OfBall", **one) + _MATERIAL.format(of="OfTable", **of_table),
     )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "stage.usda")

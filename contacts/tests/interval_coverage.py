@@ -60,7 +60,8 @@ def rounded(rng, r, impacts, digits, scatter):
     """Times that are rounded to frames of a camera."""
     found = flights(rng, r, impacts, 0.0, scatter)
     times = np.concatenate([[0.0], np.cumsum(found.chains[0])]) + rng.uniform(0, digits)
-    return Recording("flights", "flights", (np.diff(np.round(times / digits) * digits),))
+    rounded_times = np.round(times / digits) * digits
+    return Recording("flights", "flights", (np.diff(rounded_times),), are_times=True)
 
 
 def tops(rng, r, impacts, error, scatter):

@@ -536,3 +536,30 @@ def test_a_given_contact_through_which_bodies_pass_is_said():
     pair = dict(mass="170 g", other_mass="170 g", restitution=0.9, speed="2 m/s", radius="3 cm")
     found = design(Bounce(**pair, stiffness="50 N/m"), "pybullet")
     assert "bodies that sink more than 60 mm pass through each other" in found.notes
+
+
+@pytest.mark.parametrize("mass", ["1 g", "10 g"])
+def test_a_stiff_contact_of_newton_has_an_impedance_that_allows_it(mass):
+    """With the least one Newton had 0.66 to 0.67 for 0.8, because MuJoCo bounds the stiffness."""
+    found = design(Bounce(mass=mass, restitution=0.8), "newton-mujoco")
+    stiffness = found.row.parameters["ke"]
+    impedance = found.row.parameters["solimp"][0]
+    assert stiffness > 1e7
+    # Of solref MuJoCo takes (time constant times damping ratio times impedance)² as at least 1e-15.
+    assert impedance**2 / stiffness >= 1e-15
+    assert f"({impedance:.6g}, {impedance:.6g}, 0.001" in found.snippet
+
+
+def test_one_compliant_body_of_physx_has_the_whole_contact():
+    """The numbers were doubled: r was 0.505 to 0.511 in PhysX for 0.6."""
+    ball = Bounce(mass=26, restitution=0.6, drop_height=0.0961, density="rubber")
+    alone = design(ball, "physx", 303e-6, one_body=True).row.parameters
+    both = design(ball, "physx", 303e-6).row.parameters
+    assert alone == pytest.approx(both)
+
+
+def test_a_body_whose_centre_passes_a_floor_of_chrono_is_not_designed():
+    """At 72.3 mm for a radius of 57.9 mm Chrono had r = 0.38 to 0.95, and 42.7 kN for 6.45 kN."""
+    ball = Bounce(mass=6.4, restitution=0.4, drop_height=6.36)
+    found = design(ball, "chrono", "1.16 ms")
+    assert found.row.outcome.depth[1] < ball.size

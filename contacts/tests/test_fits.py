@@ -109,22 +109,52 @@ def test_two_impacts_do_not_say_that_nothing_scatters():
     assert scattering.high - scattering.low > 0.03
 
 
+HEARD = np.array([0.0, 0.731, 1.307, 1.761, 2.118])
+
+
 @pytest.mark.parametrize(
     ("times", "frame"),
     [
-        (np.round(np.array([0.0, 0.731, 1.307, 1.761, 2.118]) * 120) / 120, 1 / 120),
-        (np.round(np.round(np.array([0.0, 0.731, 1.307, 1.761, 2.118]) * 60) / 60, 4), 1 / 60),
-        (np.array([0.0, 0.73, 1.31, 1.76, 2.12]), 0.01),
-        (np.array([0.0, 0.7312, 1.3074, 1.7611, 2.1183]), 0.0),
+        (np.round(HEARD * 120) / 120, 1 / 120),
+        (np.round(np.round(HEARD * 60) / 60, 4), 1 / 60),
+        (np.round(HEARD, 2), 0.01),
+        (HEARD + [0.0, 2e-4, 4e-4, 1e-4, 3e-4], 0.0),
         (np.array([0.0, 0.75, 1.35]), 0.0),
+        # Flights of a lively ball that are all near 0.4 s, and short ones that are all near 0.
+        (np.cumsum([0.0, 0.4045, 0.4013, 0.3981, 0.395]), 0.0),
+        (np.cumsum([0.0, 0.00491, 0.00443, 0.00405, 0.00367]), 0.0),
     ],
 )
 def test_times_of_a_film_are_multiples_of_a_frame(times, frame):
-    recording = Recording("film", "flights", (np.diff(times),))
-    assert frame_of(recording) == pytest.approx(frame)
-    assert any("multiples" in note for note in fit(recording).notes) == (frame > 0)
+    found = fit({"time (s)": times.tolist()})
+    assert frame_of(found.recording) == pytest.approx(frame)
+    assert any("multiples" in note for note in found.notes) == (frame > 0)
     # A resolution that is given takes the place of the frame.
-    assert not any("multiples" in note for note in fit(recording, resolution="1 ms").notes)
+    stated = fit({"time (s)": times.tolist()}, resolution="1 ms")
+    assert not any("multiples" in note for note in stated.notes)
+    # Intervals may have been rounded one by one.
+    assert frame_of(fit({"interval (s)": np.diff(times).tolist()}).recording) == 0
+
+
+def test_a_frame_rate_in_a_file_is_that_of_its_frames(tmp_path):
+    path = tmp_path / "film.csv"
+    path.write_text("# fps: 48\nframe\n0\n35\n63\n85\n")
+    assert frame_of(fit(path).recording) == pytest.approx(1 / 48)
+
+
+def test_readings_that_are_all_alike_have_an_interval():
+    """The squares were -6e-74, and the interval was NaN."""
+    found = fit({"drop height (m)": [1.0] * 6, "rebound height (m)": [0.64] * 6})
+    low, high = found.interval
+    assert 0.79 < low < 0.8 < high < 0.81
+
+
+def test_a_resolution_far_below_the_scatter_does_not_hide_it():
+    """With 1 microsecond r had ± 0.006, and with 0.1 ± 0.0006, for ± 0.018."""
+    rng = np.random.default_rng(5)
+    recording = heard(rng, 0.0, 0.02, impacts=6)
+    wide, narrow = (fit(recording, resolution=each).interval for each in ("10 us", "1e-9 s"))
+    assert narrow[1] - narrow[0] == pytest.approx(wide[1] - wide[0], rel=0.05)
 
 
 def test_the_second_interval_is_left_out_where_impacts_contradict_it():

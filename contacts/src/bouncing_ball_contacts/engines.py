@@ -213,14 +213,36 @@ MODES = ("average", "min", "multiply", "max")
 
 @dataclass(frozen=True)
 class PhysX(Engine):
-    """PhysX combines restitutions by a mode of the materials."""
+    """PhysX combines restitutions by a mode of the materials.
+
+    A stiffness is a negative restitution there, so that "min" takes the larger one. Of a compliant
+    and a rigid material the stiffness is that of the former, and the damping the larger one.
+    """
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         mode = max(one["restitutionCombineMode"], other["restitutionCombineMode"], key=MODES.index)
-        a = one["restitution"]
-        b = other["restitution"]
-        of_mode = {"average": (a + b) / 2, "min": min(a, b), "multiply": a * b, "max": max(a, b)}
-        return super().combined(one, other) | {"restitution": of_mode[mode]}
+
+        def of_mode(a: float, b: float) -> float:
+            by_mode = {"average": (a + b) / 2, "min": min(a, b), "multiply": a * b}
+            return by_mode.get(mode, max(a, b))
+
+        found = super().combined(one, other)
+        found["restitution"] = of_mode(one["restitution"], other["restitution"])
+        stiffness, damping = self.names
+        if min(one[stiffness], other[stiffness]) > 0:
+            return found | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
+        return found | {name: max(one[name], other[name]) for name in (stiffness, damping)}
+
+
+@dataclass(frozen=True)
+class NewtonMujoco(Engine):
+    """Newton's MuJoCo solver averages time constants and damping ratios, and not ke and kd."""
+
+    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
+        a, b = (np.array(_solref(each["ke"], each["kd"])) for each in (one, other))
+        time, ratio = (a + b) / 2
+        both = {"ke": 1 / (time * ratio) ** 2, "kd": 2 / time}
+        return super().combined(one, other) | both
 
 
 def text_of(name: str) -> str:
@@ -270,12 +292,13 @@ def _solimp(values: Any) -> tuple[float, ...]:
     return float(low), float(high), max(width, 1e-15), float(middle), max(power, 1.0)
 
 
-def _read_mujoco(p: Parameters, at: Setting) -> Law:
+def _read_mujoco(p: Parameters, at: Setting, least: float = 1e-15) -> Law:
+    """Return the law; a product of times that is below `least` is raised to it."""
     first, second = p["solref"]
     low, high, width, middle, power = _solimp(p["solimp"])
     if first > 0:
         time = max(first, 2 * at.step) if p.get("refsafe", 1) else first
-        k = 1 / (high * time * second) ** 2
+        k = 1 / max((high * time * second) ** 2, least)
         b = 2 / (high * time)
     else:
         k = -first / high**2
@@ -309,6 +332,7 @@ def _alone_solimp(value: Any, other: Any) -> tuple[float, ...]:
     )
 
 
+_BY_TIMES = replace(MEAN, text="by averaged time constants and damping ratios")
 _SOLIMP = Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp)
 _DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
 # With it a contact is a spring and a damper.
@@ -329,20 +353,31 @@ def _write_genesis(law: Law, at: Setting) -> dict[str, Any]:
 
 
 def _read_genesis(p: Parameters, at: Setting) -> Law:
-    return _read_mujoco({"solref": (p["timeconst"], p["dampratio"]), "solimp": p["solimp"]}, at)
+    solref = (p["timeconst"], p["dampratio"])
+    # Genesis has MuJoCo's formula, but not its least product.
+    return _read_mujoco({"solref": solref, "solimp": p["solimp"]}, at, 0.0)
+
+
+def _solref(ke: float, kd: float) -> tuple[float, float]:
+    """Return the time constant and the damping ratio that Newton makes of ke and kd."""
+    return (2 / kd, kd / (2 * math.sqrt(ke))) if min(ke, kd) > 0 else (0.02, 1.0)
 
 
 def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
     if float(law.damping) <= 0:
         raise Refused("newton-mujoco has no contact without damping: kd = 0 stands for a default")
+    ke = float(law.stiffness) / at.points
+    # With a lower impedance MuJoCo would not take so short a time constant.
+    impedance = max(LEAST_IMPEDANCE, math.sqrt(1.01e-15 * ke))
     return {
-        "ke": float(law.stiffness) / at.points,
+        "ke": ke,
         "kd": float(law.damping) / at.points,
+        "solimp": (impedance, impedance, 0.001),
     }
 
 
 def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
-    return _read_mujoco({"solref": (-p["ke"], -p["kd"]), "solimp": p["solimp"]}, at)
+    return _read_mujoco({"solref": _solref(p["ke"], p["kd"]), "solimp": p["solimp"]}, at)
 
 
 def _if_set(rule: Rule, default: float) -> Rule:
@@ -477,6 +512,8 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
     )
 
 
+# The default of the other body is rigid.
+_COMPLIANT = Rule("averaged", MEAN.of, MEAN.alike, lambda x, other: x)
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
@@ -688,16 +725,15 @@ ENGINES: Mapping[str, Engine] = {
             ran="Newton 1.8.0",
             notes=("The damper acts while the bodies approach only",),
         ),
-        Engine(
+        NewtonMujoco(
             name="newton-mujoco",
             names=("ke", "kd"),
             scheme=SemiImplicit(),
             write=_write_newton_mujoco,
-            beside={"solimp": _LEAST_SOLIMP},
             read=_read_newton_mujoco,
             meaning="ke = k/m, kd = c/m, solimp = 1e-4 1e-4 0.001, in SolverMuJoCo",
             units={"ke": "1/s^2", "kd": "1/s"},
-            rules={"ke": MEAN, "kd": MEAN, "solimp": _SOLIMP},
+            rules={"ke": _BY_TIMES, "kd": _BY_TIMES, "solimp": _SOLIMP},
             defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
             ran="Newton 1.8.0",
             notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
@@ -726,9 +762,9 @@ ENGINES: Mapping[str, Engine] = {
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
-                "compliantContactStiffness": MEAN,
-                "compliantContactDamping": MEAN,
-                "restitution": MEAN,
+                "compliantContactStiffness": _COMPLIANT,
+                "compliantContactDamping": _COMPLIANT,
+                "restitution": replace(MEAN, text="combined by the mode of both"),
                 "restitutionCombineMode": PAIR,
                 "bounceThresholdVelocity": PAIR,
             },
@@ -814,6 +850,7 @@ ENGINES: Mapping[str, Engine] = {
             meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
             ran="Chrono 10.0.0",
             rules={"kn": MEAN, "gn": MEAN},
+            deepest=1.0,
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
             floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "
             "the floor 1000 times the mass of the body, because an equal mass halves the damping",

@@ -57,6 +57,7 @@ from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.flights import drag_of, heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording, read
 from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.tables import number_in
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
 REJECTED = 0.005
@@ -181,14 +182,19 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
 def frame_of(recording: Recording) -> float:
     """Return the longest frame in s of which all times are multiples, or 0.
 
-    One number in ten is a multiple by chance, to 1/20 of the frame. Four are needed.
+    It is that of the frame rate, if the file has one. One number in ten is a multiple by chance, to
+    1/20 of the frame. Four different ones are needed, because flights of one ball may be alike.
+    Intervals may have been rounded one by one, with errors that do not cancel.
     """
-    flights = np.concatenate(recording.chains)
-    if recording.kind != "flights" or len(flights) < 4:
+    if recording.kind != "flights" or not recording.are_times:
         return 0.0
-    counts = flights / _FRAMES[:, None]
-    are_multiples = np.all(np.abs(counts - np.round(counts)) < 0.05, axis=1)
-    return float(np.max(_FRAMES * are_multiples))
+    rate = recording.head.get("frame rate")
+    frames = _FRAMES if rate is None else 1 / np.array([number_in(rate.split()[0])])
+    counts = np.concatenate(recording.chains) / frames[:, None]
+    nearest = np.round(counts)
+    are_multiples = np.all((np.abs(counts - nearest) < 0.05) & (nearest > 0), axis=1)
+    are_enough = [rate is not None or len(np.unique(each)) >= 4 for each in nearest]
+    return float(np.max(frames * are_multiples * are_enough))
 
 
 # Impacts to r at one speed.
@@ -233,7 +239,8 @@ def _confidence(posterior: Array, squares: Array, scatter: Array, n: int) -> Arr
     scattering = special.softmax(posterior[1:])
     if n < 3:
         return np.concatenate([np.zeros_like(posterior[:1]), scattering])
-    below = special.chdtrc(n - 2, squares)
+    # Rounding errors of squares that vanish may be negative.
+    below = special.chdtrc(n - 2, np.maximum(squares, 0.0))
     # No scatter has a weight of its own, and each other one what is nearest to it.
     ends = (below[1:-1] + below[2:]) / 2
     ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
@@ -256,9 +263,12 @@ def curves_of(
     covariance = errors @ errors.T
     error = math.sqrt(float(np.median(np.diag(covariance))))
     eigenvalues, basis = np.linalg.eigh(covariance / error**2)
-    # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n).
-    step = min(0.25, math.sqrt(2 / n))
-    ratio = np.exp(np.arange(-3.5, 7.5, 0.25 if known is None else step))
+    # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n). Steps of 1/20 are
+    # enough, because an error of 5 % in scatter is one of 5 % in the width.
+    step = float(np.clip(math.sqrt(2 / n), 0.05, 0.25))
+    # A scatter of 0.5 is more than enough, beside any errors.
+    most = 7.5 if known is None else max(7.5, math.log(0.5 / error))
+    ratio = np.exp(np.arange(-3.5, most, 0.25 if known is None else step))
     # Readings that are nearly redundant have eigenvalues of about 0.
     variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
     if known is None:

@@ -84,7 +84,8 @@ class Recording:
     ``chains`` are arrays, one for each recording; those of pairs have two columns. A track has one
     for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
     the time from touch to touch, which includes the contact at its begin, unless flights are free
-    of contact, ``is_free``. ``uncertainty`` has standard deviations of r, ``durations`` contact
+    of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
+    ``uncertainty`` has standard deviations of r, ``durations`` contact
     times in s, one or one for each impact (of flights: for each touch); ``head`` has what the file
     says of the ball.
     """
@@ -95,6 +96,7 @@ class Recording:
     uncertainty: Array | None = None
     durations: Array | None = None
     is_free: bool = False
+    are_times: bool = False
     head: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -576,5 +578,6 @@ def read(
         uncertainty=uncertainty,
         durations=durations,
         is_free=is_free,
+        are_times=columns[0].role == "time",
         notes=notes,
     )

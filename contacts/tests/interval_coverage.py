@@ -22,9 +22,9 @@ from bouncing_ball_contacts.fits import (
     LAWS,
     curves_of,
     estimates,
-    frame_of,
     impacts_of,
     judge,
+    rounding_of,
 )
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
@@ -388,7 +388,7 @@ def study(kind, recordings, seed):
         impacts = impacts_of(recording)
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))
-        curves = curves_of(impacts, known, at, frame_of(recording))
+        curves = curves_of(impacts, known, at, rounding_of(recording))
         scattering, still = estimates(impacts, curves)
         found = scattering if make.keywords["scatter"] or still is None else still
         truth = math.log(float(np.squeeze(r(at))))

@@ -11,10 +11,10 @@ that changes at low speeds only. The slope c has a normal prior of the width 0.2
 slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
 enters the flights on both of its sides. τ is the size of errors of readings, and s that of the
 scatter between impacts. Both have log-normal priors. That of the errors is about what instruments
-have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it times have an error of
-rounding, 0.29 frames, if all are multiples of a frame (`frame_of`). If the errors of the readings
-are given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
-published experiments have 0.0004 to 0.04.
+have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it readings have an error of
+rounding, 0.29 frames or units of the last digit, if all are multiples of these (`rounding_of`). If
+the errors of the readings are given, τ is known. The prior of scatter is about 0.011, with a factor
+of 4.5 either way: the published experiments have 0.0004 to 0.04.
 
 The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
 covariance is a row of variances, and every question below is one of weighted sums of squares.
@@ -83,8 +83,9 @@ _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
-# Seconds of which times may be multiples: frames of cameras, and decimals.
+# Seconds of which times may be multiples: frames of cameras, and decimals; and decimals of others.
 _FRAMES = 1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240])
+_DECIMALS = np.array([0.1, 0.01])
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # Squares of differences of ln r that are rounding errors.
@@ -186,7 +187,7 @@ def frame_of(recording: Recording) -> float:
     1/20 of the frame. Four different ones are needed, because flights of one ball may be alike.
     Intervals may have been rounded one by one, with errors that do not cancel.
     """
-    if recording.kind != "flights" or not recording.are_times:
+    if not recording.are_times:
         return 0.0
     rate = recording.head.get("frame rate")
     frames = _FRAMES if rate is None else 1 / np.array([number_in(rate.split()[0])])
@@ -197,6 +198,23 @@ def frame_of(recording: Recording) -> float:
     return float(np.max(frames * are_multiples * are_enough))
 
 
+def rounding_of(recording: Recording) -> float:
+    """Return the frame or the decimal, in SI units, of which all readings are multiples, or 0.
+
+    The heights from which a ball is dropped and the speeds of coefficients are set, and not read.
+    Three readings are needed.
+    """
+    if recording.kind == "flights":
+        return frame_of(recording)
+    readings = np.concatenate(recording.chains)
+    if recording.kind in ("drops", "coefficients"):
+        readings = readings[:, 1]
+    counts = readings.ravel() / _DECIMALS[:, None]
+    are_multiples = np.all(np.abs(counts - np.round(counts)) < 1e-6, axis=1)
+    is_rounded = recording.kind != "track" and readings.size >= 3
+    return float(np.max(_DECIMALS * are_multiples)) if is_rounded else 0.0
+
+
 # Impacts to r at one speed.
 
 
@@ -205,17 +223,18 @@ class Curves:
     """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 
     ``basis`` has the eigenvectors of M Mᵀ, in which ``variances`` (ratio, n) are those of ln r over
-    τ²; ``sizes`` are the τ. The logarithm of the posterior, the weights by the confidence
-    distribution of the scatter, the means of β, ``value``, and of c, ``slope``, and the standard
-    deviation of β, ``spread``, have the shape (ratio, size, exponent). ``scatter`` is the root mean
-    square of the errors of r about the mean curve. ``is_known`` says whether the errors of readings
-    are given.
+    τ²; ``sizes`` are the τ, and ``rounded`` is what rounding has of them. The logarithm of the
+    posterior, the weights by the confidence distribution of the scatter, the means of β, ``value``,
+    and of c, ``slope``, and the standard deviation of β, ``spread``, have the shape (ratio, size,
+    exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
+    ``is_known`` says whether the errors of readings are given.
     """
 
     is_known: bool
     basis: Array
     variances: Array
     sizes: Array
+    rounded: float
     posterior: Array
     confidence: Array
     value: Array
@@ -251,12 +270,12 @@ def _confidence(posterior: Array, squares: Array, scatter: Array, n: int) -> Arr
 
 
 def curves_of(
-    impacts: Impacts, known: float | Array | None, at: float, frame: float = 0.0
+    impacts: Impacts, known: float | Array | None, at: float, rounding: float = 0.0
 ) -> Curves:
     """Return the smooth curves about a speed in m/s.
 
     ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
-    Then times are multiples of ``frame`` in s, if it is not 0.
+    Then readings are multiples of ``rounding``, if it is not 0.
     """
     n = len(impacts.log_r)
     errors = impacts.readings * (impacts.usual if known is None else known)
@@ -273,8 +292,10 @@ def curves_of(
     variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
     if known is None:
         unrounded = np.exp(np.arange(-7.0, 7.0, step))
-        sizes = error * np.hypot(unrounded, frame / math.sqrt(12) / impacts.usual)
+        rounded = rounding / math.sqrt(12) / impacts.usual
+        sizes = error * np.hypot(unrounded, rounded)
     else:
+        rounded = 0.0
         unrounded = np.ones(1)
         sizes = np.array([error])
     scatter = np.outer(ratio, sizes)
@@ -310,6 +331,7 @@ def curves_of(
         basis=basis,
         variances=variances,
         sizes=sizes,
+        rounded=error * rounded,
         posterior=posterior,
         confidence=_confidence(posterior, squares, scatter, n),
         value=value,
@@ -556,6 +578,9 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
         best = np.linalg.lstsq(white, y / deviation, rcond=1e-9)[0]
         rest.append(np.sum((y / deviation - white @ best) ** 2))
     parabola = np.array(rest) + _ROUNDING
+    # Rounded readings may be alike by chance, and leave a parabola less than their own errors.
+    errors = curves.rounded**2 / (1 + curves.variances[:-1, 0] - curves.variances[0, 0])
+    parabola[:-1] = np.maximum(parabola[:-1], max(len(x) - 3, 0) * errors)
     found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)
     return sorted(
@@ -770,7 +795,8 @@ def fit(
         said = recording.head.get(name) if value is None else value
         return None if said is None else positive(name, said, unit)
 
-    known = given("resolution", resolution, _KINDS[recording.kind][0]) or recording.uncertainty
+    unit = _KINDS[recording.kind][0]
+    known = given("resolution", resolution, unit) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
@@ -780,7 +806,7 @@ def fit(
         # A contact that is not known is taken to have no duration.
         durations = np.zeros(1)
     lasts = float(np.mean(durations))
-    frame = frame_of(recording) if known is None else 0.0
+    rounding = rounding_of(recording) if known is None else 0.0
     is_heard = recording.kind == "flights" and not recording.is_free
     if is_heard:
         recording = without_contacts(recording, durations)
@@ -788,7 +814,7 @@ def fit(
     v = impacts.speed
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    curves = curves_of(impacts, known, at, frame)
+    curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
     if scattering.low > 0:
@@ -802,7 +828,7 @@ def fit(
     laws = tuple(judge(impacts, curves, at)) if len(v) > 2 else ()
     flies = recording.kind in _WITH_DRAG
     notes = {
-        f"times are multiples of {show(frame, 's', 4)}: they are taken as rounded": frame > 0,
+        f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded": rounding > 0,
         f"the drag of the air is removed, {drag:.2g} of the speed per metre": flies and drag > 0,
         "the drag of the air is not removed: give the mass and the diameter": flies and not drag,
         f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard

@@ -13,9 +13,9 @@ from bouncing_ball_contacts.fits import (
     ContactLaw,
     curves_of,
     estimates,
-    frame_of,
     impacts_of,
     judge,
+    rounding_of,
     without_scatter,
 )
 from bouncing_ball_contacts.recordings import Recording
@@ -127,19 +127,19 @@ HEARD = np.array([0.0, 0.731, 1.307, 1.761, 2.118])
 )
 def test_times_of_a_film_are_multiples_of_a_frame(times, frame):
     found = fit({"time (s)": times.tolist()})
-    assert frame_of(found.recording) == pytest.approx(frame)
+    assert rounding_of(found.recording) == pytest.approx(frame)
     assert any("multiples" in note for note in found.notes) == (frame > 0)
     # A resolution that is given takes the place of the frame.
     stated = fit({"time (s)": times.tolist()}, resolution="1 ms")
     assert not any("multiples" in note for note in stated.notes)
     # Intervals may have been rounded one by one.
-    assert frame_of(fit({"interval (s)": np.diff(times).tolist()}).recording) == 0
+    assert rounding_of(fit({"interval (s)": np.diff(times).tolist()}).recording) == 0
 
 
 def test_a_frame_rate_in_a_file_is_that_of_its_frames(tmp_path):
     path = tmp_path / "film.csv"
     path.write_text("# fps: 48\nframe\n0\n35\n63\n85\n")
-    assert frame_of(fit(path).recording) == pytest.approx(1 / 48)
+    assert rounding_of(fit(path).recording) == pytest.approx(1 / 48)
 
 
 def test_heights_that_are_read_to_centimetres_reject_no_law_that_is_true():

@@ -2,14 +2,11 @@
 
 from pathlib import Path
 
-import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402  (after the choice of a backend without a window)
-import numpy as np  # noqa: E402
-
-from bouncing_ball_contacts.fits import LAWS, fit  # noqa: E402
-from bouncing_ball_contacts.tables import experiments  # noqa: E402
+from bouncing_ball_contacts.fits import LAWS, fit
+from bouncing_ball_contacts.tables import experiments
 
 DATA = Path(__file__).resolve().parents[1] / "data"
 
@@ -28,7 +25,8 @@ def main():
 
 
 def draw(found):
-    figure, slots = plt.subplots(4, 3, figsize=(11, 12))
+    figure = Figure(figsize=(11, 12))
+    slots = figure.subplots(4, 3)
     for axes, (name, one) in zip(slots.flat, found.items(), strict=False):
         v = one.impacts.speed
         axes.plot(v, one.impacts.restitution, "ko", markersize=3)

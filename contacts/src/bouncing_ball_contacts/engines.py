@@ -223,8 +223,12 @@ class PhysX(Engine):
         mode = max(one["restitutionCombineMode"], other["restitutionCombineMode"], key=MODES.index)
 
         def of_mode(a: float, b: float) -> float:
-            by_mode = {"average": (a + b) / 2, "min": min(a, b), "multiply": a * b}
-            return by_mode.get(mode, max(a, b))
+            return {
+                "average": (a + b) / 2,
+                "min": min(a, b),
+                "multiply": a * b,
+                "max": max(a, b),
+            }[mode]
 
         found = super().combined(one, other)
         found["restitution"] = of_mode(one["restitution"], other["restitution"])

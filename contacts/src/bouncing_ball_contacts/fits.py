@@ -27,9 +27,9 @@ of these s has its confidence distribution: the sum of squares Q(s) of the devia
 variances, has the χ² distribution with n - 2 degrees of freedom, and the probability of a scatter
 below s is that of a sum above Q(s). So s = 0 has a probability of its own. (H. K. Iyer,
 C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004) 1060, have such intervals for laboratories that
-measure the same.) Above its middle the prior of scatter is a factor of these. Two impacts leave no
-deviation, and have the posterior for all s > 0. The interval without scatter is left out if both
-are alike or if a test of s = 0 at 5 % rejects it (`without_scatter`).
+measure the same.) Above its middle the prior of scatter multiplies this distribution. Two impacts
+leave no deviation, and have the posterior for all s > 0. The interval without scatter is left out
+if both are alike or if a test of s = 0 at 5 % rejects it (`without_scatter`).
 
 A law is judged by how much worse it fits than a parabola in ln v, for each ρ: with m impacts more
 than the three that a parabola needs, and sums of squares Q of the law and P of the parabola, its
@@ -180,7 +180,7 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
     return replace(recording, chains=chains)
 
 
-def frame_of(recording: Recording) -> float:
+def _frame_of(recording: Recording) -> float:
     """Return the longest frame in s of which all times are multiples, or 0.
 
     It is that of the frame rate, if the file has one. One number in ten is a multiple by chance, to
@@ -205,7 +205,7 @@ def rounding_of(recording: Recording) -> float:
     Three readings are needed.
     """
     if recording.kind == "flights":
-        return frame_of(recording)
+        return _frame_of(recording)
     readings = np.concatenate(recording.chains)
     if recording.kind in ("drops", "coefficients"):
         readings = readings[:, 1]

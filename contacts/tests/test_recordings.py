@@ -687,10 +687,10 @@ def test_of_components_that_with_the_impacts_is_read():
         assert found.restitution == pytest.approx(0.8225, abs=1e-3)
         others = ", ".join(f"'Acceleration {axis}'" for axis in "xyz" if axis != "xyz"[i])
         assert f"columns not used: {others}" in found.notes
-        # As phyphox exports them.
-        absolute = {"Absolute acceleration (m/s^2)": np.abs(pushes)}
-        again = fit(columns | {name: pushes} | absolute)
-        assert again.restitution == pytest.approx(found.restitution)
+    # As phyphox exports them.
+    absolute = {"Absolute acceleration (m/s^2)": np.abs(pushes)}
+    again = fit(columns | {name: pushes} | absolute)
+    assert again.restitution == pytest.approx(found.restitution)
 
 
 def test_of_a_log_of_an_engine_the_vertical_position_is_read():

@@ -11,6 +11,8 @@ import pytest
 from bouncing_ball_contacts import cli
 
 BALL = 'design --mass "50 g" --restitution 0.8'
+# A contact that is given is not searched for.
+SHORT = f'{BALL} --contact-time "2 ms"'
 MUJOCO = "diagnose --engine mujoco --mass 1 --time-step 2ms"
 PYBULLET = "diagnose --engine pybullet --mass 1 --time-step 1/240"
 LAMMPS = "diagnose --engine lammps --mass 1 --time-step 2ms"
@@ -26,7 +28,7 @@ def test_the_first_sentence_that_one_types(typed):
 
 
 def test_everything_in_json(typed):
-    found = json.loads(typed(f"{BALL} --engine pybullet --time-step 1/240 --json")[1])
+    found = json.loads(typed(f"{SHORT} --engine pybullet --time-step 1/240 --json")[1])
     assert found["rows"]["impulse"]["stiffness"] is None
     assert found["parameters"]["contactStiffness"] > 0 and "changeDynamics" in found["snippet"]
     found = json.loads(typed(f"{MUJOCO} --restitution 0.5 --json")[1])
@@ -130,8 +132,7 @@ SCRIPTS = {
 )
 def test_scripts_are_python(typed, tmp_path, bodies, engine):
     script = tmp_path / "drop.py"
-    line = f'design --mass "50 g" --restitution 0.8 --radius "30 mm" --engine {engine} {bodies}'
-    status, _, _ = typed(f"{line} --script {script}")
+    status, _, _ = typed(f"{SHORT} --engine {engine} {bodies} --script {script}")
     assert status == 0
     text = script.read_text()
     compile(text, "drop.py", "exec")
@@ -170,33 +171,33 @@ MISTAKES = {
     f'{BALL} --other-mass "1 kg"': "approach each other: --speed '2 m/s'",
     f"{BALL} --tolerance 0": "not between",
     f"{BALL} --tolerance 5": "not between",
-    f"{BALL} --pick nothing": "is not one that is written here",
-    f"{BALL} --pick impulse --engine pybullet": "is not one that is written here",
+    f"{SHORT} --pick nothing": "is not one that is written here",
+    f"{SHORT} --pick impulse --engine pybullet": "is not one that is written here",
     f'{BALL} --radius "2 mm" --penetration "5 mm"': "is deeper than the radius of 2 mm",
-    f"{BALL} --time-step 1ms --pick impulse --engine drake": "is not one that is written here",
-    "design --mass 1 --restitution 0.5 --radius 0.05 --time-step 1ms --engine pybullet --one-body "
-    "--pick impulse": "is not one that is written here",
+    f"{SHORT} --time-step 10ms --pick impulse --engine drake": "is not one that is written here",
+    "design --mass 1 --restitution 0.5 --contact-time 20ms --time-step 1ms --engine pybullet "
+    "--one-body --pick impulse": "is not one that is written here",
     f"{BALL} --gravity 0": "give the speed, --speed '2 m/s'",
     f"{BALL} --gravity -1": "not positive",
-    f"{BALL} --gravity 0 --speed 2 --engine mujoco --script drop.py": "it needs gravity",
+    f"{SHORT} --gravity 0 --speed 2 --engine mujoco --script drop.py": "it needs gravity",
     f"{BALL} --time-step 240": "or '240 Hz' for a rate",
     "diagnose --engine mujoco --mass 1 --time-step 2s": "time step = 2 s is longer than 100 ms",
     f"{BALL} --time-step 0Hz": "not positive",
     f"{BALL} --friction slippery": "does not begin",
     f"{BALL} --friction -0.5": "not between 0 and inf",
-    f"{BALL} --one-body --engine mujoco": "solimp is averaged",
-    f"{BALL} --one-body --engine lammps": "no contact that one body alone sets",
+    f"{SHORT} --one-body --engine mujoco": "solimp is averaged",
+    f"{SHORT} --one-body --engine lammps": "no contact that one body alone sets",
     f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
-    f"{BALL} --script drop.py --engine physx": "no script is written for physx",
-    f"{BALL} --script /no/such/folder/drop.py --engine mujoco": "cannot be written",
-    f"{BALL} --script mine.csv --engine mujoco": "does not end in .py",
-    f"{BALL} --script {__file__} --engine mujoco": "exists, and is not overwritten",
-    f"{BALL} --script mujoco.py --engine mujoco": "hides the module of the engine",
-    f"{BALL} --script drake.py --engine drake-hunt-crossley": "hides the module of the engine",
-    f"{BALL} --script warp.py --engine newton": "hides the module of the engine",
-    f"{BALL} --script drop.py --engine mujoco --points 3": "a box of 4 points",
-    f"{BALL} --script drop.py --engine lammps --points 4": "a box of 4 points",
-    f"{BALL} --speed 2 --other-mass 1 --script drop.py --engine newton": "two free balls",
+    f"{SHORT} --script drop.py --engine physx": "no script is written for physx",
+    f"{SHORT} --script /no/such/folder/drop.py --engine mujoco": "cannot be written",
+    f"{SHORT} --script mine.csv --engine mujoco": "does not end in .py",
+    f"{SHORT} --script {__file__} --engine mujoco": "exists, and is not overwritten",
+    f"{SHORT} --script mujoco.py --engine mujoco": "hides the module of the engine",
+    f"{SHORT} --script drake.py --engine drake-hunt-crossley": "hides the module of the engine",
+    f"{SHORT} --script warp.py --engine newton": "hides the module of the engine",
+    f"{SHORT} --script drop.py --engine mujoco --points 3": "a box of 4 points",
+    f"{SHORT} --script drop.py --engine lammps --points 4": "a box of 4 points",
+    f"{SHORT} --speed 2 --other-mass 1 --script drop.py --engine newton": "two free balls",
     f"{BALL} --damping-ratio 2": "No such option",
     f"{BALL} --restitutionn 2": "No such option",
     f"{BALL} extra": "unexpected extra argument",

@@ -9,42 +9,35 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Problem
+from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Contact, Problem
 from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import exact, offsets
 
 STEPPED = [name for name, row in ENGINES.items() if row.fixed_steps]
 BALL = dict(mass="50 g", restitution=0.8, drop_height="1 m", radius="30 mm")
-
-
-@pytest.fixture(scope="module")
-def of_ball():
-    """Return the designs of a ball without a step, by engine."""
-    return {name: design(Bounce(**BALL), name) for name in ENGINES}
+# A contact that is given is not searched for.
+SHORT = Bounce(**BALL, contact_time="2 ms")
 
 
 @pytest.mark.parametrize("name", STEPPED)
-def test_every_engine_keeps_a_permitted_penetration(name):
-    found = design(Bounce(**BALL, penetration="1 mm"), name, "2 ms")
-    assert found.chosen == WANTED
-    outcome = found.row.outcome
-    assert 0.98e-3 <= outcome.depth[1] <= 1e-3
+def test_every_engine_keeps_the_permitted_penetration(name, of_ball):
+    """Without one that is given it is a tenth of the radius."""
+    outcome = of_ball(name).rows[WANTED].outcome
+    assert 0.98 * 3e-3 <= outcome.depth[1] <= 3e-3
     assert outcome.deviation(0.8) <= 0.02
-    assert found.row.step < 2e-3
 
 
-@pytest.mark.parametrize("name", ["mujoco", "drake", "lammps-hertz", "newton"])
-@pytest.mark.parametrize("r", [0.3, 0.9])
-def test_a_penetration_is_kept_and_used_at_a_short_step(name, r):
-    wanted = Bounce(mass="50 g", restitution=r, radius="30 mm", penetration="1 mm")
-    found = design(wanted, name, "5 us")
+@pytest.mark.parametrize("name", ["lammps-hertz", "newton"])
+def test_a_penetration_is_kept_and_used_at_a_short_step(name):
+    wanted = Bounce(mass="50 g", restitution=0.3, radius="30 mm", penetration="1 mm")
+    found = design(wanted, name, "10 us")
     assert found.chosen == YOURS
     assert 0.98e-3 <= found.row.outcome.depth[1] <= 1e-3
 
 
 @pytest.mark.parametrize("name", STEPPED)
-def test_every_engine_has_a_contact_at_a_given_step(name):
-    found = design(Bounce(**BALL), name, "0.5 ms")
+def test_every_engine_has_a_contact_at_a_given_step(name, of_ball):
+    found = of_ball(name)
     assert found.chosen == YOURS
     assert found.row.step == 0.5e-3
     assert found.row.outcome.deviation(0.8) <= 0.0205
@@ -52,7 +45,7 @@ def test_every_engine_has_a_contact_at_a_given_step(name):
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if name not in STEPPED])
 def test_a_solver_with_error_control_has_no_step(name, of_ball):
-    found = of_ball[name]
+    found = of_ball(name)
     assert found.row.outcome.deviation(0.8) < 0.005
     with pytest.raises(Refused, match="chooses its steps itself"):
         design(Bounce(**BALL), name, "1 ms")
@@ -69,7 +62,7 @@ def test_a_solver_with_error_control_has_no_step(name, of_ball):
 )
 def test_every_restitution_is_reached(name, r):
     """e⁻² = 0.135 is where a damping ratio of 1 is passed."""
-    found = design(Bounce(mass="1 kg", restitution=r, radius="5 cm"), name)
+    found = design(Bounce(mass="1 kg", restitution=r, contact_time="4 ms"), name)
     mean = found.row.outcome.restitution[1]
     # The step of this row is one with half of the tolerance.
     assert mean == pytest.approx(r, abs=0.01)
@@ -101,11 +94,10 @@ def test_a_stiffer_contact_can_be_asked_for():
     assert len({round(k) for k in contacts}) == 4
 
 
-@pytest.mark.parametrize("step", ["176 us", "200 us", "250 us"])
-def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written(step):
+def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written():
     """It was called too long, because r was not within half of the tolerance."""
     wanted = dict(mass="200 g", restitution=0.7, drop_height="50 cm", radius="4 cm")
-    found = design(Bounce(**wanted, penetration="6 mm"), "drake", step)
+    found = design(Bounce(**wanted, penetration="6 mm"), "drake", "176 us")
     shortest = found.rows[WANTED]
     assert shortest.step < found.row.step and found.chosen == YOURS
     # As compliant as the penetration permits.
@@ -130,15 +122,15 @@ def test_a_spring_that_gains_energy_is_said_so():
 
 
 def test_the_impulse_is_shown_where_an_engine_has_it_or_no_spring_works():
-    assert IMPULSE in design(Bounce(**BALL), "physx", "1 ms").rows
-    assert IMPULSE not in design(Bounce(**BALL), "lammps", "1 ms").rows
-    assert IMPULSE in design(Bounce(**BALL), "lammps", "10 ms").rows
+    assert IMPULSE in design(SHORT, "physx", "1 ms").rows
+    assert IMPULSE not in design(SHORT, "lammps", "0.2 ms").rows
+    assert IMPULSE in design(SHORT, "lammps", "10 ms").rows
 
 
 @pytest.mark.parametrize("name", ["pybullet", "physx", "ode", "gazebo"])
 def test_the_impulse_is_the_one_of_the_engine(name):
     """PhysX and Gazebo had the number of PyBullet, whose product over both bodies counts."""
-    found = design(Bounce(mass=1, restitution=0.75, radius=0.05), name, "1/60")
+    found = design(Bounce(mass=1, restitution=0.75, contact_time="4 ms"), name, "1/60")
     row = found.rows[IMPULSE]
     assert row.outcome.restitution[1] == pytest.approx(0.75, abs=1e-3)
     again = diagnose(found.bounce, name, row.parameters, row.step)
@@ -166,10 +158,8 @@ def test_the_note_speaks_of_the_contact_that_is_written():
     assert row.outcome.depth[1] > found.bounce.size
 
 
-def test_without_a_penetration_it_is_a_tenth_of_the_radius():
-    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco")
-    assert 0.098 * found.bounce.size <= found.row.outcome.depth[1] <= 0.1 * found.bounce.size
-    assert "a tenth of the radius" in str(found)
+def test_the_permitted_penetration_is_said_to_be_assumed(of_ball):
+    assert "a tenth of the radius" in str(of_ball("mujoco"))
 
 
 def test_a_body_of_several_points_is_a_cube():
@@ -181,7 +171,7 @@ def test_a_body_of_several_points_is_a_cube():
 
 def test_implicit_steps_that_damp_too_much_are_said_so():
     """Drake has r = 0.971 at most with k = 866 kN/m at 20 µs, and said nothing."""
-    wanted = Bounce(mass="1 kg", restitution=0.99, radius="5 cm")
+    wanted = Bounce(mass="1 kg", restitution=0.99, stiffness="866 kN/m")
     found = design(wanted, "drake", "20 us")
     most = found.row.outcome.restitution[1]
     # Drake refuses the whole number 0.
@@ -202,10 +192,9 @@ def test_a_step_at_which_no_spring_works_is_said_so():
 
 
 @pytest.mark.parametrize("name", ["lammps", "lammps-hertz", "liggghts"])
-@pytest.mark.parametrize("step", ["1 ms", "4 ms"])
-def test_grains_are_not_lost_in_a_wall(name, step):
+def test_grains_are_not_lost_in_a_wall(name):
     """A grain whose centre passes the wall was lost: "Lost atoms"."""
-    found = design(Bounce(mass="50 g", restitution=0.8, radius="30 mm"), name, step)
+    found = design(Bounce(mass="50 g", restitution=0.8, radius="30 mm"), name, "4 ms")
     for row in found.rows.values():
         assert math.isnan(row.stiffness) or row.outcome.depth[1] < 0.03
 
@@ -228,17 +217,17 @@ def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
 
 
 @pytest.mark.parametrize("name", STEPPED)
-def test_points_share_the_force(name, of_ball):
-    one = of_ball[name]
-    four = design(Bounce(**BALL, points=4), name)
-    assert four.row.outcome.restitution == pytest.approx(one.row.outcome.restitution, abs=1e-3)
+def test_points_share_the_force(name):
+    contact = Contact(depth=2e-3, ratio=0.1, step=1e-5)
+    one, four = (Problem(replace(SHORT, points=n), ENGINES[name]).row(contact) for n in (1, 4))
+    assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
     if ENGINES[name].points_share and name not in ("ode", "genesis", "mujoco"):
         first = ENGINES[name].names[0]
         assert four.parameters[first] == pytest.approx(one.parameters[first] / 4, rel=1e-3)
 
 
 def test_drake_has_one_contact_for_a_pair_of_shapes():
-    one, four = (design(Bounce(**BALL, points=n), "drake", "1 ms") for n in (1, 4))
+    one, four = (design(replace(SHORT, points=n), "drake", "0.2 ms") for n in (1, 4))
     assert one.parameters == four.parameters
 
 
@@ -256,8 +245,9 @@ def test_two_free_bodies_act_by_their_reduced_mass(name):
 
 
 def test_one_body_may_have_the_spring_alone():
-    both = design(Bounce(mass=1, restitution=0.5, radius=0.05), "pybullet", "1 ms")
-    one = design(Bounce(mass=1, restitution=0.5, radius=0.05), "pybullet", "1 ms", one_body=True)
+    wanted = Bounce(mass=1, restitution=0.5, contact_time="20 ms")
+    both = design(wanted, "pybullet", "1 ms")
+    one = design(wanted, "pybullet", "1 ms", one_body=True)
     assert one.parameters["contactStiffness"] == pytest.approx(
         both.parameters["contactStiffness"] / 2, rel=1e-5
     )
@@ -266,24 +256,25 @@ def test_one_body_may_have_the_spring_alone():
     assert one.parameters["contactDamping"] == pytest.approx(expected, rel=1e-3)
     assert one.row.outcome.restitution == pytest.approx(both.row.outcome.restitution, abs=1e-3)
     with pytest.raises(Refused, match="solimp is averaged"):
-        design(Bounce(mass=1, restitution=0.5), "mujoco", one_body=True)
+        design(wanted, "mujoco", one_body=True)
     with pytest.raises(Refused, match="no contact that one body alone sets"):
-        design(Bounce(mass=1, restitution=0.5), "lammps", one_body=True)
+        design(wanted, "lammps", one_body=True)
     # Genesis has no default of a time constant, and this was a KeyError.
     with pytest.raises(Refused, match="no contact that one body alone sets"):
-        design(Bounce(mass=1, restitution=0.5), "genesis", one_body=True)
+        design(wanted, "genesis", one_body=True)
 
 
 @pytest.mark.parametrize("engine", ["pybullet", "newton", "gazebo", "physx"])
 def test_an_answer_for_one_body_does_not_speak_of_both(engine):
     """The snippet was of one of both bodies, and below it: give both bodies these numbers."""
-    text = str(design(Bounce(mass=1, restitution=0.1, radius=0.05), engine, one_body=True))
+    wanted = Bounce(mass=1, restitution=0.5, contact_time="20 ms")
+    text = str(design(wanted, engine, one_body=True))
     assert "Of one of both bodies" in text and "Give both" not in text
 
 
 def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
     """Chrono's gn counts the mass of a fixed floor, and two balls were told of boxes."""
-    ball = dict(mass=1, restitution=0.8, radius=0.05)
+    ball = dict(mass=1, restitution=0.8, contact_time="4 ms")
     for name in ("pybullet", "drake", "drake-hunt-crossley"):
         text = str(design(Bounce(**ball), name))
         assert "box" not in text and " box " in str(design(Bounce(**ball, points=4), name))
@@ -300,12 +291,13 @@ def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
 def test_friction_is_named_where_it_changes_the_bounce(of_ball):
     found = design(Bounce(**BALL, friction=0.5), "mujoco")
     assert any("0.697 and 0.630 in place of 0.744" in note for note in found.notes)
-    assert 'cone="elliptic"' in str(of_ball["mujoco"]) and not of_ball["mujoco"].notes
+    plain = of_ball("mujoco")
+    assert 'cone="elliptic"' in str(plain) and not any("0.697" in note for note in plain.notes)
 
 
 def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
     """A friction of 0.5 was given, and CoulombFriction(0, 0) was written without a word."""
-    wanted = Bounce(**BALL, friction=0.5)
+    wanted = replace(SHORT, friction=0.5)
     for name, text in (
         ("drake", "CoulombFriction(0.5, 0.5)"),
         ("drake-hunt-crossley", "CoulombFriction(0.5, 0.5)"),
@@ -316,21 +308,21 @@ def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
         assert text in found.snippet and "not in what" not in repr(found)
     for name in ("mujoco", "lammps", "newton-mujoco"):
         assert "of 0.5 is not in what is pasted" in repr(design(wanted, name))
-        assert "not in what" not in repr(of_ball[name])
+        assert "not in what" not in repr(of_ball(name))
 
 
 @pytest.mark.parametrize("more", [{"stiffness": "10 N/m"}, {"contact_time": "1 s"}])
-def test_a_contact_deeper_than_the_radius_is_said_so(more):
+def test_a_contact_deeper_than_the_radius_is_said_so(more, of_ball):
     """2.49 m of a ball of 31 mm went without a warning."""
     found = design(Bounce(mass=1, restitution=0.6, **more), "mujoco", "10 ms")
     assert found.row.outcome.depth[1] > found.bounce.size
     assert "it sinks deeper than its radius of 31.2 mm" in repr(found)
-    assert "deeper than" not in repr(design(Bounce(**BALL), "mujoco", "1 ms"))
+    assert "deeper than" not in repr(of_ball("simscape"))
 
 
 def test_a_step_may_be_given_as_a_rate():
-    rate, step = (design(Bounce(**BALL), "drake", each) for each in ("240 Hz", "1/240"))
-    assert rate.row == step.row and "time step 4.167 ms" in str(rate)
+    rate, step = (design(SHORT, "drake", each) for each in ("240 Hz", "1/240"))
+    assert rate.rows[YOURS] == step.rows[YOURS] and "time step 4.167 ms" in str(rate)
 
 
 def test_an_impact_may_be_without_gravity():
@@ -346,7 +338,7 @@ def test_an_impact_may_be_without_gravity():
 
 def test_lammps_takes_no_restitution_of_zero():
     """It was written for r = 0, and LAMMPS, which takes its logarithm, gave no numbers."""
-    found = design(Bounce(mass=1, restitution=0, radius=0.05), "lammps-hertz", "0.1 ms")
+    found = design(Bounce(mass=1, restitution=0, contact_time="4 ms"), "lammps-hertz", "0.1 ms")
     assert found.parameters["e"] > 0 and found.row.outcome.restitution[2] < 0.02
 
 
@@ -364,33 +356,31 @@ def test_liggghts_takes_soft_and_hard_grains_and_no_restitution_below_its_least(
 
 def test_a_row_that_was_never_run_says_so(of_ball):
     for name, row in ENGINES.items():
-        text = str(of_ball[name])
+        text = str(of_ball(name))
         assert ("never run in its engine" in text) == (not row.ran)
 
 
 def test_no_depth_is_negative_and_no_number_has_a_power_of_ten():
-    for name in ("mujoco", "drake", "lammps"):
-        for height in ("1 mm", "1 km"):
-            wanted = Bounce(mass="1 kg", restitution=0.4, drop_height=height, radius="10 cm")
-            found = design(wanted, name)
-            table = str(found).split("\n\n")[0]
-            assert "−" not in table and "-0" not in table
-            assert not re.search(r"\de[+-]?\d", table)
+    for height in ("1 mm", "1 km"):
+        wanted = Bounce(mass="1 kg", restitution=0.4, drop_height=height, radius="10 cm")
+        table = str(design(wanted, "mujoco")).split("\n\n")[0]
+        assert not re.search(r"[-−]\d", table)
+        assert not re.search(r"\de[+-]?\d", table)
 
 
 def test_the_answer_begins_with_the_table_then_the_snippet_then_the_assumptions():
-    text = str(design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms"))
+    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
+    text = str(found)
     places = [text.index(part) for part in ("what you want", "<option", "Given:", "Assumed:")]
     assert places == sorted(places)
-    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
     assert text.startswith(repr(found)) and "<option" not in repr(found)
-    html = design(Bounce(mass="50 g", restitution=0.8), "mujoco")._repr_html_()
+    html = found._repr_html_()
     assert html.startswith("<pre>") and "&lt;option" in html
 
 
 @pytest.mark.parametrize("name", list(ENGINES))
 def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
-    found = of_ball[name]
+    found = of_ball(name)
     assert "@" not in found.snippet
     for value in found.parameters.values():
         for number in np.atleast_1d(value):
@@ -399,7 +389,7 @@ def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
 
 def test_a_random_ball_bounces_as_wanted():
     rng = np.random.default_rng(7)
-    for _ in range(12):
+    for _ in range(6):
         name = str(rng.choice(STEPPED))
         r = float(rng.uniform(0.1, 0.95))
         mass = float(10 ** rng.uniform(-5, 2))
@@ -437,9 +427,9 @@ def largest_deviation(found, change):
 
 
 def test_a_design_keeps_its_tolerance_if_mass_stiffness_and_step_are_off_by_half_a_percent():
-    """Of the first 200 requests 88 did not, before a design was for its neighbours as well."""
-    rng = np.random.default_rng(11)
-    for _ in range(8):
+    """Two of these did not, before a design was for its neighbours as well."""
+    rng = np.random.default_rng(4)
+    for _ in range(4):
         wanted, name, step = random_request(rng)
         found = design(wanted, name, step)
         allowed = max(0.02, found.row.outcome.deviation(wanted.restitution))
@@ -468,11 +458,10 @@ def test_a_fine_step_in_a_compliant_contact_keeps_its_damping():
     assert any("3000 of these steps" in note for note in found.notes)
 
 
-@pytest.mark.parametrize("name", ["generic", "pybullet", "lammps-hertz"])
-def test_a_body_that_creeps_is_deepest_at_rest(name):
+def test_a_body_that_creeps_is_deepest_at_rest():
     """It sank 13.54 mm, lay 14.54 mm deep, and 13.63 mm were permitted."""
     wanted = Bounce(mass=83.225, restitution=0, gravity=1.62, drop_height=2.8669)
-    found = design(wanted, name, "0.3 ms")
+    found = design(wanted, "generic", "0.3 ms")
     assert found.chosen == YOURS
     for row in found.rows.values():
         assert row.outcome.rest <= row.outcome.depth[1] <= wanted.limit
@@ -480,7 +469,7 @@ def test_a_body_that_creeps_is_deepest_at_rest(name):
 
 def test_a_design_for_one_body_has_no_impulse():
     """The number of the row was that of both, with which one body alone bounced half as high."""
-    wanted = Bounce(mass="1 kg", restitution=0.5, radius="5 cm")
+    wanted = Bounce(mass="1 kg", restitution=0.5, contact_time="20 ms")
     assert IMPULSE in design(wanted, "pybullet", "1 ms").rows
     assert IMPULSE not in design(wanted, "pybullet", "1 ms", one_body=True).rows
 
@@ -505,7 +494,7 @@ def test_an_engine_of_the_table_stands_for_its_name():
     assert design(wanted, ENGINES["generic"]).engine == "generic"
 
 
-@pytest.mark.parametrize("name", ["mujoco", "pybullet", "drake", "lammps", "newton"])
+@pytest.mark.parametrize("name", ["mujoco", "lammps"])
 def test_no_rebound_needs_no_short_step(name):
     """It was said that no spring works at 2 ms, and a step of 34 µs left r = 0.014 ± 0.016."""
     foot = Bounce(mass="40 kg", restitution=0, points=4, radius="3 cm", speed="1 m/s")
@@ -518,13 +507,11 @@ def test_no_rebound_needs_no_short_step(name):
     assert high.row.outcome.restitution[2] < 0.02
 
 
-@pytest.mark.parametrize("name", ["mujoco", "pybullet", "drake", "ode", "physx"])
-@pytest.mark.parametrize("masses", [("170 g", "170 g"), ("170 g", "20 g")])
-def test_two_free_bodies_do_not_pass_through_each_other(name, masses):
+@pytest.mark.parametrize(("name", "other"), [("pybullet", "170 g"), ("drake", "20 g")])
+def test_two_free_bodies_do_not_pass_through_each_other(name, other):
     """They were designed to sink 369 mm into each other, and parted on the wrong sides."""
-    mass, other = masses
     size = dict(radius="28.5 mm", speed="2 m/s")
-    pair = Bounce(mass=mass, other_mass=other, restitution=0.95, **size)
+    pair = Bounce(mass="170 g", other_mass=other, restitution=0.95, **size)
     found = design(pair, name, "1/120")
     both = 0.0285 * (1 + (float(other.split()[0]) / 170) ** (1 / 3))
     depths = [row.outcome.depth[1] for row in found.rows.values()]
@@ -552,7 +539,7 @@ def test_a_stiff_contact_of_newton_has_an_impedance_that_allows_it(mass):
 
 def test_one_compliant_body_of_physx_has_the_whole_contact():
     """The numbers were doubled: r was 0.505 to 0.511 in PhysX for 0.6."""
-    ball = Bounce(mass=26, restitution=0.6, drop_height=0.0961, density="rubber")
+    ball = Bounce(mass=26, restitution=0.6, drop_height=0.0961, contact_time="10 ms")
     alone = design(ball, "physx", 303e-6, one_body=True).row.parameters
     both = design(ball, "physx", 303e-6).row.parameters
     assert alone == pytest.approx(both)

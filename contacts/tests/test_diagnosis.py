@@ -1,6 +1,5 @@
 """What parameters do, why, and the least change."""
 
-import functools
 import math
 import re
 
@@ -10,11 +9,6 @@ from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM, UNDISTURBED
 
 KILO = dict(mass="1 kg", radius="10 cm")
-
-
-@functools.cache
-def designed(engine):
-    return design(Bounce(**KILO, restitution=0.7), engine)
 
 
 def asked(wanted, engine, parameters, step, **more):
@@ -41,18 +35,18 @@ def asked(wanted, engine, parameters, step, **more):
         "generic",
     ],
 )
-def test_a_design_is_diagnosed_as_it_was_designed(engine):
-    found = designed(engine)
-    again = asked(0.7, engine, found.parameters, found.row.step)
+def test_a_design_is_diagnosed_as_it_was_designed(engine, of_ball):
+    found = of_ball(engine)
+    again = diagnose(found.bounce, engine, found.parameters, found.row.step)
     assert again.outcome == found.row.outcome
     assert again.change is None
 
 
 @pytest.mark.parametrize("engine", ["simscape", "adams"])
-def test_a_solver_with_error_control_needs_no_step(engine):
-    found = designed(engine)
-    again = asked(0.7, engine, found.parameters, None)
-    assert again.outcome.restitution[1] == pytest.approx(0.7, abs=0.005)
+def test_a_solver_with_error_control_needs_no_step(engine, of_ball):
+    found = of_ball(engine)
+    again = diagnose(found.bounce, engine, found.parameters, None)
+    assert again.outcome.restitution[1] == pytest.approx(0.8, abs=0.005)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +120,7 @@ def test_the_spring_of_several_points_of_mujoco_is_the_one_that_acts(share):
 
 
 def test_the_defaults_of_mujoco_do_not_bounce():
-    found = asked(0.8, "mujoco", None, "2 ms")
+    found = asked(None, "mujoco", None, "2 ms")
     assert found.outcome.restitution[2] < 0.05
     assert found.damping_ratio == pytest.approx(1.0)
     assert any("without oscillation" in reason for reason in found.reasons)
@@ -189,11 +183,11 @@ def test_a_damper_that_is_far_too_strong_stops_the_body():
 
 def test_a_time_constant_is_raised_to_two_steps():
     """It was sent to check its units, where MuJoCo takes 0.004 s."""
-    found = asked(0.8, "mujoco", {"solref": "1e-7 1"}, "2 ms")
+    found = asked(None, "mujoco", {"solref": "1e-7 1"}, "2 ms")
     assert any("1e-07 s to 0.004 s" in reason for reason in found.reasons)
-    same = asked(0.8, "mujoco", {"solref": "0.004 1"}, "2 ms")
+    same = asked(None, "mujoco", {"solref": "0.004 1"}, "2 ms")
     assert found.outcome == same.outcome
-    off = asked(0.8, "mujoco", {"solref": "0.001 0.1", "refsafe": 0}, "2 ms")
+    off = asked(None, "mujoco", {"solref": "0.001 0.1", "refsafe": 0}, "2 ms")
     assert any("unstable" in reason for reason in off.reasons)
 
 
@@ -398,12 +392,12 @@ def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
         ("adams", ("Stiffness", "Damping", "Penetration Depth")),
     ],
 )
-def test_names_are_known_as_the_snippet_writes_them(engine, names):
-    found = designed(engine)
+def test_names_are_known_as_the_snippet_writes_them(engine, names, of_ball):
+    found = of_ball(engine)
     assert all(name in found.snippet for name in names)
     typed = dict(zip(names, found.parameters.values(), strict=True))
     step = None if engine in ("simscape", "adams") else found.row.step
-    assert asked(0.7, engine, typed, step).given == found.parameters
+    assert asked(None, engine, typed, step).given == found.parameters
 
 
 def test_damping_on_approach_bounces_where_it_was_said_not_to():

@@ -23,13 +23,14 @@ Few impacts do not tell errors of readings, which hardly change r in the middle,
 does. So there are two intervals of 95 %. If impacts do not scatter, it is that of the posterior of
 β for s = 0. If they do, a posterior would hold r too often where scatter is hidden below the
 errors, and too seldom where it is large. In its place, τ and q have their posterior, but for each
-of these s has its confidence distribution: the sum of squares Q(s) of the deviations, over their
-variances, has the χ² distribution with n - 2 degrees of freedom, and the probability of a scatter
-below s is that of a sum above Q(s). So s = 0 has a probability of its own. (H. K. Iyer,
-C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004) 1060, have such intervals for laboratories that
-measure the same.) Above its middle the prior of scatter multiplies this distribution. Two impacts
-leave no deviation, and have the posterior for all s > 0. The interval without scatter is left out
-if both are alike or if a test of s = 0 at 5 % rejects it (`without_scatter`).
+of these s has its confidence distribution: the squares of the deviations, over their variances and
+weighted by the share of scatter in these, have a sum whose distribution is known for each s, and
+the probability of a scatter below s is that of a larger sum than the one at s (`_below`). So s = 0
+has a probability of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004)
+1060, have such intervals for laboratories that measure the same.) Above its middle the prior of
+scatter multiplies this distribution. Two impacts leave no deviation, and have the posterior for all
+s > 0. The interval without scatter is left out if both are alike or if a test of s = 0 at 5 %
+rejects it (`without_scatter`).
 
 A law is judged by how much worse it fits than a parabola in ln v, for each ρ: with m impacts more
 than the three that a parabola needs, and sums of squares Q of the law and P of the parabola, its
@@ -49,8 +50,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy import integrate, interpolate, linalg, special
-from scipy.optimize import elementwise
+from scipy import integrate, interpolate, linalg, optimize, special
 
 from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
@@ -253,20 +253,43 @@ class Estimate:
     slope: float
 
 
-def _confidence(posterior: Array, squares: Array, scatter: Array, n: int) -> Array:
+def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
+    """Return the probability that the scatter is below each one: (ratio, size, exponent).
+
+    ``weights`` (ratio, n) are τ² over the variances, ``columns`` (exponent, n, 2) what a curve is
+    the sum of. The statistic is the derivative of the logarithm of the likelihood by s², Σ w u² of
+    the deviations u over their standard deviations. It has nearly a χ² distribution with its mean
+    and variance (F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110): u are normal numbers less
+    their projection Q Qᵀ on the columns.
+    """
+    deviation = np.sqrt(weights)[:, None, :, None]
+    q, r = np.linalg.qr(deviation * columns)
+    # Impacts of one speed tell nothing of a slope.
+    q *= (np.abs(r[..., 1:, 1]) > 1e-9 * np.abs(r[..., :1, 0]))[..., None] | [True, False]
+    u = deviation * y[:, None]
+    u = u - q @ (q.swapaxes(-1, -2) @ u)
+    # The weights of no scatter are those of the smallest one, against rounding errors.
+    w = np.concatenate([weights[1:2], weights[1:]])[:, None, :, None]
+    weighted = w * q
+    both = q.swapaxes(-1, -2) @ weighted
+    mean = np.sum(w, axis=(2, 3)) - np.trace(both, axis1=2, axis2=3)
+    variance = np.sum(w**2, axis=(2, 3)) - 2 * np.sum(weighted**2, axis=(2, 3))
+    variance += np.sum(both**2, axis=(2, 3))
+    # There are between 1 and n - 1 degrees of freedom.
+    degrees = 1 / np.clip(variance / mean**2, 1 / (len(y) - 1), 1.0)
+    statistic = degrees / mean * np.sum(w * u**2, axis=(2, 3))
+    return special.chdtrc(degrees[:, None], statistic[:, None] / sizes[:, None] ** 2)
+
+
+def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
     """Return the weights by the confidence distribution of the scatter."""
-    scattering = special.softmax(posterior[1:])
-    if n < 3:
-        return np.concatenate([np.zeros_like(posterior[:1]), scattering])
-    # Rounding errors of squares that vanish may be negative.
-    below = special.chdtrc(n - 2, np.maximum(squares, 0.0))
     # No scatter has a weight of its own, and each other one what is nearest to it.
     ends = (below[1:-1] + below[2:]) / 2
     ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
     weights = np.diff(ends, axis=0)
     above = np.maximum(np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER, 0.0)
     weights[1:] *= np.exp(-(above**2) / 2)[..., None]
-    return weights / weights.sum(axis=0) * scattering.sum(axis=0)
+    return weights / weights.sum(axis=0) * posterior.sum(axis=0)
 
 
 def curves_of(
@@ -326,6 +349,11 @@ def curves_of(
     shares = special.softmax(posterior)
     curve = np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
     deviations = np.exp(curve) - impacts.restitution
+    # Two impacts leave no deviation, and have the posterior of all s > 0.
+    confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
+    if n > 2:
+        columns = np.stack([np.broadcast_to(one, bend.shape), bend], axis=-1)
+        confidence = _confidence(confidence, _below(weights, columns, y, sizes), scatter)
     return Curves(
         is_known=known is not None,
         basis=basis,
@@ -333,7 +361,7 @@ def curves_of(
         sizes=sizes,
         rounded=error * rounded,
         posterior=posterior,
-        confidence=_confidence(posterior, squares, scatter, n),
+        confidence=confidence,
         value=value,
         slope=slope,
         spread=np.sqrt(1 / (ones[:, None] * precision) + both[:, None] ** 2 / of_bends),
@@ -345,20 +373,20 @@ def curves_of(
 def _estimate(curves: Curves, weights: Array) -> Estimate:
     """Return what a recording says; the weights begin with the first ratio."""
     n = len(weights)
-    weights = weights.ravel()
-    value = curves.value[:n].ravel()
-    spread = curves.spread[:n].ravel()
-    low, high = elementwise.find_root(
-        lambda x, level: special.ndtr((x[:, None] - value) / spread) @ weights - level,
-        (np.min(value - 9 * spread), np.max(value + 9 * spread)),
-        args=(np.array([0.025, 0.975]),),
-    ).x
-    return Estimate(
-        float(value @ weights),
-        float(low),
-        float(high),
-        float(curves.slope[:n].ravel() @ weights),
+    # What is left out changes probabilities by less than 1e-6.
+    matters = weights > 1e-6 / weights.size
+    weights = weights[matters]
+    value = curves.value[:n][matters]
+    spread = curves.spread[:n][matters]
+    ends = np.min(value - 9 * spread), np.max(value + 9 * spread)
+    low, high = (
+        optimize.brentq(
+            lambda x, p=level: special.ndtr((x - value) / spread) @ weights - p, *ends, xtol=1e-9
+        )
+        for level in (0.025, 0.975)
     )
+    slope = np.sum(curves.slope[:n][matters] * weights)
+    return Estimate(float(value @ weights), low, high, float(slope))
 
 
 def without_scatter(impacts: Impacts, curves: Curves) -> float:

@@ -294,7 +294,7 @@ def table_of(name: str, text: str, leave_out: Sequence[int]) -> Table:
         raise Refused(f"{name} is empty")
     texts = list(kept.values())
     cells = _split(name, texts)
-    has_numbers = [not np.isnan([*map(number_in, row)]).all() for row in cells]
+    has_numbers = [not all(math.isnan(number_in(cell)) for cell in row) for row in cells]
     # Lines such as "Mass,46,g" may stand above the headings.
     worded = itertools.takewhile(lambda row: np.isnan(number_in("".join(row[:1]))), cells)
     headed = (i for i, row in enumerate(worded) if not has_numbers[i] and _are_headings(row))

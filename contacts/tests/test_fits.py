@@ -148,7 +148,7 @@ def test_a_frame_rate_in_a_file_is_that_of_its_frames(tmp_path):
 
 def touches(rng):
     """Return six touches of a ball, heard without errors, the last flights of some 0.1 s."""
-    r = rng.uniform(0.65, 0.85)
+    r = rng.uniform(0.75, 0.85)
     flights = rng.uniform(0.6, 0.9) * np.cumprod(np.exp(0.008 * rng.normal(size=6)) * r)
     return rng.uniform(0, 2) + np.insert(np.cumsum(flights), 0, 0.0)
 

@@ -74,10 +74,9 @@ _GROWTH = 1.02
 _QUIET = 0.03
 # Flights of a track have at least so many positions, without those beside an impact.
 _FEWEST = 4
-# Seconds of which times may be multiples: frames of cameras, also of those whose rate is 29.97 in
-# place of 30, and decimals.
-_RATES = np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240])
-_FRAMES = 1 / np.concatenate([_RATES, _RATES / 1.001])
+# Seconds of which times may be multiples, the longest first: frames of cameras, also of those whose
+# rate is 29.97 in place of 30, and decimals.
+_FRAMES = np.outer(1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240]), [1, 1.001]).ravel()
 # Times are taken as those of frames if so few others are multiples by chance.
 _CHANCE = 1e-3
 
@@ -138,7 +137,7 @@ def _frame_of(recording: Recording) -> float:
         are_multiples &= spread < within + 1e-9
         chance *= np.where(are_written, 1, times.shape[1])
     are_frames = are_multiples & ((chance < _CHANCE) | (rate is not None))
-    return float(np.max(frames * are_frames))
+    return float(next(iter(frames[are_frames]), 0.0))
 
 
 def rounding_of(recording: Recording) -> float:
@@ -273,13 +272,14 @@ def _of_series(table: Table, columns: list[Column], runs: list[_Run]) -> Recordi
         table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
         if quantity == "interval":
             # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2. The
-            # rounding of a short flight counts most in the middle.
+            # next flight may be longer by the error of one time; with that of two times an impact
+            # that is missed in a film would hide more often.
             first, middle, last = values[:-2], values[1:-1], values[2:]
-            is_missed = (middle + rounding) ** 2 < first * last / 2
+            is_missed = (middle + rounding / 2) ** 2 < first * last / 2
             table.refuse(is_missed, lines[:-2], missed, first, middle)
             # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
             # that and r, in the logarithms that scatter alike, is √2 r.
-            is_short = (middle - rounding) ** 2 > math.sqrt(2) * first * last
+            is_short = (middle - rounding / 2) ** 2 > math.sqrt(2) * first * last
             table.refuse(
                 is_short[:1],
                 lines,

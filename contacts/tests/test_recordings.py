@@ -95,6 +95,8 @@ FILES = {
     + "\n".join(f"{t:.2f}\t0.001\t{position(t):.5f}" for t in FRAMES),
     "Tracker, decimal commas": "mass_A\nt\tx\ty\n"
     + "\n".join(f"{t:.3f}\t0,001\t{position(t):.5f}" for t in FRAMES).replace(".", ","),
+    "phyphox, audio scope": '# contact time: 8 ms\n"Time (ms)","Recording (a.u.)"\n'
+    + "\n".join(f"{1000 * t:.9E},{push(t):.9E}" for t in PULSES),
     "force plate with a row of units": "Time,Fz\ns,N\n"
     + "\n".join(f"{t:.4f},{push(t):.3f}" for t in PULSES),
     "heard, with a contact time": "# contact time: 8 ms\ntime [s]\n" + column(TOUCHES),
@@ -318,6 +320,11 @@ TWO = "Drop (cm),Rebound (cm)\n50,32\n60,38\n70,45"
         ("", "is empty"),
         ("# title: nothing", "is empty"),
         ("a,b\nx,y", "no line of numbers"),
+        ("Drop,Rebound\n50 cm,32 cm", "no line of numbers; units belong to the headings"),
+        (
+            '"Time 1 (s)","Time 2 (s)","Time 3 (s)"\n0.9,0.72,0.576\n0.95,0.76,0.61',
+            "each line or each column may be a recording",
+        ),
         (
             "a,b\n1,2",
             "no bounces, as 'a' is not known, 'b' is not known: write .* drop_height and rebound_h",
@@ -433,6 +440,7 @@ def test_columns_are_read_as_those_of_a_file():
             "missing in line 3, 4, 6, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
+        (FILES["picture, pixels"], r"gravity, 68\d\d px/s² in this track, is the scale"),
         (FILES["times without a heading"], "no heading: taken as times in s"),
         (
             "Temperature (°C),n,Drop (cm),Rebound (cm)\n5,1,50,20\n20,1,50,30\n40,1,50,32",
@@ -440,7 +448,7 @@ def test_columns_are_read_as_those_of_a_file():
         ),
         ("Ball mass (g),drop (m),rebound (m)\n46,1,0.64\n58,1,0.5", "not used: 'Ball mass'"),
         (
-            "mass (g),Durchmesser/mm,drop (m),rebound (m)\n2.7,40,1,0.64\n,,0.9,0.6\n2.7,40,1,0.6",
+            "Masse in g,Durchmesser/mm,drop (m),up (m)\n2.7,40,1,0.6\n,,0.9,0.6\n2.7,40,1,0.6",
             "drag of the air is removed, 0.13 of",
         ),
         (

@@ -200,7 +200,9 @@ def _series(table: Table, columns: list[Column], groups: list[Lines]) -> list[_R
     fitting = [way for way in ways if all((np.diff(x) < 0).all() for x, _ in way)]
     if columns[0].role == "time":
         rising = [way for way in ways if all((np.diff(x) > 0).all() for x, _ in way)]
-        fitting = rising or fitting
+        # Of several balls there are more times than balls, and of several drops more flights.
+        is_long = len(matrix) > len(columns)
+        fitting = (rising or fitting) if is_long else rising + fitting
     if len(fitting) != 1:
         raise Refused(
             f"{table.name}: each line or each column may be a recording: write one below the other "
@@ -422,7 +424,7 @@ def _of_track(table: Table, columns: list[Column], rows: NDArray[np.bool_]) -> R
     slow = math.sqrt(STANDARD_GRAVITY / gravity)
     further = {
         f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
-        "gravity is the scale": True,
+        f"gravity, {np.mean(gravities):.4g} {unit or 'units'}/s² in this track, is the scale": True,
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
         "the true ones, as in slow motion, and so are the speeds, or the heights have another "

@@ -68,7 +68,7 @@ QUANTITY = (
 # is a word.
 _UNIT = (
     r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch(?:es)?|ft|foot|feet|yd|[cm]?m/s|km/h|mph"
-    r"|px|k?N|m?V|%|-)"
+    r"|px|k?g|k?N|m?V|%|-)"
 )
 RECORDING = r"recording|aufnahme|series|experiment|\b(?:ball|run|set|trial)\b"
 # The quantity of a heading is that of the first row with which its words agree. Accents
@@ -216,13 +216,15 @@ def text_of(source: Any) -> tuple[str, str, int]:
         try:
             return name, *_sheet(data)
         except (zipfile.BadZipFile, ElementTree.ParseError, LookupError, ValueError):
-            raise Refused(f"{name}: the spreadsheet cannot be read") from None
+            raise Refused(
+                f"{name}: the spreadsheet cannot be read: save it as xlsx or csv"
+            ) from None
     try:
         text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     if "\0" in text:
-        raise Refused(f"{name} is no text and no spreadsheet")
+        raise Refused(f"{name} is no text and no spreadsheet: save it as xlsx or csv")
     if not text.lstrip().startswith(("{", "[")):
         return name, text, 1
     try:
@@ -319,7 +321,8 @@ def table_of(name: str, text: str, leave_out: Sequence[int]) -> Table:
     first = next(headed, 0)
     begin = next((i for i in range(first, len(cells)) if has_numbers[i]), None)
     if begin is None:
-        raise Refused(f"{name} has no line of numbers" + (f"; {TIMES}" if ":" in text else ""))
+        hint = f"; {TIMES}" if ":" in text else "; units belong to the headings"
+        raise Refused(f"{name} has no line of numbers{hint}")
     head |= {key: said for line in texts[:begin] for key, said in _said(line).items()}
     above = [row for row in cells[:begin] if any(row)]
     lines = np.array(list(kept))[begin:]
@@ -415,6 +418,8 @@ def _column(heading: str, texts: list[str]) -> Column:
     quantity = first(_QUANTITIES, words)
     side = first(_SIDES, words)
     numbers = np.array([number_in(text) for text in texts])
+    # As the audio scope of phyphox has them.
+    quantity = "signal" if unit == "a.u." else quantity
     # "bounce" above 1, 2, 4 is the number of the bounce.
     bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
     if (

@@ -440,6 +440,10 @@ def test_columns_are_read_as_those_of_a_file():
             "missing in line 3, 4, 6, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
+        (
+            "n,Zeit (s),Δt (s),r\n1,0.1,,\n2,0.9,0.8,\n3,1.54,0.64,0.8\n4,2.052,0.512,0.8",
+            "columns not used: 'Δt', 'r'",
+        ),
         (FILES["picture, pixels"], r"gravity, 68\d\d px/s² in this track, is the scale"),
         (FILES["times without a heading"], "no heading: taken as times in s"),
         (

@@ -12,9 +12,9 @@ slopes lie between 0 and about -0.3; β has none. M says how readings enter: an 
 enters the flights on both of its sides. τ is the size of errors of readings, and s that of the
 scatter between impacts. Both have log-normal priors. That of the errors is about what instruments
 have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it readings have an error of
-rounding, 0.29 frames or units of the last digit (`rounding_of`). If
-the errors of the readings are given, τ is known. The prior of scatter is about 0.011, with a factor
-of 4.5 either way: the published experiments have 0.0004 to 0.04.
+rounding, 0.29 frames or units of the last digit (`rounding_of`). If the errors of the readings are
+given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
+published experiments have 0.0004 to 0.04.
 
 The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
 covariance is a row of variances, and every question below is one of weighted sums of squares.
@@ -342,9 +342,8 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
     if curves.is_known:
         # Two impacts leave no deviations, which any number of degrees of freedom allows.
         return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
-    # A single deviation has no pattern, and neither have those that are not above rounding.
-    rounding = curves.rounded**2 * eigenvalues.sum() + np.sum(impacts.arithmetic**2)
-    if len(squares) < 2 or squares.sum() <= rounding:
+    # A single deviation has no pattern, and neither have errors of the arithmetic.
+    if len(squares) < 2 or squares.sum() <= np.sum(impacts.arithmetic**2):
         return 1.0
     factors = 1 - statistic / squares.sum() * eigenvalues
     # The integrand is smooth in ln u, and vanishes on both sides.

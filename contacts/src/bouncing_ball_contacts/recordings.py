@@ -92,10 +92,10 @@ class Recording:
     for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
     the time from touch to touch, which includes the contact at its begin, unless flights are free
     of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
-    ``digit`` is the last digit with which readings are written, in SI units, or 0.
-    ``uncertainty`` has standard deviations of r, ``durations`` contact
-    times in s, one or one for each impact (of flights: for each touch); ``head`` has what the file
-    says of the ball.
+    ``digit`` is the last digit with which readings are written, in SI units, or 0; heights from
+    which a ball is dropped and speeds of coefficients are set, and not read. ``uncertainty`` has
+    standard deviations of r, ``durations`` contact times in s, one or one for each impact (of
+    flights: for each touch); ``head`` has what the file says of the ball.
     """
 
     name: str
@@ -316,7 +316,6 @@ def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:
             f"{table.name}: these rebounds fall on as those of one ball: write the drop height as "
             "the first of the heights"
         )
-    # Drop heights and the speeds of coefficients are set.
     read_off = columns if kind == "speeds" else columns[1:]
     digit = min(digit_of(table, each) for each in read_off)
     return Recording(table.name, kind, (pairs[is_there],), digit=digit)
@@ -496,7 +495,9 @@ def _layout(
     table: Table, roles: dict[str, list[Column]], intervals: bool
 ) -> tuple[str, list[Column]]:
     """Return what was measured, and the columns with that."""
-    layouts = _PAIRS if _HALVES & roles.keys() else _PAIRS + _SERIES
+    # An r beside times was computed of these.
+    computed = {"coefficient"} if {"time", "interval"} & roles.keys() else set()
+    layouts = _PAIRS if (_HALVES - computed) & roles.keys() else _PAIRS + _SERIES
     if intervals:
         layouts = (("flights", ("interval",)),)
     found = next((each for each in layouts if roles.keys() >= set(each[1])), None)

@@ -57,6 +57,7 @@ def track(form="{:.4f},{:.5f}", slow=1):
     return "\n".join(form.format(slow * t, position(t)) for t in FRAMES)
 
 
+STAMPS = [*enumerate(TIMES, 1)]
 BALLS = (("A", 1), ("B", 0.9))
 SPEEDS = (1.0, 2.0, 3.0, 4.0)
 FILES = {
@@ -94,6 +95,8 @@ FILES = {
     + "\n".join(f"{t:.2f}\t0.001\t{position(t):.5f}" for t in FRAMES),
     "Tracker, decimal commas": "mass_A\nt\tx\ty\n"
     + "\n".join(f"{t:.3f}\t0,001\t{position(t):.5f}" for t in FRAMES).replace(".", ","),
+    "phyphox, audio scope": '# contact time: 8 ms\n"Time (ms)","Recording (a.u.)"\n'
+    + "\n".join(f"{1000 * t:.9E},{push(t):.9E}" for t in PULSES),
     "force plate with a row of units": "Time,Fz\ns,N\n"
     + "\n".join(f"{t:.4f},{push(t):.3f}" for t in PULSES),
     "heard, with a contact time": "# contact time: 8 ms\ntime [s]\n" + column(TOUCHES),
@@ -129,6 +132,9 @@ FILES = {
     "minutes and seconds": "time (mm:ss)\n"
     + "\n".join(f"{(t + 58) // 60:.0f}:{(t + 58) % 60:.6f}" for t in TIMES),
     "hours, with decimal commas": "\n".join(f"00:01:{t + 10:.6f}" for t in TIMES).replace(".", ","),
+    "time stamps": "nr,time\n"
+    + "\n".join(f"{i},2024-05-01T12:00:{t + 10:.6f}Z" for i, t in STAMPS),
+    "a date and a time": "time\n" + "\n".join(f"2024-05-01 12:00:{t + 10:.6f}" for _, t in STAMPS),
     "nanoseconds": "t_ns\n" + column(1e9 * TIMES + 1.7e18, "{:.0f}"),
     "labels of Audacity with frequencies": "\n".join(
         f"{t:.6f}\t{t + 0.004:.6f}\tbounce\n\\\t200.0\t3000.0" for t in TIMES
@@ -245,26 +251,40 @@ def test_rounded_times_of_a_camera_are_those_of_even_frames(tmp_path):
     assert np.abs(fit(path).impacts.restitution - 0.82).max() < 1e-4
 
 
-def spreadsheet(rows):
+def spreadsheet(*sheets):
     """Return an xlsx file with shared strings, as programs write it."""
-    texts = sorted({cell for row in rows for cell in row if isinstance(cell, str)})
+    texts = sorted(
+        {cell for rows in sheets for row in rows for cell in row if isinstance(cell, str)}
+    )
     space = 'xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"'
-    lines = []
-    for i, row in enumerate(rows, 1):
-        cells = ""
-        for letter, cell in zip("ABC", row, strict=False):
-            if isinstance(cell, str):
-                cells += f'<c r="{letter}{i}" t="s"><v>{texts.index(cell)}</v></c>'
-            elif cell is not None:
-                cells += f'<c r="{letter}{i}"><v>{cell}</v></c>'
-        lines.append(f'<row r="{i}">{cells}</row>')
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as book:
         items = "".join(f"<si><t>{text}</t></si>" for text in texts)
         book.writestr("xl/sharedStrings.xml", f"<sst {space}>{items}</sst>")
-        sheet = f"<worksheet {space}><sheetData>{''.join(lines)}</sheetData></worksheet>"
-        book.writestr("xl/worksheets/sheet1.xml", sheet)
+        for n, rows in enumerate(sheets, 1):
+            lines = ""
+            for i, row in enumerate(rows, 1):
+                cells = ""
+                for letter, cell in zip("ABC", row, strict=False):
+                    if isinstance(cell, str):
+                        cells += f'<c r="{letter}{i}" t="s"><v>{texts.index(cell)}</v></c>'
+                    elif cell is not None:
+                        cells += f'<c r="{letter}{i}"><v>{cell}</v></c>'
+                lines += f'<row r="{i}">{cells}</row>'
+            sheet = f"<worksheet {space}><sheetData>{lines}</sheetData></worksheet>"
+            book.writestr(f"xl/worksheets/sheet{n}.xml", sheet)
     return data.getvalue()
+
+
+def test_the_first_sheet_with_numbers_is_read(tmp_path):
+    """The first one was, and nothing said that there were more."""
+    pairs = [["Drop (cm)", "Rebound (cm)"], [50, 32], [100, 64], [150, 96]]
+    path = tmp_path / "lab.xlsx"
+    for above, said in ([["Lab 3"], ["our names"]], False), (pairs, True):
+        path.write_bytes(spreadsheet(above, pairs))
+        found = read(path)
+        assert found.chains[0] == pytest.approx(np.array(pairs[1:]) / 100)
+        assert ("2 sheets have numbers: the first one of them is read" in found.notes) == said
 
 
 def test_a_spreadsheet_is_read(tmp_path):
@@ -300,12 +320,17 @@ TWO = "Drop (cm),Rebound (cm)\n50,32\n60,38\n70,45"
         ("", "is empty"),
         ("# title: nothing", "is empty"),
         ("a,b\nx,y", "no line of numbers"),
+        ("Drop,Rebound\n50 cm,32 cm", "no line of numbers; units belong to the headings"),
+        (
+            '"Time 1 (s)","Time 2 (s)","Time 3 (s)"\n0.9,0.72,0.576\n0.95,0.76,0.61',
+            "each line or each column may be a recording",
+        ),
         (
             "a,b\n1,2",
             "no bounces, as 'a' is not known, 'b' is not known: write .* drop_height and rebound_h",
         ),
         ("Fallhöhe (m),Sprung (m)\n2,1\n1,0.5", "'Fallhöhe' is height before, 'Sprung' is not k"),
-        ("time\n2024-05-03T14:07:20.45Z\n2024-05-03T14:07:21.17Z", "seconds, mm:ss.s or hh:mm"),
+        ("time\n20h 45\n21h 17", "seconds, mm:ss.s, hh:mm:ss.s or 2024-05-01T12:00:00.25"),
         ('{"time": {"0": 0.45, "1": 1.17, "2": 1.75}}', "no recording: .* columns such"),
         ('{"time": "0.45 1.17 1.75"}', "no recording: .* columns such"),
         ('{"time": [[0.45, 1.17], [1.75]]}', "no recording: .* columns such"),
@@ -352,7 +377,8 @@ TWO = "Drop (cm),Rebound (cm)\n50,32\n60,38\n70,45"
         ("golf\n" + TWO + "\n\ntennis\nDrop (cm),Rebound (cm)\n5,3", "line 8 is a second head"),
         ("time,z\n" + track(slow=1000), "line 5: a flight of .* is it in ms"),
         ("time,z\n" + track("{:.0f},{:.5f}", slow=1e9), "line 5: a flight of .* is it in ms"),
-        ("time (s)\n" + column(TIMES / 86400, "{:.10f}"), "line 3: a flight of .* is too small"),
+        ("t (s),y (m)\n" + track(slow=32), "of 26.*, or divide times of slow motion by its fac"),
+        ("time (s)\n" + column(TIMES / 86400, "{:.10f}"), "line 3: .* small: .* such as .days"),
         ("drop (m),rebound (m)\n1e-300,1e-12\n1,0.5", "line 2: a height of .* is too small"),
         ("time;X;Y\n0:00:00:00;0,1;0,9\n0:00:00:01;0,1;0,8", "0 lines .* times are in seconds"),
         ("Drop height (m),h2/h1\n1,0.5\n2,0.6", "'h2/h1' is no reading, but derived"),
@@ -414,12 +440,21 @@ def test_columns_are_read_as_those_of_a_file():
             "missing in line 3, 4, 6, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
+        (
+            "n,Zeit (s),Δt (s),r\n1,0.1,,\n2,0.9,0.8,\n3,1.54,0.64,0.8\n4,2.052,0.512,0.8",
+            "columns not used: 'Δt', 'r'",
+        ),
+        (FILES["picture, pixels"], r"gravity, 68\d\d px/s² in this track, is the scale"),
         (FILES["times without a heading"], "no heading: taken as times in s"),
         (
             "Temperature (°C),n,Drop (cm),Rebound (cm)\n5,1,50,20\n20,1,50,30\n40,1,50,32",
             "columns not used: 'Temperature'$",
         ),
         ("Ball mass (g),drop (m),rebound (m)\n46,1,0.64\n58,1,0.5", "not used: 'Ball mass'"),
+        (
+            "Masse in g,Durchmesser/mm,drop (m),up (m)\n2.7,40,1,0.6\n,,0.9,0.6\n2.7,40,1,0.6",
+            "drag of the air is removed, 0.13 of",
+        ),
         (
             "drop (cm),± (cm),rebound (cm),± (cm)\n50,0.5,32,1\n60,0.5,38,1",
             "errors of readings .* --resolution",

@@ -12,9 +12,9 @@ slopes lie between 0 and about -0.3; β has none. M says how readings enter: an 
 enters the flights on both of its sides. τ is the size of errors of readings, and s that of the
 scatter between impacts. Both have log-normal priors. That of the errors is about what instruments
 have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it readings have an error of
-rounding, 0.29 frames or units of the last digit, if all are multiples of these (`rounding_of`). If
-the errors of the readings are given, τ is known. The prior of scatter is about 0.011, with a factor
-of 4.5 either way: the published experiments have 0.0004 to 0.04.
+rounding, 0.29 frames or units of the last digit (`rounding_of`). If the errors of the readings are
+given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
+published experiments have 0.0004 to 0.04.
 
 The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
 covariance is a row of variances, and every question below is one of weighted sums of squares.
@@ -55,9 +55,8 @@ from scipy import integrate, interpolate, linalg, optimize, special
 from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
 from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.flights import drag_of, heights_of, impact_of, speeds_of
-from bouncing_ball_contacts.recordings import Recording, read
+from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.tables import number_in
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
 REJECTED = 0.005
@@ -83,13 +82,8 @@ _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
-# Seconds of which times may be multiples: frames of cameras, and decimals; and decimals of others.
-_FRAMES = 1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240])
-_DECIMALS = np.array([0.1, 0.01])
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
-# Squares of differences of ln r that are rounding errors.
-_ROUNDING = 1e-20
 
 
 # Readings to impacts.
@@ -101,12 +95,15 @@ class Impacts:
 
     ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
     heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
+    ``arithmetic`` has the errors of ln r if numbers of the size of the sum of readings, as times
+    are, have errors of 2⁻⁵² of it, which do not cancel.
     """
 
     speed: Array
     log_r: Array
     readings: Array
     usual: float
+    arithmetic: Array
 
     @property
     def restitution(self) -> Array:
@@ -159,7 +156,9 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
     readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
-    return Impacts(before, np.log(after / before), readings, _KINDS[kind][1])
+    size = sum(float(values.sum()) for values in chains)
+    arithmetic = np.finfo(float).eps * size * np.linalg.norm(readings, axis=1)
+    return Impacts(before, np.log(after / before), readings, _KINDS[kind][1], arithmetic)
 
 
 def without_contacts(recording: Recording, durations: Array) -> Recording:
@@ -178,41 +177,6 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
         longest = show(float(np.max(durations)), "s")
         raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
     return replace(recording, chains=chains)
-
-
-def _frame_of(recording: Recording) -> float:
-    """Return the longest frame in s of which all times are multiples, or 0.
-
-    It is that of the frame rate, if the file has one. One number in ten is a multiple by chance, to
-    1/20 of the frame. Four different ones are needed, because flights of one ball may be alike.
-    Intervals may have been rounded one by one, with errors that do not cancel.
-    """
-    if not recording.are_times:
-        return 0.0
-    rate = recording.head.get("frame rate")
-    frames = _FRAMES if rate is None else 1 / np.array([number_in(rate.split()[0])])
-    counts = np.concatenate(recording.chains) / frames[:, None]
-    nearest = np.round(counts)
-    are_multiples = np.all((np.abs(counts - nearest) < 0.05) & (nearest > 0), axis=1)
-    are_enough = [rate is not None or len(np.unique(each)) >= 4 for each in nearest]
-    return float(np.max(frames * are_multiples * are_enough))
-
-
-def rounding_of(recording: Recording) -> float:
-    """Return the frame or the decimal, in SI units, of which all readings are multiples, or 0.
-
-    The heights from which a ball is dropped and the speeds of coefficients are set, and not read.
-    Three readings are needed.
-    """
-    if recording.kind == "flights":
-        return _frame_of(recording)
-    readings = np.concatenate(recording.chains)
-    if recording.kind in ("drops", "coefficients"):
-        readings = readings[:, 1]
-    counts = readings.ravel() / _DECIMALS[:, None]
-    are_multiples = np.all(np.abs(counts - np.round(counts)) < 1e-6, axis=1)
-    is_rounded = recording.kind != "track" and readings.size >= 3
-    return float(np.max(_DECIMALS * are_multiples)) if is_rounded else 0.0
 
 
 # Impacts to r at one speed.
@@ -406,8 +370,8 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
     if curves.is_known:
         # Two impacts leave no deviations, which any number of degrees of freedom allows.
         return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
-    # A single deviation has no pattern.
-    if len(squares) < 2 or squares.sum() < _ROUNDING:
+    # A single deviation has no pattern, and neither have errors of the arithmetic.
+    if len(squares) < 2 or squares.sum() <= np.sum(impacts.arithmetic**2):
         return 1.0
     factors = 1 - statistic / squares.sum() * eigenvalues
     # The integrand is smooth in ln u, and vanishes on both sides.
@@ -559,15 +523,16 @@ def _judged(
     law = LAWS[name]
     r = impacts.restitution
     a, missed, slope = _least_squares(law, impacts, curves)
-    squares = np.sum((missed @ curves.basis) ** 2 / curves.variances, axis=1) + _ROUNDING
+    squares = np.sum((missed @ curves.basis) ** 2 / curves.variances, axis=1)
     # A law may fit better than a parabola.
     worse = np.maximum(squares - parabola, 0.0)
     if curves.is_known:
         of_ratios = np.exp(-worse[1:-1] / (2 * curves.sizes[0] ** 2))
         probability = np.average(of_ratios, weights=weights[1:])
     else:
-        of_ratios = (parabola / (parabola + worse)) ** (max(len(r) - 3, 0) / 2)
-        probability = np.max(of_ratios[:-1][weights > np.max(weights) / 20])
+        least = parabola[:-1]
+        of_ratios = (least / (least + worse[:-1])) ** (max(len(r) - 3, 0) / 2)
+        probability = np.max(of_ratios[weights > np.max(weights) / 20])
     best = int(np.argmax(weights))
     inverse = curves.basis / curves.variances[best] @ curves.basis.T
     # An impact is left out if it has a parameter of its own, which is what the others leave of it.
@@ -605,10 +570,12 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
         white = powers / deviation[:, None]
         best = np.linalg.lstsq(white, y / deviation, rcond=1e-9)[0]
         rest.append(np.sum((y / deviation - white @ best) ** 2))
-    parabola = np.array(rest) + _ROUNDING
-    # Rounded readings may be alike by chance, and leave a parabola less than their own errors.
-    errors = curves.rounded**2 / (1 + curves.variances[:-1, 0] - curves.variances[0, 0])
-    parabola[:-1] = np.maximum(parabola[:-1], max(len(x) - 3, 0) * errors)
+    # Rounded readings may be alike by chance, and leave a parabola less than their own errors and
+    # those of the arithmetic.
+    errors = curves.rounded**2 * curves.variances[0] + curves.basis.T**2 @ impacts.arithmetic**2
+    left = np.mean(errors / curves.variances[:-1], axis=1)
+    parabola = np.array(rest)
+    parabola[:-1] = np.maximum(rest[:-1], max(len(x) - 3, 1) * left)
     found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)
     return sorted(
@@ -683,8 +650,9 @@ def by_contact_time(
 class Fit(Page):
     """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
 
-    ``without_scatter`` is the interval if impacts do not scatter; None if it is the same, or if the
-    impacts contradict it. ``scatter`` is the root mean square of the deviations of single impacts.
+    ``restitution_without_scatter`` and ``without_scatter`` are r and its interval if impacts do not
+    scatter; None if they are the same, or if the impacts contradict them. ``scatter`` is the root
+    mean square of the deviations of single impacts.
     """
 
     recording: Recording
@@ -692,6 +660,7 @@ class Fit(Page):
     speed: float
     restitution: float
     interval: tuple[float, float]
+    restitution_without_scatter: float | None
     without_scatter: tuple[float, float] | None
     scatter: float
     slope: float
@@ -737,13 +706,21 @@ class Fit(Page):
     def __repr__(self) -> str:
         v = self.impacts.speed
         title = self.recording.head.get("title", self.recording.name)
-        intervals = span(*self.interval, 4)
-        if self.without_scatter is not None:
-            intervals += f" if impacts scatter, {span(*self.without_scatter, 4)} if they do not"
+        at = f"at {self.speed:.3g} m/s, 95 %:"
+
+        def line(r: float, interval: tuple[float, float]) -> str:
+            # r has the digits of its interval, in which it would not lie with fewer.
+            ends = span(*interval, 4)
+            return f"r = {r:.{len(ends.split()[0]) - 2}f} {at} {ends}"
+
+        found = line(self.restitution, self.interval)
+        if self.without_scatter is not None and self.restitution_without_scatter is not None:
+            still = line(self.restitution_without_scatter, self.without_scatter)
+            found += f" if impacts scatter\n{still} if they do not"
         return (
             f"{title}: {len(v)} impacts at {v.min():.3g} to {v.max():.3g} m/s, "
             f"from {self.recording.kind}\n"
-            f"r = {self.restitution:.4f} at {self.speed:.3g} m/s, 95 %: {intervals}\n"
+            f"{found}\n"
             f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}"
         )
 
@@ -856,7 +833,8 @@ def fit(
     laws = tuple(judge(impacts, curves, at)) if len(v) > 2 else ()
     flies = recording.kind in _WITH_DRAG
     notes = {
-        f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded": rounding > 0,
+        f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded": rounding
+        > impacts.usual,
         f"the drag of the air is removed, {drag:.2g} of the speed per metre": flies and drag > 0,
         "the drag of the air is not removed: give the mass and the diameter": flies and not drag,
         f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard
@@ -883,6 +861,7 @@ def fit(
         speed=at,
         restitution=r,
         interval=interval,
+        restitution_without_scatter=None if still is None else min(math.exp(still.value), 1.0),
         without_scatter=second,
         scatter=curves.scatter,
         slope=scattering.slope,

@@ -8,7 +8,7 @@ a flight on, with a = √(g D), the equation has the solutions::
 
 so that a ball leaves with v = √(g (e^(2 D h) - 1)/D) for a height h, and falls from it to
 v = √(g (1 - e^(-2 D h))/D). Without drag these have the limits -g t, -g t²/2 and √(2 g h), with
-which they agree for a drag of 1e-12/m.
+which they agree for a drag of 1e-30/m.
 """
 
 import math
@@ -23,7 +23,7 @@ from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
 _AIR = 1.2
 _DRAG = 0.47
 _DENSEST = 22600.0
-_NO_DRAG = 1e-12
+_NO_DRAG = 1e-30
 
 
 def drag_of(mass: float, diameter: float) -> float:

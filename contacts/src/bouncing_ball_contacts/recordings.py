@@ -37,6 +37,8 @@ from bouncing_ball_contacts.tables import (
     check,
     columns_of,
     counts,
+    digit_of,
+    number_in,
     table_of,
     text_of,
     values_of,
@@ -72,6 +74,11 @@ _GROWTH = 1.02
 _QUIET = 0.03
 # Flights of a track have at least so many positions, without those beside an impact.
 _FEWEST = 4
+# Seconds of which times may be multiples, the longest first: frames of cameras, also of those whose
+# rate is 29.97 in place of 30, and decimals.
+_FRAMES = np.outer(1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240]), [1, 1.001]).ravel()
+# Times are taken as those of frames if so few others are multiples by chance.
+_CHANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -85,9 +92,10 @@ class Recording:
     for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
     the time from touch to touch, which includes the contact at its begin, unless flights are free
     of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
-    ``uncertainty`` has standard deviations of r, ``durations`` contact
-    times in s, one or one for each impact (of flights: for each touch); ``head`` has what the file
-    says of the ball.
+    ``digit`` is the last digit with which readings are written, in SI units, or 0; heights from
+    which a ball is dropped and speeds of coefficients are set, and not read. ``uncertainty`` has
+    standard deviations of r, ``durations`` contact times in s, one or one for each impact (of
+    flights: for each touch); ``head`` has what the file says of the ball.
     """
 
     name: str
@@ -97,8 +105,48 @@ class Recording:
     durations: Array | None = None
     is_free: bool = False
     are_times: bool = False
+    digit: float = 0.0
     head: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+
+
+def _frame_of(recording: Recording) -> float:
+    """Return the longest frame in s of which all times are multiples, or 0.
+
+    It is that of the frame rate, if the file has one. Within frames the times of a recording may
+    spread over w, which is 1/20 or the digit with which they are written. By chance those of n
+    different flights do so with the probability (n + 1) wⁿ, or wⁿ if frames have all their digits.
+    Flights of one ball may be alike, and say nothing new. Intervals may have been rounded one by
+    one, with errors that do not cancel.
+    """
+    if not recording.are_times:
+        return 0.0
+    rate = recording.head.get("frame rate")
+    frames = _FRAMES if rate is None else 1 / np.array([number_in(rate.split()[0])])
+    share = np.maximum(0.05, recording.digit / frames)
+    # Numbers of a computer have errors of 1e-16.
+    digits = frames / (recording.digit or 1e-12)
+    are_written = np.abs(digits - np.round(digits)) < 1e-9 * digits
+    within = np.where(are_written, 0.05, share)
+    counts = np.round(np.concatenate(recording.chains) / frames[:, None])
+    are_multiples = np.all(counts > 0, axis=1)
+    chance = share ** [len(np.unique(each)) for each in counts]
+    for flights in recording.chains:
+        times = np.insert(flights, 0, 0.0) / frames[:, None]
+        spread = np.ptp(np.cumsum(times - np.round(times), axis=1), axis=1)
+        are_multiples &= spread < within + 1e-9
+        chance *= np.where(are_written, 1, times.shape[1])
+    are_frames = are_multiples & ((chance < _CHANCE) | (rate is not None))
+    return float(next(iter(frames[are_frames]), 0.0))
+
+
+def rounding_of(recording: Recording) -> float:
+    """Return the frame or the last digit of the readings in SI units, or 0.
+
+    Three readings are needed for a digit, because numbers lose zeros at their end.
+    """
+    has_digit = sum(map(len, recording.chains)) >= 3
+    return max(_frame_of(recording), recording.digit * has_digit)
 
 
 # Numbers to series.
@@ -152,7 +200,9 @@ def _series(table: Table, columns: list[Column], groups: list[Lines]) -> list[_R
     fitting = [way for way in ways if all((np.diff(x) < 0).all() for x, _ in way)]
     if columns[0].role == "time":
         rising = [way for way in ways if all((np.diff(x) > 0).all() for x, _ in way)]
-        fitting = rising or fitting
+        # Of several balls there are more times than balls, and of several drops more flights.
+        is_long = len(matrix) > len(columns)
+        fitting = (rising or fitting) if is_long else rising + fitting
     if len(fitting) != 1:
         raise Refused(
             f"{table.name}: each line or each column may be a recording: write one below the other "
@@ -186,9 +236,28 @@ def _flights(table: Table, runs: list[_Run]) -> list[_Run]:
 def _of_series(table: Table, columns: list[Column], runs: list[_Run]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     quantity = columns[0].role.split()[0]
+    digit = min(digit_of(table, each) for each in columns)
+    are_times = False
     if quantity == "time":
         quantity = "interval"
-        runs = _flights(table, runs)
+        flights = _flights(table, runs)
+        are_times = flights is not runs
+        runs = flights
+    found = Recording(
+        table.name,
+        "heights" if quantity == "height" else "flights",
+        tuple(values for values, _ in runs if len(values)),
+        are_times=are_times,
+        # The errors of intervals that were rounded one by one do not cancel, as those of times.
+        digit=digit if are_times or quantity == "height" else 0.0,
+        head=table.head,
+    )
+    if not found.chains:
+        return found
+    rounding = rounding_of(found)
+    # Errors of two readings may let a height grow by a last digit, and those of three times a
+    # flight by two.
+    grows = 2 * rounding if are_times else rounding
     said = f"a {PLAUSIBLE[quantity][0]} of {{}} {SI[quantity]}"
     grown = (
         f"{said} follows one of {{}} {SI[quantity]}: an impact is missing, the first time is that "
@@ -201,24 +270,26 @@ def _of_series(table: Table, columns: list[Column], runs: list[_Run]) -> Recordi
     )
     for values, lines in runs:
         check(table, quantity, bool(columns[0].unit), values, lines)
-        is_grown = values[1:] > _GROWTH * values[:-1]
+        is_grown = values[1:] > _GROWTH * values[:-1] + grows
         table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
         if quantity == "interval":
-            # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2.
-            ratios = values[1:] / values[:-1]
-            is_missed = ratios[:-1] < ratios[1:] / 2
-            table.refuse(is_missed, lines[:-2], missed, values[:-2], values[1:-1])
+            # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2. The
+            # next flight may be longer by the error of one time; with that of two times an impact
+            # that is missed in a film would hide more often.
+            first, middle, last = values[:-2], values[1:-1], values[2:]
+            is_missed = (middle + rounding / 2) ** 2 < first * last / 2
+            table.refuse(is_missed, lines[:-2], missed, first, middle)
             # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
             # that and r, in the logarithms that scatter alike, is √2 r.
+            is_short = (middle - rounding / 2) ** 2 > math.sqrt(2) * first * last
             table.refuse(
-                ratios[:1] > math.sqrt(2) * ratios[1:2],
+                is_short[:1],
                 lines,
                 "a flight of {} s is short beside the two after it: it begins with the release, or "
                 "the next one has an impact within it (--leave-out the line of either)",
                 values,
             )
-    kind = "heights" if quantity == "height" else "flights"
-    return Recording(table.name, kind, tuple(values for values, _ in runs if len(values)))
+    return found
 
 
 def _check_pairs(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
@@ -245,7 +316,9 @@ def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:
             f"{table.name}: these rebounds fall on as those of one ball: write the drop height as "
             "the first of the heights"
         )
-    return Recording(table.name, kind, (pairs[is_there],))
+    read_off = columns if kind == "speeds" else columns[1:]
+    digit = min(digit_of(table, each) for each in read_off)
+    return Recording(table.name, kind, (pairs[is_there],), digit=digit)
 
 
 def _fall_on(heights: Array) -> NDArray[np.bool_]:
@@ -350,7 +423,7 @@ def _of_track(table: Table, columns: list[Column], rows: NDArray[np.bool_]) -> R
     slow = math.sqrt(STANDARD_GRAVITY / gravity)
     further = {
         f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
-        "gravity is the scale": True,
+        f"gravity, {np.mean(gravities):.4g} {unit or 'units'}/s² in this track, is the scale": True,
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
         "the true ones, as in slow motion, and so are the speeds, or the heights have another "
@@ -422,7 +495,9 @@ def _layout(
     table: Table, roles: dict[str, list[Column]], intervals: bool
 ) -> tuple[str, list[Column]]:
     """Return what was measured, and the columns with that."""
-    layouts = _PAIRS if _HALVES & roles.keys() else _PAIRS + _SERIES
+    # An r beside times was computed of these.
+    computed = {"coefficient"} if {"time", "interval"} & roles.keys() else set()
+    layouts = _PAIRS if (_HALVES - computed) & roles.keys() else _PAIRS + _SERIES
     if intervals:
         layouts = (("flights", ("interval",)),)
     found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
@@ -506,10 +581,19 @@ def read(
     Refused
         If the file has no bounces, or numbers that are no bounces.
     """
-    name, text = text_of(source)
+    name, text, tables = text_of(source)
     table = table_of(name, text, leave_out)
-    head = table.head
     roles = columns_of(table)
+    # A mass in each line is that of the ball, if all are alike.
+    stated = {
+        key: each
+        for each in [*roles.get("unused", []), *roles.get("", [])]
+        for key, words in KEYS.items()
+        if each.unit and re.fullmatch(words, each.name.lower())
+        if len(np.unique(each.numbers[~np.isnan(each.numbers)])) == 1
+    }
+    of_ball = {key: f"{np.nanmean(each.numbers):g} {each.unit}" for key, each in stated.items()}
+    head = of_ball | table.head
     kind, columns = _layout(table, roles, intervals)
     is_missing = np.any(np.isnan([each.numbers for each in columns]), axis=0)
     is_complete = np.logical_not(is_missing)
@@ -547,7 +631,7 @@ def read(
         for each in group
         if role not in ("count", "frame", "recording", "duration")
         and not (role == "uncertainty" and uncertainty is not None)
-        and each not in columns
+        and each not in [*columns, *stated.values()]
         and not np.isnan(each.numbers).all()
     ]
     # A column of texts that recur has names, as of balls or surfaces.
@@ -568,6 +652,7 @@ def read(
             "error" in roles or ("uncertainty" in roles and uncertainty is None)
         ),
         "no heading: taken as times in s": table.is_bare,
+        f"{tables} sheets have numbers: the first one of them is read": tables > 1,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
         f"the head has {', '.join(unused)}, but only {', '.join(KEYS)} are used": bool(unused),
     }
@@ -578,6 +663,5 @@ def read(
         uncertainty=uncertainty,
         durations=durations,
         is_free=is_free,
-        are_times=columns[0].role == "time",
         notes=notes,
     )

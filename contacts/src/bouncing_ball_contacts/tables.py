@@ -11,6 +11,7 @@ columns that are given.
 
 import contextlib
 import csv
+import datetime
 import difflib
 import functools
 import io
@@ -58,7 +59,7 @@ _NO_RECORDING = (
     "is no recording: give a file, the name of an experiment, or columns such as "
     "{'time (s)': [0.45, 1.17, 1.75]}"
 )
-TIMES = "times are in seconds, mm:ss.s or hh:mm:ss.s"
+TIMES = "times are in seconds, mm:ss.s, hh:mm:ss.s or 2024-05-01T12:00:00.25"
 # A number with or without a unit, in a sentence or in cells of the head, and remarks behind it.
 QUANTITY = (
     r"([-+]?\d+(?:[.,]\d+)?)(?:\s*±\s*[\d.,]+)?[\s,;]*([^\W\d][^\s,;(\"]*|%)?[\s,;\"]*(?:[±(].*)?"
@@ -67,7 +68,7 @@ QUANTITY = (
 # is a word.
 _UNIT = (
     r"(?:[mµun]?s|m?sec|seconds?|min|[cmµ]?m|met(?:re|er)s?|inch(?:es)?|ft|foot|feet|yd|[cm]?m/s|km/h|mph"
-    r"|px|k?N|m?V|%|-)"
+    r"|px|k?g|k?N|m?V|%|-)"
 )
 RECORDING = r"recording|aufnahme|series|experiment|\b(?:ball|run|set|trial)\b"
 # The quantity of a heading is that of the first row with which its words agree. Accents
@@ -142,13 +143,26 @@ def experiments() -> list[str]:
 # Sources to lines of text.
 
 
-def _sheet(data: bytes) -> str:
-    """Return the first sheet of a spreadsheet with tabs; a row keeps its number."""
+def _sheet(data: bytes) -> tuple[str, int]:
+    """Return the first sheet with numbers of a spreadsheet, with tabs, and how many have numbers.
+
+    A row keeps its number.
+    """
     lines: list[str] = []
     with zipfile.ZipFile(io.BytesIO(data)) as book:
         names = book.namelist()
-        first = min(each for each in names if each.startswith("xl/worksheets/sheet"))
-        sheet = ElementTree.fromstring(book.read(first))
+        sheets = [
+            ElementTree.fromstring(book.read(each))
+            for each in sorted(names, key=lambda each: (len(each), each))
+            if each.startswith("xl/worksheets/sheet")
+        ]
+        # Numbers have no type, or "n".
+        filled = [
+            sheet
+            for sheet in sheets
+            if any(cell.get("t", "n") == "n" for cell in sheet.iterfind(".//{*}c[{*}v]"))
+        ]
+        sheet = [*filled, *sheets][0]
         texts = "xl/sharedStrings.xml"
         shared = []
         if texts in names:
@@ -163,7 +177,7 @@ def _sheet(data: bytes) -> str:
             column = functools.reduce(lambda n, letter: 26 * n + ord(letter) - 64, letters, 0)
             tabs = "\t" * (column - 1 - lines[-1].count("\t"))
             lines[-1] += tabs + " ".join(text.split())
-    return "\n".join(lines)
+    return "\n".join(lines), len(filled)
 
 
 def _columns_as_text(name: str, columns: Any) -> str:
@@ -181,11 +195,11 @@ def _columns_as_text(name: str, columns: Any) -> str:
     return "\n".join(map("\t".join, cells))
 
 
-def text_of(source: Any) -> tuple[str, str]:
-    """Return the name of a source and its text."""
+def text_of(source: Any) -> tuple[str, str, int]:
+    """Return the name of a source, its text, and how many tables it has, of which it is one."""
     if not isinstance(source, str | Path):
         name = "columns" if isinstance(source, Mapping) else type(source).__name__
-        return name, _columns_as_text(name, source)
+        return name, _columns_as_text(name, source), 1
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
@@ -200,19 +214,21 @@ def text_of(source: Any) -> tuple[str, str]:
     data = path.read_bytes()
     if data.startswith(b"PK"):
         try:
-            return name, _sheet(data)
+            return name, *_sheet(data)
         except (zipfile.BadZipFile, ElementTree.ParseError, LookupError, ValueError):
-            raise Refused(f"{name}: the spreadsheet cannot be read") from None
+            raise Refused(
+                f"{name}: the spreadsheet cannot be read: save it as xlsx or csv"
+            ) from None
     try:
         text = data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     if "\0" in text:
-        raise Refused(f"{name} is no text and no spreadsheet")
+        raise Refused(f"{name} is no text and no spreadsheet: save it as xlsx or csv")
     if not text.lstrip().startswith(("{", "[")):
-        return name, text
+        return name, text, 1
     try:
-        return name, _columns_as_text(name, json.loads(text))
+        return name, _columns_as_text(name, json.loads(text)), 1
     except json.JSONDecodeError:
         raise Refused(f"{name} {_NO_RECORDING}") from None
 
@@ -242,8 +258,11 @@ class Table:
 
 
 def number_in(text: str) -> float:
-    """Return a number, or seconds of a text such as 1:02.5; NaN if it is neither."""
+    """Return a number, or seconds of 1:02.5 or 2024-05-01T12:01:02.5; NaN if it is neither."""
     plain = text.split("±")[0].strip().replace("−", "-").replace(",", ".")
+    with contextlib.suppress(ValueError):
+        if "T" in plain:
+            return datetime.datetime.fromisoformat(plain).timestamp()
     if not re.fullmatch(r"(\d+:){0,2}[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", plain):
         return math.nan
     parts = plain.split(":")
@@ -287,7 +306,8 @@ def table_of(name: str, text: str, leave_out: Sequence[int]) -> Table:
     for i, line in enumerate(text.rstrip().splitlines(), 1):
         # Audacity writes frequencies in lines with a backslash.
         if not re.match(r"\s*[#\\]", line):
-            kept[i] = line.strip(" ")
+            # A date and a time are one cell.
+            kept[i] = re.sub(r"(\d-\d\d) (?=\d\d:)", r"\1T", line.strip(" "))
         for key, said in _said(line).items() if re.match(r"\s*#", line) else ():
             head[key] = f"{head.get(key, '')} {said}".strip()
     if not any(kept.values()):
@@ -301,7 +321,8 @@ def table_of(name: str, text: str, leave_out: Sequence[int]) -> Table:
     first = next(headed, 0)
     begin = next((i for i in range(first, len(cells)) if has_numbers[i]), None)
     if begin is None:
-        raise Refused(f"{name} has no line of numbers" + (f"; {TIMES}" if ":" in text else ""))
+        hint = f"; {TIMES}" if ":" in text else "; units belong to the headings"
+        raise Refused(f"{name} has no line of numbers{hint}")
     head |= {key: said for line in texts[:begin] for key, said in _said(line).items()}
     above = [row for row in cells[:begin] if any(row)]
     lines = np.array(list(kept))[begin:]
@@ -397,6 +418,8 @@ def _column(heading: str, texts: list[str]) -> Column:
     quantity = first(_QUANTITIES, words)
     side = first(_SIDES, words)
     numbers = np.array([number_in(text) for text in texts])
+    # As the audio scope of phyphox has them.
+    quantity = "signal" if unit == "a.u." else quantity
     # "bounce" above 1, 2, 4 is the number of the bounce.
     bare = "height" if not unit and re.search(_HEIGHTS_ALONE, words) else ""
     if (
@@ -427,9 +450,10 @@ def columns_of(table: Table) -> dict[str, list[Column]]:
         roles.setdefault(column.role, []).append(column)
     if "frame rate" in table.head and "frame" in roles and "time" not in roles:
         rate = number_in(table.head["frame rate"].split()[0])
-        roles["time"] = [
-            replace(each, role="time", numbers=each.numbers / rate) for each in roles.pop("frame")
-        ]
+        for each in roles.pop("frame"):
+            times = each.numbers / rate
+            column = replace(each, role="time", texts=[*map(str, times)], numbers=times)
+            roles.setdefault("time", []).append(column)
     if "drop height" in table.head and "height after" in roles:
         height = np.full(len(table.cells), in_si("drop height", table.head["drop height"], "m"))
         roles.setdefault("height before", [Column("drop height", "m", "height before", [], height)])
@@ -446,14 +470,26 @@ def columns_of(table: Table) -> dict[str, list[Column]]:
     return roles
 
 
+def _scale(table: Table, column: Column, unit: str) -> float:
+    """Return a unit in SI units."""
+    named = f"{table.name}, column {column.name!r}"
+    return in_si(named, f"1 {unit}", SI[column.role.split()[0]]) if unit else 1.0
+
+
+def digit_of(table: Table, column: Column) -> float:
+    """Return the last digit of the numbers of a column, in SI units."""
+    decimals = [re.search(r"[.,](\d+)(?:[eE]([-+]?\d+))?", text) for text in column.texts]
+    powers = [int(each[2] or 0) - len(each[1]) for each in decimals if each]
+    return _scale(table, column, column.unit) * 10.0 ** min(powers, default=0)
+
+
 def values_of(table: Table, column: Column, unit: str = "") -> Array:
     """Return the numbers of a column in SI units; ``unit`` is that of a heading without one."""
     quantity = column.role.split()[0]
     unit = column.unit or unit
-    named = f"{table.name}, column {column.name!r}"
-    scale = in_si(named, f"1 {unit}", SI[quantity]) if unit else 1.0
     # The sign of a velocity is its direction.
-    values = scale * (np.abs(column.numbers) if quantity == "speed" else column.numbers)
+    numbers = np.abs(column.numbers) if quantity == "speed" else column.numbers
+    values = _scale(table, column, unit) * numbers
     if quantity != "time":
         check(table, quantity, bool(unit), values, table.lines)
     return values
@@ -466,8 +502,10 @@ def check(table: Table, quantity: str, has_unit: bool, values: Array, lines: Lin
     most = with_unit if has_unit else bare
     hint = "" if has_unit else " without a unit"
     hint += f": is it in {perhaps}? write ({perhaps}) behind the heading"
+    small = f"{said} is too small: write its unit behind the heading"
+    if quantity == "interval":
+        hint += ", or divide times of slow motion by its factor"
+        small += ", such as (days) of times in a spreadsheet"
     table.refuse(values <= 0, lines, f"{said} is not positive", values)
-    table.refuse(
-        values < least, lines, f"{said} is too small: write its unit behind the heading", values
-    )
+    table.refuse(values < least, lines, small, values)
     table.refuse(values > most, lines, f"{said}{hint}", values)

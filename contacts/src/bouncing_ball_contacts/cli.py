@@ -290,8 +290,6 @@ def run() -> None:
     """Run the command; a mistake is one line, and the exit status is 2."""
     try:
         sys.exit(main(standalone_mode=False))
-    except BrokenPipeError:
-        sys.exit(0)
     except (Refused, click.ClickException, OSError) as mistake:
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
         click.echo(f"bounce: {' '.join(str(text).split())}", err=True)

@@ -74,7 +74,7 @@ def test_a_full_device_is_one_line():
         ("design --engine muj", "plain,mujoco"),
         ("diagnose --engine pyb", "plain,pybullet"),
         ("fit croquet --engine drake-", "plain,drake-hunt-crossley"),
-        ("fit croq", "file,croq\nplain,croquet"),
+        ("fit croq", "file,croq"),
     ],
 )
 def test_names_are_completed(line, offered, monkeypatch, capsys):

@@ -199,19 +199,10 @@ def _lines(text: str | None) -> tuple[int, ...]:
         raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
 
 
-def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
-    from click.shell_completion import CompletionItem
-
-    from bouncing_ball_contacts.tables import experiments
-
-    names = [CompletionItem(name) for name in experiments() if name.startswith(typed)]
-    return [CompletionItem(typed, type="file"), *names]
-
-
 @main.command(
     "fit",
     params=[
-        click.Argument(["recording"], shell_complete=_recordings),
+        click.Argument(["recording"], type=click.Path(allow_dash=True)),
         click.Option(
             ["--speed"], help="At which r is wanted; the middle of the impacts if not given."
         ),

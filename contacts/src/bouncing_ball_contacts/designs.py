@@ -363,14 +363,13 @@ def _written(value: Any) -> Any:
 class Problem:
     """A bounce in an engine, for which contacts are tried.
 
-    ``one_body`` is whether the other body keeps its defaults, ``drag`` that of
-    :func:`.schemes.drop`, and ``tolerance`` the largest deviation of r.
+    ``one_body`` is whether the other body keeps its defaults, and ``tolerance`` the largest
+    deviation of r.
     """
 
     bounce: Bounce
     engine: Engine
     one_body: bool = False
-    drag: float = 0.0
     tolerance: float = TOLERANCE
 
     @property
@@ -419,7 +418,6 @@ class Problem:
             self.bounce.impact_speed,
             self.bounce.load,
             trials,
-            drag=self.drag,
         )
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:

@@ -123,9 +123,8 @@ class Contact:
         return explicit and float(self.law.damping) * longest > 1
 
     def outcome(self, *trials: Trials) -> Outcome:
-        """Return what the contact does, and the drag of the body."""
-        dragged = replace(self.problem, drag=self.combined.get("linearDamping", 0.0))
-        return dragged.outcome(self.law, self.step, *trials)
+        """Return what the contact does."""
+        return self.problem.outcome(self.law, self.step, *trials)
 
     def damped(self, value: float) -> "Contact":
         """Return the contact with another number for the damper of the first body."""

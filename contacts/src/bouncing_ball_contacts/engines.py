@@ -418,6 +418,7 @@ def _read_pybullet(p: Parameters, at: Setting) -> Law:
         erp=p["contactERP"],
         slop=p["contactSlop"],
         ahead=min(seen, p["contactProcessingThreshold"]),
+        drag=p["linearDamping"],
     )
     if p["contactStiffness"] < 0:
         return law

@@ -82,6 +82,8 @@ class Law:
 
     stiffness: Array
     damping: Array
+    drag = 0.0
+    """D in 1/s: Bullet's linear damping decelerates a body by D v (1 + |v|/(1 m/s))."""
 
     @property
     def is_number(self) -> bool:
@@ -308,6 +310,7 @@ class Bullet(Solved):
     erp: float = 0.0
     slop: float = 0.0
     ahead: float = 0.0
+    drag: float = 0.0
 
     def rest(self, gravity: float) -> Array:
         return super().rest(gravity) + self.slop
@@ -460,7 +463,6 @@ def drop(
     speed: float,
     gravity: float,
     trials: Trials,
-    drag: float = 0.0,
 ) -> Drops:
     """Drop bodies from the height speed²/(2g), or throw them without gravity.
 
@@ -476,8 +478,6 @@ def drop(
     gravity : float
         In m/s²; 0 for two free bodies.
     trials : Trials, of n drops
-    drag : float
-        D in 1/s of Bullet's linear damping, which decelerates a body by D v (1 + |v|/(1 m/s)).
     """
     columns = _beside(law, trials)
     of_position = columns.of_position
@@ -489,8 +489,8 @@ def drop(
         height = speed**2 / (2 * g)
         lag = h * (0.5 - at)
         arrival = g * (np.sqrt(lag**2 + 2 * height / g) - lag)
-        if drag:
-            arrival = np.interp(arrival, *_drag_free(1.1 * speed, gravity, -drag)[::-1])
+        if law.drag:
+            arrival = np.interp(arrival, *_drag_free(1.1 * speed, gravity, -law.drag)[::-1])
     else:
         height = np.zeros_like(at)
         arrival = speed + 0 * h * at
@@ -510,8 +510,8 @@ def drop(
     rises = np.zeros(shape, bool)
     for count in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
-        if drag:
-            free = free - h * drag * v * (1 + np.abs(v))
+        if law.drag:
+            free = free - h * law.drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         np.maximum(peak, new - free, out=peak, where=inside)
         falls_again = rises & (z < 0)
@@ -527,8 +527,8 @@ def drop(
             if gravity:
                 # The highest of the steps that follow: n more of them raise the body.
                 upward = np.maximum(new, 0.0)
-                if drag:
-                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, drag))
+                if law.drag:
+                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, law.drag))
                 n = np.floor(upward / (g * h))
                 rise = np.maximum(z + n * h * upward - g * h**2 * n * (n + 1) / 2, 0.0)
                 found = np.where(leaves, np.sqrt(rise / height), found)

@@ -110,8 +110,14 @@ class Law:
         raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
-        """Return the depth at rest in m."""
-        return gravity / self.stiffness
+        """Return the depth at rest in m, up to which the contact does not carry the body."""
+        depth = np.full(np.shape(self.stiffness), 1e-18)
+        # The factors are 2⁶⁴, 2³², …, 2, √2 and so on, down to that of rounding.
+        for power in 2.0 ** np.arange(6, -48, -1):
+            deeper = depth * 2**power
+            push = self.push(deeper, 0 * deeper, np.asarray(gravity))
+            depth = np.where(push < gravity, deeper, depth)
+        return depth
 
     def duration(self, speed: float) -> Array:
         """Return the order of the contact time in s.
@@ -170,9 +176,6 @@ class Hertz(Law):
         root = np.sqrt(np.maximum(p, 0.0))
         return self.stiffness * root * p + self.damping * np.sqrt(5 * self.stiffness * root) * w
 
-    def rest(self, gravity: float) -> Array:
-        return (gravity / self.stiffness) ** (2 / 3)
-
     def duration(self, speed: float) -> Array:
         free = 2.943 * (1.25 / self.stiffness) ** 0.4 * speed**-0.2
         return free / np.sqrt(np.maximum(1 - self.damping**2, 0.01))
@@ -199,14 +202,6 @@ class Stepped(Law):
         share = x * x * (3 - 2 * x)
         spring = self.stiffness * np.maximum(p, 0.0) ** self.exponent
         return (share if self.steps_spring else 1.0) * spring + self.damping * share * w
-
-    def rest(self, gravity: float) -> Array:
-        # Fixed point with half steps, because s is 1 below the depth of the step.
-        depth = (gravity / self.stiffness) ** (1 / self.exponent)
-        for _ in range(60 if self.steps_spring else 0):
-            x = np.clip(depth / self.depth, 1e-6, 1.0)
-            depth = 0.5 * (depth + gravity / self.stiffness / (x * x * (3 - 2 * x)))
-        return depth
 
     def duration(self, speed: float) -> Array:
         n = self.exponent
@@ -248,15 +243,6 @@ class Impedance(Law):
         d = self._impedance(p)
         return self._shared(d) * (gravity + self.stiffness * d * p + self.damping * w)
 
-    def rest(self, gravity: float) -> Array:
-        # D (g + K d p) = g, by a fixed point with half steps because d changes with p.
-        depth = gravity / np.asarray(self.stiffness)
-        for _ in range(100):
-            d = self._impedance(depth)
-            shared = self._shared(d)
-            depth = 0.5 * (depth + gravity * (1 - shared) / (shared * self.stiffness * d))
-        return depth
-
     @property
     def deep(self) -> Linear:
         """The spring and the damper of all points together below the width."""
@@ -285,6 +271,9 @@ class Solved(Law):
     def is_number(self) -> bool:
         """Whether there is a restitution coefficient, or no spring."""
         return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
+
+    def rest(self, gravity: float) -> Array:
+        return gravity / self.stiffness
 
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""

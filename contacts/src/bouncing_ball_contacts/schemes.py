@@ -20,7 +20,7 @@ offsets for one step, and not for a step beside it.
 """
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -423,13 +423,11 @@ class Drops:
 
 def _beside(law: Law, trials: Trials) -> Law:
     """Return the law with one more axis at the end of its arrays, for the trials."""
-    values = {each.name: getattr(law, each.name) for each in fields(law)}
     arrays = {
-        name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
+        name: value[..., None] for name, value in vars(law).items() if isinstance(value, np.ndarray)
     }
-    if "damping" in arrays:
-        arrays["damping"] = arrays["damping"] * trials.losses
-    return replace(law, **arrays)
+    damping = np.asarray(law.damping)[..., None] * trials.losses
+    return replace(law, **{**arrays, "damping": damping})
 
 
 def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
@@ -496,16 +494,14 @@ def drop(
     found = np.zeros(shape)
     inside = np.ones(shape, bool)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
-    rises = np.zeros(shape, bool)
     for count in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
         if law.drag:
             free = free - h * law.drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         np.maximum(peak, new - free, out=peak, where=inside)
-        falls_again = rises & (z < 0)
         rises = new > 0
-        falls_again &= ~rises
+        falls_again = (v > 0) & ~rises & (z < 0)
         moves = new
         if of_position is not columns:
             moves = scheme.velocity(of_position, z, v, free, h, g)

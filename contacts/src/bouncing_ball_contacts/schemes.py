@@ -36,8 +36,6 @@ SHORT_STEPS = 1000
 # speed then also has to be nearly constant, which it is not where the body turns.
 _REST = 2e-3
 _CREEPING = 2e-5
-# Whether a body rests is looked at after so many steps.
-_REST_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -494,7 +492,7 @@ def drop(
     found = np.zeros(shape)
     inside = np.ones(shape, bool)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
-    for count in range(200 + int(np.max(12 * duration / h))):
+    for _ in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
         if law.drag:
             free = free - h * law.drag * v * (1 + np.abs(v))
@@ -519,9 +517,8 @@ def drop(
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, new / speed, found)
-        inside &= ~(leaves | falls_again)
-        if count % _REST_STEPS == 0:
-            inside &= ~((np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed))
+        rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
+        inside &= ~(leaves | falls_again | rests)
         v = new
         if not inside.any():
             break

@@ -271,7 +271,13 @@ def engines_command() -> None:
     """List the engines, their parameters and whether they were run."""
     head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
     rows = [
-        [row.name, row.meaning, row.steps, row.pairs, row.ran or "never run"]
+        [
+            row.name,
+            row.meaning,
+            row.scheme.text if row.fixed_steps else "error-controlled",
+            ", ".join(dict.fromkeys(row.rules[name].text for name in row.names)),
+            row.ran or "never run",
+        ]
         for row in ENGINES.values()
     ]
     click.echo("\n".join(aligned([head, *rows])))

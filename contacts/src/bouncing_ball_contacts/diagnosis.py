@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts import units
 from bouncing_ball_contacts.designs import (
     IMPULSE,
     LEAST_RESTITUTION,
@@ -48,7 +47,7 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
-from bouncing_ball_contacts.units import Refused, in_si, show, within
+from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
 
 _SHARES = (
     "bounce",
@@ -271,7 +270,7 @@ def diagnose(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},
         other=None if differs is None else {**row.defaults, **differs},
-        step=1.0 if time_step is None else units.time_step(time_step),
+        step=1.0 if time_step is None else step_in_si(time_step),
     )
     if time_step is None:
         contact = replace(contact, step=contact.steps / SHORT_STEPS)

@@ -143,7 +143,7 @@ def positive(name: str, value: Any, unit: str) -> float:
     return number
 
 
-def time_step(value: Any) -> float:
+def step_in_si(value: Any) -> float:
     """Return a time step in s, which may be given as a rate in Hz.
 
     Raises

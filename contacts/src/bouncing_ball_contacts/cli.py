@@ -105,15 +105,9 @@ def _write_script(found: Design, path: str | None) -> None:
     imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
     if Path(path).stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
         raise Refused(f"a script named {Path(path).name} hides the module of the engine: rename it")
-    if Path(path).suffix != ".py":
-        raise Refused(f"{path} does not end in .py")
-    try:
-        with Path(path).open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise Refused(f"{path} exists, and is not overwritten") from None
-    except OSError as error:
-        raise Refused(f"{path} cannot be written: {error.strerror}") from None
+    if Path(path).exists():
+        raise Refused(f"{path} exists, and is not overwritten")
+    Path(path).write_text(text, "utf-8")
 
 
 @main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON])

@@ -257,7 +257,8 @@ class Solved(Law):
 
     u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
     tells how strongly the spring and the damper hold it there; without them D is infinite. The
-    restitution coefficient e counts at speeds above the `threshold`.
+    restitution coefficient e counts at speeds above the `threshold`. The solvers differ in C, and
+    in the heights z at which there is a contact; v is the velocity before the step.
     """
 
     stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
@@ -280,10 +281,6 @@ class Solved(Law):
     def held(self, u: Array, aim: Array, h: Array) -> Array:
         """Return v⁺ of an aim C."""
         return aim + (u - aim) / (1 + h * (h * self.stiffness + self.damping))
-
-    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
-        """Return v⁺ at the height z, if the velocity was v before the step."""
-        return np.where(z < 0, self.held(u, self.thrown(u), h), u)
 
 
 @dataclass(frozen=True)

@@ -223,7 +223,6 @@ MISTAKES = {
     f"{LAMMPS} kn=1e4 kn=2e4 gamma_n=1": "kn is given twice",
     f"{LAMMPS} kn=1e5 gamma_n=1 --points 0": "no whole number",
     f"{LAMMPS} kn=1e5 gamma_n=1 --restitution 2": "not between 0 and 1",
-    f"{MUJOCO} --one-body --other solref=1": "not both",
     "fit": "Missing argument",
     "fit nothing.csv": "no file, and none of",
     "fit croquet --speed fast": "does not begin",

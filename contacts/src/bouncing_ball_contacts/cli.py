@@ -179,8 +179,7 @@ def diagnose_command(
         engine,
         _assigned(parameters),
         time_step,
-        other=_assigned(other),
-        one_body=one_body,
+        other=_assigned(other) if other or one_body else None,
     )
     _print(found, as_json)
 

@@ -225,7 +225,6 @@ def diagnose(
     time_step: Quantity = None,
     *,
     other: Mapping[str, Any] | None = None,
-    one_body: bool = False,
 ) -> Diagnosis:
     """Return the bounce that parameters give at a step, and the least change for the one wanted.
 
@@ -239,9 +238,7 @@ def diagnose(
     time_step : Quantity
         Of the engine; none if the engine chooses its steps itself.
     other : mapping, optional
-        Those of the other body, by default the same.
-    one_body : bool
-        Whether the other body has the engine's defaults.
+        Those of the other body beside the engine's defaults; if it is left out, both are alike.
 
     Raises
     ------
@@ -260,12 +257,10 @@ def diagnose(
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
     if not row.fixed_steps and time_step is not None:
         raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
-    if row.sets_pair and (one_body or other):
+    if row.sets_pair and other is not None:
         raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
-    if one_body and other:
-        raise Refused("give either the parameters of the other body or --one-body, not both")
     given = _given(row, parameters or {})
-    differs = _given(row, other or {}) if one_body or other else None
+    differs = None if other is None else _given(row, other)
     contact = Contact(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},

@@ -217,8 +217,8 @@ def main():
     print("| engine | ball | table | step | r | engine | at rest, mm | engine |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for name, run, one, other, step in CASES:
-        differs = None if other == one else other
-        found = diagnose(BALL, name, one, step, other=differs, one_body=other is None)
+        differs = None if other == one else other or {}
+        found = diagnose(BALL, name, one, step, other=differs)
         way = math.sqrt(2 * G * HEIGHT) * step
         measured = []
         try:

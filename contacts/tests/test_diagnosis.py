@@ -226,7 +226,7 @@ def test_a_restitution_by_number_is_that_of_pybullet():
     assert half.outcome.restitution == pytest.approx((0.202, 0.267, 0.295), abs=0.015)
     assert diagnose(ball, "pybullet", None, "1/240").outcome.restitution == (0, 0, 0)
     # One body's restitution counts for nothing if the other one has none.
-    alone = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240", one_body=True)
+    alone = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240", other={})
     assert alone.outcome.restitution == (0, 0, 0)
     picked = design(Bounce(mass="1 kg", restitution=0.9), "pybullet", "1/240", pick="impulse")
     again = diagnose(ball, "pybullet", picked.parameters, "1/240")
@@ -415,7 +415,7 @@ def test_one_body_with_a_spring_rests_by_the_spring_of_its_points():
         "pybullet",
         {"contactStiffness": 100, "contactDamping": 1},
         "1/240",
-        one_body=True,
+        other={},
         body={"points": 4},
     )
     assert found.outcome.rest == pytest.approx(24.5e-3, abs=1e-4)
@@ -450,7 +450,7 @@ def test_two_bodies_may_have_two_materials():
 
 
 def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
-    alone = asked(None, "mujoco", {"solref": "-1e4 -20", "solimp": "1e-4 1e-4"}, "1 ms", one_body=1)
+    alone = asked(None, "mujoco", {"solref": "-1e4 -20", "solimp": "1e-4 1e-4"}, "1 ms", other={})
     both = asked(None, "mujoco", {"solref": "-1e4 -20", "solimp": "1e-4 1e-4"}, "1 ms")
     assert alone.outcome.rest < 0.7 * both.outcome.rest
 
@@ -493,8 +493,6 @@ def test_a_wrong_parameter_is_refused_in_one_line(engine, parameters, said):
 def test_the_step_is_needed():
     with pytest.raises(Refused, match="time step is missing"):
         asked(0.8, "lammps", {"kn": 1e5, "gamma_n": 2}, None)
-    with pytest.raises(Refused, match="not both"):
-        asked(0.8, "drake", {}, "1 ms", one_body=True, other={"relaxation_time": 0.1})
 
 
 def test_what_would_be_ignored_is_refused():

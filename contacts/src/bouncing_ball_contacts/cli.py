@@ -10,8 +10,10 @@ from typing import Any
 import click
 
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
+from bouncing_ball_contacts.diagnosis import diagnose
 from bouncing_ball_contacts.engines import ENGINES
-from bouncing_ball_contacts.units import Refused
+from bouncing_ball_contacts.scripts import drop_script
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused
 
 _DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
@@ -26,7 +28,9 @@ _BODY = [
     ),
     click.Option(["--other-mass"], help="Mass of a second free body; needs the speed of approach."),
     click.Option(
-        ["--gravity"], default="9.80665", help="9.80665 m/s² if not given; 0 with a speed."
+        ["--gravity"],
+        default=str(STANDARD_GRAVITY),
+        help=f"{STANDARD_GRAVITY} m/s² if not given; 0 with a speed.",
     ),
 ]
 _CONTACT = [
@@ -97,34 +101,35 @@ def _print(found: Any, as_json: bool, written: Design | None = None) -> None:
 def _write_script(found: Design, path: str | None) -> None:
     if path is None:
         return
-    from bouncing_ball_contacts.scripts import drop_script
-
     text = drop_script(found)
     imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
     if Path(path).stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
         raise Refused(f"a script named {Path(path).name} hides the module of the engine: rename it")
-    if Path(path).suffix != ".py":
-        raise Refused(f"{path} does not end in .py")
-    try:
-        with Path(path).open("x", encoding="utf-8") as file:
-            file.write(text)
-    except FileExistsError:
-        raise Refused(f"{path} exists, and is not overwritten") from None
-    except OSError as error:
-        raise Refused(f"{path} cannot be written: {error.strerror}") from None
-
-
-def _given(options: dict[str, Any]) -> dict[str, Any]:
-    names = {field.name for field in dataclasses.fields(Bounce) if field.init}
-    return {name: value for name, value in options.items() if name in names}
+    if Path(path).exists():
+        raise Refused(f"{path} exists, and is not overwritten")
+    Path(path).write_text(text, "utf-8")
 
 
 @main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON])
-def design_command(script: str | None, as_json: bool, **options: Any) -> None:
+def design_command(
+    engine: str,
+    time_step: str | None,
+    tolerance: str | None,
+    one_body: bool,
+    pick: str | None,
+    script: str | None,
+    as_json: bool,
+    **bounce: Any,
+) -> None:
     """Write the contact of an engine for the bounce that you want."""
-    options["tolerance"] = options["tolerance"] or TOLERANCE
-    names = ("engine", "time_step", "tolerance", "one_body", "pick")
-    found = design(Bounce(**_given(options)), **{name: options[name] for name in names})
+    found = design(
+        Bounce(**bounce),
+        engine,
+        time_step,
+        tolerance=tolerance or TOLERANCE,
+        one_body=one_body,
+        pick=pick,
+    )
     _write_script(found, script)
     _print(found, as_json)
 
@@ -157,21 +162,24 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     ],
 )
 def diagnose_command(
-    parameters: tuple[str, ...], other: tuple[str, ...], as_json: bool, **options: Any
+    parameters: tuple[str, ...],
+    other: tuple[str, ...],
+    engine: str,
+    time_step: str | None,
+    one_body: bool,
+    as_json: bool,
+    **bounce: Any,
 ) -> None:
     """Say what bounce the numbers of an engine give, why, and the least change for yours.
 
     Without numbers they are the engine's defaults, if it has some.
     """
-    from bouncing_ball_contacts.diagnosis import diagnose
-
     found = diagnose(
-        Bounce(**_given(options)),
-        options["engine"],
+        Bounce(**bounce),
+        engine,
         _assigned(parameters),
-        options["time_step"],
-        other=_assigned(other),
-        one_body=options["one_body"],
+        time_step,
+        other=_assigned(other) if other or one_body else None,
     )
     _print(found, as_json)
 
@@ -184,19 +192,10 @@ def _lines(text: str | None) -> tuple[int, ...]:
         raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
 
 
-def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
-    from click.shell_completion import CompletionItem
-
-    from bouncing_ball_contacts.tables import experiments
-
-    names = [CompletionItem(name) for name in experiments() if name.startswith(typed)]
-    return [CompletionItem(typed, type="file"), *names]
-
-
 @main.command(
     "fit",
     params=[
-        click.Argument(["recording"], shell_complete=_recordings),
+        click.Argument(["recording"], type=click.Path(allow_dash=True)),
         click.Option(
             ["--speed"], help="At which r is wanted; the middle of the impacts if not given."
         ),
@@ -219,14 +218,17 @@ def _recordings(_: click.Context, __: click.Parameter, typed: str) -> list[Any]:
 def fit_command(
     recording: str,
     leave_out: str | None,
-    intervals: bool,
     engine: str | None,
     time_step: str | None,
     tolerance: str | None,
     pick: str | None,
     script: str | None,
+    density: str | None,
+    penetration: str | None,
+    stiffness: str | None,
+    friction: str | None,
     as_json: bool,
-    **options: Any,
+    **of_fit: Any,
 ) -> None:
     """Read a recording of bounces: r over the speed, the laws it allows, and an engine's contact.
 
@@ -234,24 +236,26 @@ def fit_command(
     """
     from bouncing_ball_contacts.fits import fit
 
-    names = ("speed", "resolution", "mass", "diameter", "contact_time")
-    given = {name: options[name] for name in names}
     source = "/dev/stdin" if recording == "-" else recording
-    found = fit(source, leave_out=_lines(leave_out), intervals=intervals, **given)
-    if intervals and not as_json:
+    found = fit(source, leave_out=_lines(leave_out), **of_fit)
+    if of_fit["intervals"] and not as_json:
         click.echo("\n".join([*found.intervals, ""]))
-    contact = {name: options[name] for name in ("density", "penetration", "stiffness", "friction")}
-    if engine is None:
-        of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
-        of_engine = contact | of_design
-        if needless := [name for name, value in of_engine.items() if value is not None]:
-            option = needless[0].replace("_", "-")
-            raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
-        _print(found, as_json)
-        return
-    bounce = found.bounce(**contact)
-    written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
-    _write_script(written, script)
+    contact = {
+        "density": density,
+        "penetration": penetration,
+        "stiffness": stiffness,
+        "friction": friction,
+    }
+    of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
+    given = [name for name, value in (contact | of_design).items() if value is not None]
+    written = None
+    if engine is not None:
+        bounce = found.bounce(**contact)
+        written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
+        _write_script(written, script)
+    elif given:
+        option = given[0].replace("_", "-")
+        raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
     _print(found, as_json, written)
 
 
@@ -260,7 +264,13 @@ def engines_command() -> None:
     """List the engines, their parameters and whether they were run."""
     head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
     rows = [
-        [row.name, row.meaning, row.steps, row.pairs, row.ran or "never run"]
+        [
+            row.name,
+            row.meaning,
+            row.scheme.text if row.fixed_steps else "error-controlled",
+            ", ".join(dict.fromkeys(row.rules[name].text for name in row.names)),
+            row.ran or "never run",
+        ]
         for row in ENGINES.values()
     ]
     click.echo("\n".join(aligned([head, *rows])))
@@ -270,8 +280,6 @@ def run() -> None:
     """Run the command; a mistake is one line, and the exit status is 2."""
     try:
         sys.exit(main(standalone_mode=False))
-    except BrokenPipeError:
-        sys.exit(0)
     except (Refused, click.ClickException, OSError) as mistake:
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
         click.echo(f"bounce: {' '.join(str(text).split())}", err=True)

@@ -54,9 +54,9 @@ from bouncing_ball_contacts.units import (
     positive,
     show,
     span,
+    step_in_si,
     within,
 )
-from bouncing_ball_contacts.units import time_step as step_in_si
 
 Quantity = Any
 """A number in SI units, a text with a unit, or a pint quantity."""
@@ -344,7 +344,7 @@ class Row:
     parameters: dict[str, Any]
 
 
-class Contact(NamedTuple):
+class Candidate(NamedTuple):
     """A contact by its undamped depth δ in m and its ratio of damping, at a step in s."""
 
     depth: float
@@ -363,14 +363,13 @@ def _written(value: Any) -> Any:
 class Problem:
     """A bounce in an engine, for which contacts are tried.
 
-    ``one_body`` is whether the other body keeps its defaults, ``drag`` that of
-    :func:`.schemes.drop`, and ``tolerance`` the largest deviation of r.
+    ``one_body`` is whether the other body keeps its defaults, and ``tolerance`` the largest
+    deviation of r.
     """
 
     bounce: Bounce
     engine: Engine
     one_body: bool = False
-    drag: float = 0.0
     tolerance: float = TOLERANCE
 
     @property
@@ -419,7 +418,6 @@ class Problem:
             self.bounce.impact_speed,
             self.bounce.load,
             trials,
-            drag=self.drag,
         )
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
@@ -461,7 +459,7 @@ class Problem:
         most = 1 / max(wanted, LEAST_RESTITUTION)
         ratios = np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
         for _ in range(2):
-            found = self.drops(self.law(np.full(ratios.shape, depth), ratios), step, _SEARCH)
+            found = self.drops(self.law(depth, ratios), step, _SEARCH)
             falling = np.minimum.accumulate(found.mean)
             ratio = float(np.interp(-wanted, -falling, ratios))
             if wanted <= self.tolerance or wanted < falling[-1]:
@@ -472,24 +470,23 @@ class Problem:
             ratios = ratio * np.linspace(0.65, 1.5, 17)
         return ratio
 
-    def outcome_of(self, contact: Contact) -> Outcome:
+    def outcome_of(self, contact: Candidate) -> Outcome:
         """Return what a contact does, before its numbers are written."""
-        law = self.law(np.array([contact.depth]), np.array([contact.ratio]))
-        return self.outcome(law, contact.step)
+        return self.outcome(self.law(contact.depth, contact.ratio), contact.step)
 
     def is_near(self, found: Outcome) -> bool:
         """Return whether r is within the tolerance."""
         return found.deviation(self.bounce.restitution) <= self.tolerance
 
-    def at(self, depth: float, step: float) -> Contact:
+    def at(self, depth: float, step: float) -> Candidate:
         """Return the contact of an undamped depth in m at a time step in s."""
-        return Contact(depth, self.ratio(depth, step), step)
+        return Candidate(depth, self.ratio(depth, step), step)
 
     def step_of(self, count: float) -> Callable[[float], float]:
         """Return the step of an undamped depth with which a contact has so many steps."""
         return lambda depth: _written(min(self.duration * depth / count, LONGEST_STEP))
 
-    def keeping(self, step_of: Callable[[float], float]) -> Contact:
+    def keeping(self, step_of: Callable[[float], float]) -> Candidate:
         """Return the contact that keeps what is given, at the step of its undamped depth."""
         if self.given_depth is not None:
             return self.at(self.given_depth, step_of(self.given_depth))
@@ -503,24 +500,24 @@ class Problem:
             depth *= change**0.75
             if abs(change - 1) < 0.01:
                 break
-        return Contact(depth, contact.ratio, step_of(depth))
+        return Candidate(depth, contact.ratio, step_of(depth))
 
     def is_shallow(self, found: Outcome) -> bool:
         """Return whether the depth is at most the permitted one, or the contact was given."""
         return self.given_depth is not None or found.depth[1] <= self.bounce.limit
 
-    def keeps(self, contact: Contact) -> bool:
+    def keeps(self, contact: Candidate) -> bool:
         """Return whether r is within the tolerance, and the depth at most the permitted one."""
         found = self.outcome_of(contact)
         return self.is_shallow(found) and self.is_near(found)
 
-    def works(self, contact: Contact) -> bool:
+    def works(self, contact: Candidate) -> bool:
         """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
         found = self.outcome_of(contact)
         is_seen = found.depth[1] < self.deepest and found.rest < self.bounce.size
         return is_seen and self.is_near(found)
 
-    def wanted(self) -> Contact:
+    def wanted(self) -> Candidate:
         """Return the contact that keeps what is given, with the longest step in the tolerance.
 
         If there is none, it is the one with the nearest r.
@@ -532,13 +529,13 @@ class Problem:
                 return contact
             tried.append(contact)
 
-        def falls_short(contact: Contact) -> tuple[bool, float]:
+        def falls_short(contact: Candidate) -> tuple[bool, float]:
             found = self.outcome_of(contact)
             return not self.is_shallow(found), found.deviation(self.bounce.restitution)
 
         return min(tried, key=falls_short)
 
-    def stiffest(self, step: float) -> Contact:
+    def stiffest(self, step: float) -> Candidate:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
 
         It is found by halving, because r misses less the more steps there are. If there is none,
@@ -550,7 +547,7 @@ class Problem:
         )
         return self.at(depths[min(place, len(depths) - 1)], step)
 
-    def row(self, contact: Contact) -> Row:
+    def row(self, contact: Candidate) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
         law = self.law(contact.depth, contact.ratio)
         combined = {**self.engine.write(law, self.setting(contact.step)), **self.engine.beside}

@@ -21,7 +21,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts import units
 from bouncing_ball_contacts.designs import (
     IMPULSE,
     LEAST_RESTITUTION,
@@ -48,7 +47,7 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
-from bouncing_ball_contacts.units import Refused, in_si, show, within
+from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
 
 _SHARES = (
     "bounce",
@@ -123,9 +122,8 @@ class Contact:
         return explicit and float(self.law.damping) * longest > 1
 
     def outcome(self, *trials: Trials) -> Outcome:
-        """Return what the contact does, and the drag of the body."""
-        dragged = replace(self.problem, drag=self.combined.get("linearDamping", 0.0))
-        return dragged.outcome(self.law, self.step, *trials)
+        """Return what the contact does."""
+        return self.problem.outcome(self.law, self.step, *trials)
 
     def damped(self, value: float) -> "Contact":
         """Return the contact with another number for the damper of the first body."""
@@ -227,7 +225,6 @@ def diagnose(
     time_step: Quantity = None,
     *,
     other: Mapping[str, Any] | None = None,
-    one_body: bool = False,
 ) -> Diagnosis:
     """Return the bounce that parameters give at a step, and the least change for the one wanted.
 
@@ -241,9 +238,7 @@ def diagnose(
     time_step : Quantity
         Of the engine; none if the engine chooses its steps itself.
     other : mapping, optional
-        Those of the other body, by default the same.
-    one_body : bool
-        Whether the other body has the engine's defaults.
+        Those of the other body beside the engine's defaults; if it is left out, both are alike.
 
     Raises
     ------
@@ -262,17 +257,15 @@ def diagnose(
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
     if not row.fixed_steps and time_step is not None:
         raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
-    if row.sets_pair and (one_body or other):
+    if row.sets_pair and other is not None:
         raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
-    if one_body and other:
-        raise Refused("give either the parameters of the other body or --one-body, not both")
     given = _given(row, parameters or {})
-    differs = _given(row, other or {}) if one_body or other else None
+    differs = None if other is None else _given(row, other)
     contact = Contact(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},
         other=None if differs is None else {**row.defaults, **differs},
-        step=1.0 if time_step is None else units.time_step(time_step),
+        step=1.0 if time_step is None else step_in_si(time_step),
     )
     if time_step is None:
         contact = replace(contact, step=contact.steps / SHORT_STEPS)

@@ -184,16 +184,6 @@ class Engine:
                 )
         return values
 
-    @property
-    def steps(self) -> str:
-        """The scheme in a few words."""
-        return self.scheme.text if self.fixed_steps else "error-controlled"
-
-    @property
-    def pairs(self) -> str:
-        """How the parameters of two bodies are combined, in a few words."""
-        return ", ".join(dict.fromkeys(self.rules[name].text for name in self.names))
-
 
 @dataclass(frozen=True)
 class DrakeDissipation(Engine):
@@ -418,6 +408,7 @@ def _read_pybullet(p: Parameters, at: Setting) -> Law:
         erp=p["contactERP"],
         slop=p["contactSlop"],
         ahead=min(seen, p["contactProcessingThreshold"]),
+        drag=p["linearDamping"],
     )
     if p["contactStiffness"] < 0:
         return law

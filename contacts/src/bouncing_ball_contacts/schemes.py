@@ -258,13 +258,15 @@ class Solved(Law):
     u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
     tells how strongly the spring and the damper hold it there; without them D is infinite. The
     restitution coefficient e counts at speeds above the `threshold`. The solvers differ in C, and
-    in the heights z at which there is a contact; v is the velocity before the step.
+    in the heights z at which there is a contact; v is the velocity before the step. The depth at
+    rest is that at the time step `step` in s.
     """
 
     stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
     damping: Array = field(default_factory=lambda: np.asarray(0.0))
     restitution: Array = field(kw_only=True)
     threshold: float = 0.0
+    step: float = 0.0
 
     @property
     def is_number(self) -> bool:
@@ -272,7 +274,12 @@ class Solved(Law):
         return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
 
     def rest(self, gravity: float) -> Array:
-        return gravity / self.stiffness
+        """Return the depth at rest in m; NaN if the speed that each step of gravity adds is thrown
+        back.
+        """
+        return np.where(
+            self.thrown(np.asarray(-gravity * self.step)) > 0, np.nan, gravity / self.stiffness
+        )
 
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""
@@ -313,7 +320,7 @@ class ContactJoint(Solved):
     """ODE's contact joint: C is the larger one of e (-v)₊ and h k p/(h k + c)/h, at most `fastest`.
 
     The rebound is from the velocity before the step. The position moves as without `fastest`, and
-    a body whose C at rest, g/(h k + c), is larger lies deeper than g/k at the time step h.
+    a body whose C at rest, g/(h k + c), is larger lies deeper than g/k.
     """
 
     fastest: float = math.inf
@@ -326,7 +333,7 @@ class ContactJoint(Solved):
     def rest(self, gravity: float) -> Array:
         aim = gravity / (self.step * self.stiffness + self.damping)
         more = np.maximum(aim - self.fastest, 0.0) / (self.step * self.stiffness)
-        return super().rest(gravity) + more
+        return gravity / self.stiffness + more
 
     def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
         out = -self.stiffness * z / (h * self.stiffness + self.damping)

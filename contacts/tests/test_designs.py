@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Contact, Problem
+from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Candidate, Problem
 from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import exact, offsets
 
@@ -218,7 +218,7 @@ def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
 
 @pytest.mark.parametrize("name", STEPPED)
 def test_points_share_the_force(name):
-    contact = Contact(depth=2e-3, ratio=0.1, step=1e-5)
+    contact = Candidate(depth=2e-3, ratio=0.1, step=1e-5)
     one, four = (Problem(replace(SHORT, points=n), ENGINES[name]).row(contact) for n in (1, 4))
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
     if not name.startswith("drake") and name not in ("ode", "genesis", "mujoco"):

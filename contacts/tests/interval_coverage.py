@@ -481,6 +481,9 @@ def study(kind, recordings, seed):
         if scatter is None:
             scatter = PUBLISHED * math.exp(WIDTH * rng.normal())
         recording = make(rng, r, scatter=scatter)
+        # Flights of no duration are refused.
+        while np.min(np.concatenate(recording.chains)) <= 0:
+            recording = make(rng, r, scatter=scatter)
         impacts = impacts_of(recording)
         known = stated[0] if stated else recording.uncertainty
         at = math.exp(float(np.mean(np.log(impacts.speed))))

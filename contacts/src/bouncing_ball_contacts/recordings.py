@@ -276,12 +276,13 @@ def _of_series(table: Table, columns: list[Column], runs: list[_Run]) -> Recordi
             # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2. The
             # next flight may be longer by the error of one time; with that of two times an impact
             # that is missed in a film would hide more often.
-            first, middle, last = values[:-2], values[1:-1], values[2:]
-            is_missed = (middle + rounding / 2) ** 2 < first * last / 2
-            table.refuse(is_missed, lines[:-2], missed, first, middle)
+            middle = values[1:-1]
+            beside = values[:-2] * values[2:]
+            is_missed = (middle + rounding / 2) ** 2 < beside / 2
+            table.refuse(is_missed, lines[:-2], missed, values[:-2], middle)
             # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
             # that and r, in the logarithms that scatter alike, is √2 r.
-            is_short = (middle - rounding / 2) ** 2 > math.sqrt(2) * first * last
+            is_short = (middle - rounding / 2) ** 2 > math.sqrt(2) * beside
             table.refuse(
                 is_short[:1],
                 lines,

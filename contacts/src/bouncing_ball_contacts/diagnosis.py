@@ -185,6 +185,7 @@ class Diagnosis(Page):
         ]
         defaults = {name: self.parameters[name] for name in row.defaults if name not in self.given}
         assumed = [f"the defaults {_assigned(defaults)}" if defaults else ""]
+        lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest)
         lines = [
             (
                 True,
@@ -195,7 +196,7 @@ class Diagnosis(Page):
                 True,
                 f"It sinks {show(self.outcome.depth[1], 'm')} under at most "
                 + show(self.outcome.force[1], "N")
-                + (f", and lies {show(self.outcome.rest, 'm')} deep." if self.bounce.load else "."),
+                + (f", and lies {show(self.outcome.rest, 'm')} deep." if lies else "."),
             ),
             (
                 math.isfinite(self.stiffness),

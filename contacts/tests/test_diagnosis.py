@@ -208,6 +208,23 @@ def test_a_damping_by_the_formula_of_a_damper_that_pulls_is_recognized():
     assert not any(pulls in reason for reason in weak.reasons)
 
 
+def test_what_is_assumed_of_another_body_is_said():
+    """Drake's default of 0.1 s took all of the bounce, and stood nowhere."""
+    given = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-3}
+    ball = Bounce(mass=1, radius=0.1, restitution=0.3)
+    found = str(diagnose(ball, "drake", given, "1 ms", other={"point_contact_stiffness": 1e6}))
+    assert "of the other body the defaults relaxation_time = 0.1" in found
+    # The least change of one body is at half the step; at this step both have to be changed.
+    ball = Bounce(mass=1, radius=0.1, restitution=0.6)
+    spring = {"contactStiffness": 1e5, "contactDamping": 5}
+    one = str(diagnose(ball, "pybullet", spring, 1e-3, other={}))
+    assert "a design has, of both bodies: " in one and "without a spring, of both bodies: " in one
+
+
+def test_an_r_that_is_kept_is_said_so():
+    assert "0.8 is wanted, and kept within 0.02" in str(asked(0.8, "ode", {"bounce": 0.8}, "1 ms"))
+
+
 def test_a_spring_that_is_off_is_an_impulse():
     """contactStiffness = -1 is PyBullet's default, and was refused."""
     unset = {"contactStiffness": -1, **UNDISTURBED}

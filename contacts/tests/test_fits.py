@@ -141,6 +141,26 @@ def test_scatter_is_known_best_by_sums_in_which_errors_of_times_cancel():
     assert np.mean(above) < 0.12
 
 
+def test_a_number_that_is_typed_wrongly_is_pointed_at():
+    """With 0.08 for 0.80 r was 0.107, outside of its own interval of 0.197 to 0.788."""
+    v = [4.43, 3.13, 2.21, 1.1, 0.5]
+    typed = {"v (m/s)": v, "e": [0.8, 0.08, 0.81, 0.8, 0.8], "error": [0.01] * 5}
+    found = fit(typed)
+    assert found.interval[0] < found.restitution < found.interval[1]
+    assert any("r = 0.08 at 3.13 m/s is far" in note for note in found.notes)
+    right = fit({**typed, "e": [0.8, 0.75, 0.81, 0.8, 0.8]})
+    assert not any("far from" in note for note in right.notes)
+
+
+def test_a_law_is_compared_with_curves_that_a_parabola_does_not_follow():
+    """Hunt and Crossley was compatible with 1 - 0.06 v, with a χ² of 48 for 7 numbers."""
+    v = np.array([0.3, 0.5, 0.8, 1.3, 2.0, 3.0, 4.5, 6.0])
+    errors = 0.006 * np.array([0.3, -0.8, 1.1, -0.2, 0.5, -1.2, 0.9, -0.4])
+    columns = {"v (m/s)": v.tolist(), "e": (1 - 0.06 * v + errors).tolist(), "error": [0.006] * 8}
+    verdicts = {each.law: each.verdict for each in fit(columns).laws}
+    assert verdicts["Hunt and Crossley"] == "incompatible"
+
+
 def test_two_impacts_do_not_say_that_nothing_scatters():
     """They leave no deviation, which a confidence in scatter would take for its absence."""
     impacts = impacts_of(Recording("", "flights", (np.array([0.8, 0.64, 0.512]),)))

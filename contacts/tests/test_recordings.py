@@ -7,6 +7,7 @@ import zipfile
 from itertools import product
 
 import numpy as np
+import pint
 import pytest
 
 from bouncing_ball_contacts import Refused, fit
@@ -869,3 +870,17 @@ def test_a_count_of_intervals_is_none(tmp_path):
     assert not read(path).notes
     with pytest.raises(Refused, match="no column of intervals"):
         read(path, intervals=True)
+
+
+@pytest.mark.parametrize("heading", ["±", "+/-", "+-", "Standardabweichung", "sigma_e"])
+def test_a_column_of_errors_is_one_of_r(heading):
+    columns = {"v (m/s)": [1.0, 2, 3], "COR": [0.8, 0.79, 0.8], heading: [0.01, 0.02, 0.01]}
+    assert read(columns).uncertainty == pytest.approx([0.01, 0.02, 0.01])
+
+
+def test_a_column_may_be_a_quantity():
+    flights = [0.72, 0.58, 0.465, 0.372]
+    of_numbers = read({"interval (s)": flights})
+    for heading in ("interval (s)", "interval"):
+        found = read({heading: 1000 * np.array(flights) * pint.Unit("ms")})
+        assert found.chains[0] == pytest.approx(of_numbers.chains[0])

@@ -688,7 +688,8 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     depth = found.rows.get(YOURS, wanted).outcome.depth[1]
     is_deeper = not keeps and depth > 1.01 * wanted.outcome.depth[1]
     share = f"{100 * depth / bounce.size:.3g} % of its {bounce.size_name}"
-    passes = "its centre passes the surface, so that a table has to be twice as thick"
+    thickness = show(2 * (depth - bounce.size), "m")
+    passes = f"its centre passes the surface (a table has to be thicker than {thickness})"
     step = found.time_step or wanted.step
     at_yours = show(step, "s", 4)
     moves = (

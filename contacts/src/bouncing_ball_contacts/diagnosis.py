@@ -185,12 +185,18 @@ class Diagnosis(Page):
         ]
         defaults = {name: self.parameters[name] for name in row.defaults if name not in self.given}
         assumed = [f"the defaults {_assigned(defaults)}" if defaults else ""]
+        if self.other:
+            rest = {name: row.defaults[name] for name in row.defaults if name not in self.other}
+            assumed.append(f"of the other body the defaults {_assigned(rest)}" if rest else "")
+        is_kept = ""
+        if wanted is not None and self.outcome.deviation(wanted) <= TOLERANCE:
+            is_kept = f", and kept within {TOLERANCE:g}"
         lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest)
         lines = [
             (
                 True,
                 f"{row.name} at a step of {show(self.time_step, 's')}: r = {self.outcome.around}"
-                + ("" if wanted is None else f"; {wanted:g} is wanted"),
+                + ("" if wanted is None else f"; {wanted:g} is wanted{is_kept}"),
             ),
             (
                 True,
@@ -573,7 +579,11 @@ def _at_this_step(contact: Contact) -> Iterator[str]:
         found = design(contact.problem.bounce, row, contact.step if row.fixed_steps else None)
     except Refused:
         return
-    yield f"what a design has: {_gives(found.parameters, found.row.step, found.row.outcome)}"
+    bodies = "" if contact.other is None else ", of both bodies"
+    yield (
+        f"what a design has{bodies}: {_gives(found.parameters, found.row.step, found.row.outcome)}"
+    )
     if row.number and IMPULSE in found.rows:
         impulse = found.rows[IMPULSE]
-        yield f"without a spring: {_gives(impulse.parameters, impulse.step, impulse.outcome)}"
+        gives = _gives(impulse.parameters, impulse.step, impulse.outcome)
+        yield f"without a spring{bodies}: {gives}"

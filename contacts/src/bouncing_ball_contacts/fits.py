@@ -32,8 +32,9 @@ scatter multiplies this distribution. Two impacts leave no deviation, and have t
 s > 0. The interval without scatter is left out if both are alike or if a test of s = 0 at 5 %
 rejects it (`without_scatter`).
 
-A law is judged by how much worse it fits than a parabola in ln v, for each ρ: with m impacts more
-than the three that a parabola needs, and sums of squares Q of the law and P of the parabola, its
+A law is judged by how much worse it fits than a parabola in ln v, or than the best of the curves
+above if that is nearer, for each ρ: with m impacts more than the three parameters that both have,
+and sums of squares Q of the law and P of the parabola or the curve, its
 probability is (P/Q)^(m/2), that of the F distribution with 2 and m degrees of freedom. The largest
 one counts of those ρ that are at least 1/20 as likely as the likeliest one. If the errors are known
 it is e^(-(Q - P)/2τ²), that of the χ² distribution, averaged over ρ. Scatter alone, which the
@@ -186,8 +187,9 @@ def without_contacts(recording: Recording, durations: Array) -> Recording:
 class Curves:
     """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 
-    ``basis`` has the eigenvectors of M Mᵀ, in which ``variances`` (ratio, n) are those of ln r over
-    τ²; ``sizes`` are the τ, and ``rounded`` is what rounding has of them. The logarithm of the
+    ``basis`` has the eigenvectors of M Mᵀ, in which ``columns`` (exponent, n, 2) are the ones and
+    the bends of which curves are the sums, and ``variances`` (ratio, n) those of ln r over τ²;
+    ``sizes`` are the τ, and ``rounded`` is what rounding has of them. The logarithm of the
     posterior, the weights by the confidence distribution of the scatter, the means of β, ``value``,
     and of c, ``slope``, and the standard deviation of β, ``spread``, have the shape (ratio, size,
     exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
@@ -196,6 +198,7 @@ class Curves:
 
     is_known: bool
     basis: Array
+    columns: Array
     variances: Array
     sizes: Array
     rounded: float
@@ -209,7 +212,7 @@ class Curves:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The mean of β, the ends of its interval of 95 %, and the mean of c."""
+    """The median of β, the ends of its interval of 95 %, and the mean of c."""
 
     value: float
     low: float
@@ -217,21 +220,28 @@ class Estimate:
     slope: float
 
 
+def _deviations(weights: Array, columns: Array, y: Array) -> tuple[Array, Array]:
+    """Return what the best sums of columns leave, over its standard deviation, and their basis.
+
+    ``weights`` (ratio, n) are one over the variances, ``columns`` are (curve, n, 2); the deviations
+    (ratio, curve, n, 1) are y less its projection Q Qᵀ on the columns.
+    """
+    size = np.sqrt(weights)[:, None, :, None]
+    q, r = np.linalg.qr(size * columns)
+    # Impacts of one speed tell nothing of a slope.
+    q *= (np.abs(r[..., 1:, 1]) > 1e-9 * np.abs(r[..., :1, 0]))[..., None] | [True, False]
+    u = size * y[:, None]
+    return u - q @ (q.swapaxes(-1, -2) @ u), q
+
+
 def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
     """Return the probability that the scatter is below each one: (ratio, size, exponent).
 
-    ``weights`` (ratio, n) are τ² over the variances, ``columns`` (exponent, n, 2) what a curve is
-    the sum of. The statistic is the derivative of the logarithm of the likelihood by s², Σ w u² of
-    the deviations u over their standard deviations. It has nearly a χ² distribution with its mean
-    and variance (F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110): u are normal numbers less
-    their projection Q Qᵀ on the columns.
+    The statistic is the derivative of the logarithm of the likelihood by s², Σ w u² of the
+    `_deviations` u. It has nearly a χ² distribution with its mean and variance (F. E.
+    Satterthwaite, Biometrics Bulletin 2 (1946) 110).
     """
-    deviation = np.sqrt(weights)[:, None, :, None]
-    q, r = np.linalg.qr(deviation * columns)
-    # Impacts of one speed tell nothing of a slope.
-    q *= (np.abs(r[..., 1:, 1]) > 1e-9 * np.abs(r[..., :1, 0]))[..., None] | [True, False]
-    u = deviation * y[:, None]
-    u = u - q @ (q.swapaxes(-1, -2) @ u)
+    u, q = _deviations(weights, columns, y)
     # The weights of no scatter are those of the smallest one, against rounding errors.
     w = np.concatenate([weights[1:2], weights[1:]])[:, None, :, None]
     weighted = w * q
@@ -313,14 +323,15 @@ def curves_of(
     shares = special.softmax(posterior)
     curve = np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
     deviations = np.exp(curve) - impacts.restitution
+    columns = np.stack([np.broadcast_to(one, bend.shape), bend], axis=-1)
     # Two impacts leave no deviation, and have the posterior of all s > 0.
     confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
     if n > 2:
-        columns = np.stack([np.broadcast_to(one, bend.shape), bend], axis=-1)
         confidence = _confidence(confidence, _below(weights, columns, y, sizes), scatter)
     return Curves(
         is_known=known is not None,
         basis=basis,
+        columns=columns,
         variances=variances,
         sizes=sizes,
         rounded=error * rounded,
@@ -343,14 +354,14 @@ def _estimate(curves: Curves, weights: Array) -> Estimate:
     value = curves.value[:n][matters]
     spread = curves.spread[:n][matters]
     ends = np.min(value - 9 * spread), np.max(value + 9 * spread)
-    low, high = (
+    low, middle, high = (
         optimize.brentq(
             lambda x, p=level: special.ndtr((x - value) / spread) @ weights - p, *ends, xtol=1e-9
         )
-        for level in (0.025, 0.975)
+        for level in (0.025, 0.5, 0.975)
     )
     slope = np.sum(curves.slope[:n][matters] * weights)
-    return Estimate(float(value @ weights), low, high, float(slope))
+    return Estimate(middle, low, high, float(slope))
 
 
 def without_scatter(impacts: Impacts, curves: Curves) -> float:
@@ -574,8 +585,10 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     # those of the arithmetic.
     errors = curves.rounded**2 * curves.variances[0] + curves.basis.T**2 @ impacts.arithmetic**2
     left = np.mean(errors / curves.variances[:-1], axis=1)
-    parabola = np.array(rest)
-    parabola[:-1] = np.maximum(rest[:-1], max(len(x) - 3, 1) * left)
+    # A curve of an exponent may be nearer than a parabola, which has as many parameters.
+    u, _ = _deviations(1 / curves.variances, curves.columns, y)
+    parabola = np.minimum(rest, np.min(np.sum(u**2, axis=(2, 3)), axis=1))
+    parabola[:-1] = np.maximum(parabola[:-1], max(len(x) - 3, 1) * left)
     found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)
     return sorted(
@@ -822,6 +835,10 @@ def fit(
     curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
+    # A number that is typed wrongly is by far the farthest one.
+    far = np.abs(impacts.log_r - np.median(impacts.log_r))
+    farthest = int(np.argmax(far))
+    is_far = len(v) > 3 and far[farthest] > max(0.2, 5 * float(np.sort(far)[-2]))
     if scattering.low > 0:
         raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
     interval = _of_logs(scattering)
@@ -845,6 +862,8 @@ def fit(
         and not lasts
         and matters < 0.01,
         f"r = {r:.4f} is above 1 within its error: 1 is taken": r > 1,
+        f"r = {impacts.restitution[farthest]:.3g} at {v[farthest]:.3g} m/s is far from all others: "
+        "is a number wrong? --leave-out leaves its line out": is_far,
         # A speed that is typed is rounded.
         f"{show(at, 'm/s')} is outside of the measured speeds": not 0.99 * v.min()
         <= at

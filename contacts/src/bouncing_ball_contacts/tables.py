@@ -90,7 +90,7 @@ _QUANTITIES = (
     ("error", r"(uncert|err|std).*(time|height|speed|veloc|\b[hvt]\b)"),
     ("error", r"(time|height|speed|veloc|\b[hvt]\b).*(uncert|err|std)|^[dδ] ?[hv]\d*\b"),
     ("uncertainty", r"uncert|error|\berr\b|\bstd|standard dev|\bs[de]m?\b|sigma|[±σ]|fehler"),
-    ("uncertainty", r"unsicherheit|^[dδ] ?(e|cor)\b"),
+    ("uncertainty", r"unsicherheit|standardabw|^[dδ] ?(e|cor)\b"),
     ("coefficient", r"\bcor\b|restitution|coefficient|stosszahl|\b[er]\b"),
     ("interval", r"interval|flight|flug|air ?time|hang|between|difference|\b(d|δ|delta) ?t\b"),
     ("duration", r"duration|dauer|contact|kontakt"),
@@ -182,6 +182,14 @@ def _sheet(data: bytes) -> tuple[str, int]:
 
 def _columns_as_text(name: str, columns: Any) -> str:
     """Return columns with their headings as lines with tabs."""
+    if isinstance(columns, Mapping):
+        # The unit of a quantity takes the place of one in the heading.
+        columns = dict(
+            (f"{heading.split(' (')[0]} ({each.units:~C})", each.magnitude)
+            if hasattr(each, "units")
+            else (heading, each)
+            for heading, each in columns.items()
+        )
     values = list(columns.values()) if isinstance(columns, Mapping) else [""]
     are_lists = all(
         hasattr(each, "__len__") and not isinstance(each, str | dict) for each in values
@@ -395,7 +403,7 @@ def _column(heading: str, texts: list[str]) -> Column:
     """Return the column of a heading such as 'h0 (cm)', 'h0/cm', 'h0_cm' or 'h0 in cm'."""
     # People write m s-1 for m/s, and (cm ± 0.5).
     heading = re.sub(r"\b([ckm]?m)[\s·]*s(\^?[-−]1|⁻¹)", r"\1/s", heading)
-    heading = re.sub(r"\s*±\s*[\d.,]+", "", heading)
+    heading = re.sub(r"\s*±\s*[\d.,]+", "", re.sub(r"\+/?-", "±", heading))
     parts = (
         re.fullmatch(r"(.*?)[\s/]*[(\[](?!energ)([^)\]]*)[)\]]", heading)
         or re.fullmatch(rf"(.*?)(?:[\s_,]+in|\s*/)?[\s_,]+({_UNIT})", heading)

@@ -231,6 +231,14 @@ def test_drake_has_one_contact_for_a_pair_of_shapes():
     assert one.parameters == four.parameters
 
 
+def test_two_free_balls_change_places_if_they_overlap_by_both_radii():
+    """Eight times the mass of the same density has twice the radius."""
+    pair = Bounce(mass=1, other_mass=8, restitution=0.8, radius=0.05, speed=1)
+    assert Problem(pair, ENGINES["mujoco"]).deepest == pytest.approx(0.05 + 0.1)
+    # LAMMPS loses grains whose centres meet a surface.
+    assert Problem(pair, ENGINES["lammps"]).deepest == pytest.approx(0.05)
+
+
 @pytest.mark.parametrize("name", ["pybullet", "lammps", "mujoco", "drake"])
 def test_two_free_bodies_act_by_their_reduced_mass(name):
     pair = design(Bounce(mass=1, restitution=0.8, other_mass=3, speed=2, radius=0.05), name)

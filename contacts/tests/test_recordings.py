@@ -884,3 +884,9 @@ def test_a_column_may_be_a_quantity():
     for heading in ("interval (s)", "interval"):
         found = read({heading: 1000 * np.array(flights) * pint.Unit("ms")})
         assert found.chains[0] == pytest.approx(of_numbers.chains[0])
+
+
+def test_errors_within_cells_are_said_to_be_left():
+    cells = {"v (m/s)": [1, 2, 3], "COR": ["0.80 ± 0.01", "0.79 ± 0.01", "0.80 ± 0.01"]}
+    assert any("errors in cells are not used" in note for note in read(cells).notes)
+    assert not read({**cells, "COR": [0.8, 0.79, 0.8]}).notes

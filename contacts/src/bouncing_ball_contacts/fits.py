@@ -719,6 +719,7 @@ class Fit(Page):
     def __repr__(self) -> str:
         v = self.impacts.speed
         title = self.recording.head.get("title", self.recording.name)
+        count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
         at = f"at {self.speed:.3g} m/s, 95 %:"
 
         def line(r: float, interval: tuple[float, float]) -> str:
@@ -731,7 +732,7 @@ class Fit(Page):
             still = line(self.restitution_without_scatter, self.without_scatter)
             found += f" if impacts scatter\n{still} if they do not"
         return (
-            f"{title}: {len(v)} impacts at {v.min():.3g} to {v.max():.3g} m/s, "
+            f"{title}: {count} at {v.min():.3g} to {v.max():.3g} m/s, "
             f"from {self.recording.kind}\n"
             f"{found}\n"
             f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}"

@@ -653,6 +653,9 @@ def read(
             "error" in roles or ("uncertainty" in roles and uncertainty is None)
         ),
         "no heading: taken as times in s": table.is_bare,
+        "errors in cells are not used: give a column of errors, or --resolution": any(
+            "±" in text for each in columns for text in each.texts
+        ),
         f"{tables} sheets have numbers: the first one of them is read": tables > 1,
         f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
         f"the head has {', '.join(unused)}, but only {', '.join(KEYS)} are used": bool(unused),

@@ -31,7 +31,7 @@ from bouncing_ball_contacts.engines import (
     Setting,
     engine_named,
     filled,
-    text_of,
+    snippet_of,
 )
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
@@ -433,12 +433,11 @@ class Problem:
         r = found.restitution
         force = found.peak * self.bounce.reduced_mass
         rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
+        is_resolved = rest == 0 or rest >= self.engine.resolution * self.bounce.size
         return Outcome(
             # A body that creeps is not followed until it is at rest.
             depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
-            rest=rest
-            if rest == 0 or rest >= self.engine.resolution * self.bounce.size
-            else math.nan,
+            rest=rest if is_resolved else math.nan,
             force=(float(force.min()), float(force.max())),
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
@@ -658,7 +657,7 @@ def design(
             rows[IMPULSE] = problem.impulse(step)
     usual = YOURS if YOURS in rows and (keeps or not bounce.gives_contact) else WANTED
     chosen = usual if pick is None else pick.strip().lower()
-    is_impulse_written = text_of(f"{problem.engine.name}-{IMPULSE}") and not one_body
+    is_impulse_written = snippet_of(f"{problem.engine.name}-{IMPULSE}") and not one_body
     written = [name for name in rows if name != IMPULSE or is_impulse_written]
     names = ", ".join(map(repr, written))
     refuse([(chosen not in written, f"row {pick!r} is not one that is written here: {names}")])
@@ -795,7 +794,7 @@ class Design(Page):
         """What is pasted, with places for the numbers."""
         bodies = "ground" if self.bounce.other_mass is None else "pair"
         kind = IMPULSE if self.chosen == IMPULSE else bodies
-        return text_of(f"{self.engine}-{kind}") or text_of(self.engine)
+        return snippet_of(f"{self.engine}-{kind}") or snippet_of(self.engine)
 
     @property
     def snippet(self) -> str:
@@ -852,7 +851,7 @@ class Design(Page):
                 f"{source.rules[source.number].text}",
             ),
             (impulse and math.isnan(self.rows[IMPULSE].outcome.rest), f"With it {HOPS}"),
-            (impulse and text_of(f"{self.engine}-{IMPULSE}"), f"--pick {IMPULSE} writes it"),
+            (impulse and snippet_of(f"{self.engine}-{IMPULSE}"), f"--pick {IMPULSE} writes it"),
             (not engine.ran, f"The row of {self.engine} was never run in its engine"),
             *((True, note) for note in engine.notes),
             (bounce.points > 1, engine.box),

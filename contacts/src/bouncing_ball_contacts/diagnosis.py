@@ -487,10 +487,7 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
         ),
         (found.outcome.depth[1] > contact.problem.deepest, contact.problem.lost),
-        (
-            math.isnan(found.outcome.rest),
-            HOPS if law.is_number else VAGUE,
-        ),
+        (math.isnan(found.outcome.rest), HOPS if law.is_number else VAGUE),
         (
             bounce.load and impedance > _VISIBLE,
             f"with the impedance {impedance:g} a contact feels {1 - impedance:.2g} of gravity; a "

@@ -235,7 +235,7 @@ class NewtonMujoco(Engine):
         return super().combined(one, other) | {"ke": 1 / (time * ratio) ** 2, "kd": 2 / time}
 
 
-def text_of(name: str) -> str:
+def snippet_of(name: str) -> str:
     """Return the text of a file of snippets; empty if there is none."""
     path = files(__package__).joinpath("snippets", f"{name}.txt")
     return path.read_text("utf-8") if path.is_file() else ""

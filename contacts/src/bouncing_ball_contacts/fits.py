@@ -32,15 +32,14 @@ scatter multiplies this distribution. Two impacts leave no deviation, and have t
 s > 0. The interval without scatter is left out if both are alike or if a test of s = 0 at 5 %
 rejects it (`without_scatter`).
 
-A law is judged by how much worse it fits than a parabola in ln v, or than the best of the curves
-above if that is nearer, for each ρ: with m impacts more than the three parameters that both have,
-and sums of squares Q of the law and P of the parabola or the curve, its
-probability is (P/Q)^(m/2), that of the F distribution with 2 and m degrees of freedom. The largest
-one counts of those ρ that are at least 1/20 as likely as the likeliest one. If the errors are known
-it is e^(-(Q - P)/2τ²), that of the χ² distribution, averaged over ρ. Scatter alone, which the
-parabola has as well, therefore rejects no law. Without given errors a systematic error of the
-measurement does not show in the scatter: a law is then not called incompatible, but said to
-deviate.
+A law is judged by how much worse it fits than the nearest smooth curve, which is one of those above
+or a parabola in ln v, for each ρ: with m impacts more than the three parameters of the curve, and
+sums of squares Q of the law and P of the curve, its probability is (P/Q)^(m/2), that of the F
+distribution with 2 and m degrees of freedom. The largest one counts of those ρ that are at least
+1/20 as likely as the likeliest one. If the errors are known it is e^(-(Q - P)/2τ²), that of the χ²
+distribution, averaged over ρ. Scatter alone, which the curve has as well, therefore rejects no law.
+Without given errors a systematic error of the measurement does not show in the scatter: a law is
+then not called incompatible, but said to deviate.
 """
 
 import functools
@@ -223,13 +222,14 @@ class Estimate:
 def _deviations(weights: Array, columns: Array, y: Array) -> tuple[Array, Array]:
     """Return what the best sums of columns leave, over its standard deviation, and their basis.
 
-    ``weights`` (ratio, n) are one over the variances, ``columns`` are (curve, n, 2); the deviations
+    ``weights`` (ratio, n) are one over the variances, ``columns`` are (curve, n, k); the deviations
     (ratio, curve, n, 1) are y less its projection Q Qᵀ on the columns.
     """
     size = np.sqrt(weights)[:, None, :, None]
     q, r = np.linalg.qr(size * columns)
-    # Impacts of one speed tell nothing of a slope.
-    q *= (np.abs(r[..., 1:, 1]) > 1e-9 * np.abs(r[..., :1, 0]))[..., None] | [True, False]
+    # Impacts of one speed tell nothing of a slope, and those of two nothing of a bend.
+    left = np.abs(np.diagonal(r, axis1=-2, axis2=-1))
+    q *= (left > 1e-9 * left[..., :1])[..., None, :]
     u = size * y[:, None]
     return u - q @ (q.swapaxes(-1, -2) @ u), q
 
@@ -524,24 +524,24 @@ def _least_squares(law: ContactLaw, impacts: Impacts, curves: Curves) -> tuple[A
 
 
 def _judged(
-    name: str, impacts: Impacts, curves: Curves, at: float, weights: Array, parabola: Array
+    name: str, impacts: Impacts, curves: Curves, at: float, weights: Array, nearest: Array
 ) -> Judged:
     """Return a law beside the impacts.
 
-    ``weights`` are those of the ratios, and ``parabola`` has the squares that one leaves for each.
-    The last row of variances is beside the ratios.
+    ``weights`` are those of the ratios, and ``nearest`` has the squares of the nearest curve for
+    each. The last row of variances is beside the ratios.
     """
     law = LAWS[name]
     r = impacts.restitution
     a, missed, slope = _least_squares(law, impacts, curves)
     squares = np.sum((missed @ curves.basis) ** 2 / curves.variances, axis=1)
-    # A law may fit better than a parabola.
-    worse = np.maximum(squares - parabola, 0.0)
+    # A law may fit better than the curves.
+    worse = np.maximum(squares - nearest, 0.0)
     if curves.is_known:
         of_ratios = np.exp(-worse[1:-1] / (2 * curves.sizes[0] ** 2))
         probability = np.average(of_ratios, weights=weights[1:])
     else:
-        least = parabola[:-1]
+        least = nearest[:-1]
         of_ratios = (least / (least + worse[:-1])) ** (max(len(r) - 3, 0) / 2)
         probability = np.max(of_ratios[weights > np.max(weights) / 20])
     best = int(np.argmax(weights))
@@ -576,20 +576,18 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     x = np.log(impacts.speed / at)
     powers = curves.basis.T @ np.column_stack([np.ones_like(x), x, x**2])
     y = impacts.log_r @ curves.basis
-    rest = []
-    for deviation in np.sqrt(curves.variances):
-        white = powers / deviation[:, None]
-        best = np.linalg.lstsq(white, y / deviation, rcond=1e-9)[0]
-        rest.append(np.sum((y / deviation - white @ best) ** 2))
-    # Rounded readings may be alike by chance, and leave a parabola less than their own errors and
+    deviations = [
+        _deviations(1 / curves.variances, columns, y)[0]
+        for columns in (curves.columns, powers[None])
+    ]
+    squares = np.sum(np.concatenate(deviations, axis=1) ** 2, axis=(2, 3))
+    nearest = np.min(squares, axis=1)
+    # Rounded readings may be alike by chance, and leave a curve less than their own errors and
     # those of the arithmetic.
     errors = curves.rounded**2 * curves.variances[0] + curves.basis.T**2 @ impacts.arithmetic**2
     left = np.mean(errors / curves.variances[:-1], axis=1)
-    # A curve of an exponent may be nearer than a parabola, which has as many parameters.
-    u, _ = _deviations(1 / curves.variances, curves.columns, y)
-    parabola = np.minimum(rest, np.min(np.sum(u**2, axis=(2, 3)), axis=1))
-    parabola[:-1] = np.maximum(parabola[:-1], max(len(x) - 3, 1) * left)
-    found = [_judged(name, impacts, curves, at, weights, parabola) for name in LAWS]
+    nearest[:-1] = np.maximum(nearest[:-1], max(len(x) - 3, 1) * left)
+    found = [_judged(name, impacts, curves, at, weights, nearest) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)
     return sorted(
         (

@@ -274,12 +274,12 @@ class Solved(Law):
         return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
 
     def rest(self, gravity: float) -> Array:
-        """Return the depth at rest in m; NaN if the speed that each step of gravity adds is thrown
-        back.
+        """Return the depth at rest in m.
+
+        It is NaN if the speed that each step of gravity adds is thrown back.
         """
-        return np.where(
-            self.thrown(np.asarray(-gravity * self.step)) > 0, np.nan, gravity / self.stiffness
-        )
+        hops = self.thrown(np.asarray(-gravity * self.step)) > 0
+        return np.where(hops, np.nan, gravity / self.stiffness)
 
     def thrown(self, u: Array) -> Array:
         """Return the speed of the rebound from the velocity u."""

@@ -3,7 +3,7 @@
 import math
 
 from bouncing_ball_contacts.designs import Design
-from bouncing_ball_contacts.engines import filled, text_of
+from bouncing_ball_contacts.engines import filled, snippet_of
 from bouncing_ball_contacts.units import Refused, span
 
 FAMILIES = {
@@ -51,7 +51,7 @@ def drop_script(design: Design) -> str:
         known = ", ".join(FAMILIES)
         raise Refused(f"no script is written for {design.engine}: only for {known}")
     is_pair = bounce.other_mass is not None
-    text = text_of(f"{family}-meet" if is_pair else f"{family}-drop")
+    text = snippet_of(f"{family}-meet" if is_pair else f"{family}-drop")
     if not text:
         raise Refused(f"no script of two free balls is written for {design.engine}")
     if bounce.points > 1 and (bounce.points != 4 or family not in _SHAPES or is_pair):

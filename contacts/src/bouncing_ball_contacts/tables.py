@@ -182,15 +182,16 @@ def _sheet(data: bytes) -> tuple[str, int]:
 
 def _columns_as_text(name: str, columns: Any) -> str:
     """Return columns with their headings as lines with tabs."""
-    if isinstance(columns, Mapping):
-        # The unit of a quantity takes the place of one in the heading.
-        columns = dict(
-            (f"{heading.split(' (')[0]} ({each.units:~C})", each.magnitude)
-            if hasattr(each, "units")
-            else (heading, each)
-            for heading, each in columns.items()
-        )
-    values = list(columns.values()) if isinstance(columns, Mapping) else [""]
+    if not isinstance(columns, Mapping):
+        raise Refused(f"{name} {_NO_RECORDING}")
+    # The unit of a quantity takes the place of one in the heading.
+    columns = dict(
+        (f"{heading.split(' (')[0]} ({each.units:~C})", each.magnitude)
+        if hasattr(each, "units")
+        else (heading, each)
+        for heading, each in columns.items()
+    )
+    values = list(columns.values())
     are_lists = all(
         hasattr(each, "__len__") and not isinstance(each, str | dict) for each in values
     )

@@ -97,6 +97,10 @@ def coefficients(rng, r, v, error, scatter, stated):
 FLAT = partial(of_law, CONSTANT)
 SOFT = partial(of_law, VISCOELASTIC)
 STEEP = partial(of_law, CROSSLEY)
+# Each recording has a scatter of its own if it is None, from a log-normal distribution like that of
+# the published experiments: its middle, and the width of its logarithm.
+PUBLISHED = 0.011
+WIDTH = 1.5
 # Name, true r, the law of it if it is one that is fitted, recording, stated resolution.
 KINDS = [
     (
@@ -361,13 +365,6 @@ KINDS = [
         CONSTANT,
         partial(coefficients, v=np.linspace(1, 3, 6), error=0.01, scatter=0.003, stated=True),
     ),
-]
-
-# Each recording has a scatter of its own if it is None, from a log-normal distribution like that of
-# the published experiments: its middle, and the width of its logarithm.
-PUBLISHED = 0.011
-WIDTH = 1.5
-KINDS += [
     (
         "5 impacts heard, 0.2 ms, any scatter",
         partial(FLAT, 0.7),

@@ -89,10 +89,10 @@ clean:
 ci:
 	.ci/run
 
-# The other packages have a Makefile of their own, in beyond/ and contacts/.
+# The other packages have a Makefile of their own, in extras/beyond/ and extras/contacts/.
 everything: all
-	$(MAKE) -C beyond setup all
-	$(MAKE) -C contacts setup
+	$(MAKE) -C extras/beyond setup all
+	$(MAKE) -C extras/contacts setup
 test-everything: test
-	$(MAKE) -C beyond test
-	$(MAKE) -C contacts test
+	$(MAKE) -C extras/beyond test
+	$(MAKE) -C extras/contacts test

@@ -275,7 +275,7 @@ def test_as_a_module_with_a_prefix_it_reads_this_checkout(fresh, tmp_path):
     assert not (outer / "results").exists()
 
 
-@pytest.mark.parametrize("target", [".", "figures", "beyond"])
+@pytest.mark.parametrize("target", [".", "figures", "extras"])
 def test_results_inside_the_checkout_are_refused(fresh, target):
     (fresh.path / target).mkdir(exist_ok=True)
     (fresh.path / "results").symlink_to(target)
@@ -382,6 +382,6 @@ def test_a_failed_step_does_not_hide_the_others(tmp_path):
     called = (tmp_path / "called").read_text("utf-8").splitlines()
     first = ["setup", "lint", "clean", "all", "diff", "test", "test-cluster"]
     assert called[:7] == first
-    assert all(line.startswith(("-C beyond ", "-C contacts ")) for line in called[7:])
+    assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in called[7:])
     assert "The replication: red in test." in done.stdout
     assert done.returncode == 1 and done.stdout.splitlines()[-1] == "Failed: make test"

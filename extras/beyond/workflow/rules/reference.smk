@@ -13,7 +13,7 @@ rule diff:
         artifacts=descriptions(),
         results=results_folder,
         reference=reference_folder,
-        template=package("../workflow/templates/diff.html.j2"),
+        template=package("../../workflow/templates/diff.html.j2"),
     log:
         "results/logs/diff.log",
     conda:

@@ -5,14 +5,14 @@ import os
 from pathlib import Path
 
 
-include: "../../../workflow/rules/checks.smk"
+include: "../../../../workflow/rules/checks.smk"
 
 
 # This package, and the checkout of the replication around it. Runs in another folder (--directory),
 # or as a module of another workflow, read the configuration, code and reference of this package, and
 # write their results below the folder of the run.
 PACKAGE = Path(workflow.current_basedir).parents[1].resolve()
-REPLICATION = PACKAGE.parent
+REPLICATION = PACKAGE.parents[1]
 
 
 configfile: os.path.relpath(PACKAGE / "config/config.yaml")

@@ -21,7 +21,7 @@ from bouncing_ball.datasets import read
 from studies.products import PRODUCTS
 
 BEYOND = Path(__file__).resolve().parents[1]
-ROOT = BEYOND.parent
+ROOT = BEYOND.parents[1]
 STUB = """from pathlib import Path
 for file in snakemake.output:
     Path(file).write_text("made by a stub")
@@ -61,7 +61,7 @@ class Checkout:
         with (
             # Those of Snakemake's code: files left open, deprecated arguments.
             warnings.catch_warnings(action="ignore"),
-            contextlib.chdir(self.path / "beyond"),
+            contextlib.chdir(self.path / "extras/beyond"),
             contextlib.redirect_stdout(printed),
             contextlib.redirect_stderr(printed),
             pytest.raises(SystemExit) as ended,
@@ -85,7 +85,7 @@ class Checkout:
 
     def made(self) -> set[str]:
         """The results of a run."""
-        base = self.path / "beyond/results"
+        base = self.path / "extras/beyond/results"
         found = {str(path.relative_to(base)) for path in base.rglob("*") if path.is_file()}
         return {name for name in found if not name.startswith(("logs/", "benchmarks/"))}
 
@@ -94,11 +94,11 @@ def copied(folder: Path) -> Checkout:
     """The workflow with scripts that only write their outputs."""
     without = shutil.ignore_patterns("__pycache__")
     for name in ("config", "profiles", "src", "workflow"):
-        shutil.copytree(BEYOND / name, folder / "beyond" / name, ignore=without)
-    shutil.copyfile(BEYOND / "Snakefile", folder / "beyond/Snakefile")
+        shutil.copytree(BEYOND / name, folder / "extras/beyond" / name, ignore=without)
+    shutil.copyfile(BEYOND / "Snakefile", folder / "extras/beyond/Snakefile")
     for name in ("src", "workflow"):
         shutil.copytree(ROOT / name, folder / name, ignore=without)
-    for script in (folder / "beyond/workflow/scripts").glob("*.py"):
+    for script in (folder / "extras/beyond/workflow/scripts").glob("*.py"):
         script.write_text(STUB, encoding="utf-8")
     return Checkout(folder)
 
@@ -134,7 +134,7 @@ def test_every_name_is_a_target(complete):
 
 
 def test_a_figure_needs_its_stage_only(complete):
-    fresh = complete.path / "beyond/results"
+    fresh = complete.path / "extras/beyond/results"
     fresh.rename(complete.path / "aside")
     try:
         for stage, names in STAGES.items():
@@ -179,7 +179,7 @@ def test_nothing_runs_again_although_every_file_was_touched(used):
     ],
 )
 def test_a_parameter_runs_its_stages_again(used, old, new, again):
-    path = used.path / "beyond/config/config.yaml"
+    path = used.path / "extras/beyond/config/config.yaml"
     text = path.read_text("utf-8")
     assert text.count(old) == 1
     path.write_text(text.replace(old, new), "utf-8")
@@ -189,12 +189,12 @@ def test_a_parameter_runs_its_stages_again(used, old, new, again):
 @pytest.mark.parametrize(
     ("file", "again"),
     [
-        ("beyond/workflow/studies/figures.py", {*STAGES, "all"}),
-        ("beyond/workflow/explorer/model.js", {"explorer", "all"}),
-        ("beyond/workflow/templates/article.md.j2", {"article", "all"}),
-        ("beyond/workflow/scripts/impacts.py", {"compute_impacts", "impacts", "article", "all"}),
+        ("extras/beyond/workflow/studies/figures.py", {*STAGES, "all"}),
+        ("extras/beyond/workflow/explorer/model.js", {"explorer", "all"}),
+        ("extras/beyond/workflow/templates/article.md.j2", {"article", "all"}),
+        ("extras/beyond/workflow/scripts/impacts.py", {"compute_impacts", "impacts", "article", "all"}),
         ("src/bouncing_ball/compare.py", set()),
-        ("beyond/config/schema.yaml", set()),
+        ("extras/beyond/config/schema.yaml", set()),
     ],
 )
 def test_a_changed_file_runs_what_reads_it_again(used, file, again):

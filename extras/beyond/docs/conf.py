@@ -16,8 +16,8 @@ from docutils.utils.math.latex2mathml import tex2mathml
 
 import bouncing_ball_beyond
 
-ROOT = Path(__file__).parents[2]
-EXPLORER = "beyond/figures/explorer.html"
+ROOT = Path(__file__).parents[3]
+EXPLORER = "extras/beyond/figures/explorer.html"
 
 project = "Bouncing ball"
 author = "The bouncing-ball maintainers"
@@ -28,11 +28,11 @@ include_patterns = [
     "*.md",
     "docs/*.md",
     "figures/*.md",
-    "beyond/*.md",
-    "beyond/docs/*.md",
-    "beyond/figures/*.md",
-    "contacts/*.md",
-    "contacts/docs/*.md",
+    "extras/beyond/*.md",
+    "extras/beyond/docs/*.md",
+    "extras/beyond/figures/*.md",
+    "extras/contacts/*.md",
+    "extras/contacts/docs/*.md",
 ]
 exclude_patterns = ["**/.*", "**/results", "**/src", "**/tests", "**/workflow"]
 autodoc_member_order = "bysource"
@@ -57,27 +57,27 @@ PARTS = {
         "figures/*",
     ],
     "Beyond the paper": [
-        "beyond/README",
-        "beyond/article",
-        "beyond/appendix",
-        "beyond/figures/*",
-        "beyond/docs/first-hour",
-        "beyond/docs/orbits",
-        "beyond/docs/laws",
-        "beyond/docs/thesis",
-        "beyond/docs/gallery",
-        "beyond/docs/impact-as-an-instant",
-        "beyond/docs/error-law",
-        "beyond/docs/speed",
-        "beyond/docs/api",
+        "extras/beyond/README",
+        "extras/beyond/article",
+        "extras/beyond/appendix",
+        "extras/beyond/figures/*",
+        "extras/beyond/docs/first-hour",
+        "extras/beyond/docs/orbits",
+        "extras/beyond/docs/laws",
+        "extras/beyond/docs/thesis",
+        "extras/beyond/docs/gallery",
+        "extras/beyond/docs/impact-as-an-instant",
+        "extras/beyond/docs/error-law",
+        "extras/beyond/docs/speed",
+        "extras/beyond/docs/api",
     ],
     "Contacts with units": [
-        "contacts/README",
-        "contacts/docs/design",
-        "contacts/docs/engines",
-        "contacts/docs/bounces",
-        "contacts/docs/measured",
-        "contacts/docs/python",
+        "extras/contacts/README",
+        "extras/contacts/docs/design",
+        "extras/contacts/docs/engines",
+        "extras/contacts/docs/bounces",
+        "extras/contacts/docs/measured",
+        "extras/contacts/docs/python",
     ],
     "Changes": ["CONTRIBUTING", "CHANGELOG"],
 }

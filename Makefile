@@ -14,8 +14,12 @@ VERSION := $(shell sed -n 's/^version: //p' CITATION.cff)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
 
-ifneq ($(words $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))),1)
-$(error Snakemake needs a Python whose path has no space: move this folder, or make VENV=/another/path)
+# Snakemake writes the path of Python into commands of a shell, and replaces names in braces.
+FOLDER := $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))
+SPECIAL := ' " \ ` $$ & | ; < > ( ) { }
+SPECIAL := $(strip $(foreach each,$(SPECIAL),$(findstring $(each),$(FOLDER))))
+ifneq ($(words $(FOLDER))$(SPECIAL),1)
+$(error Snakemake needs a Python whose path has no space and none of '"\`$$&|;<>(){}: move this folder, or make VENV=/another/path)
 endif
 
 # Targets run one after another, because they share results/.

@@ -5,9 +5,11 @@ import io
 import os
 import re
 import shutil
+import sys
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from unittest import mock
 
 import pytest
 from snakemake import cli
@@ -39,6 +41,8 @@ class Checkout:
             contextlib.chdir(folder or self.path),
             contextlib.redirect_stdout(printed),
             contextlib.redirect_stderr(printed),
+            # The profile reads the command line.
+            mock.patch.object(sys, "argv", ["snakemake", *arguments]),
             pytest.raises(SystemExit) as ended,
         ):
             cli.main([*arguments])

@@ -1,8 +1,15 @@
-"""Configurations that are refused, each with one line: the key, its value and what is allowed."""
+"""Configurations and places that are refused, each with one line: the key, its value and what is
+allowed."""
 
 import contextlib
+import errno
+import fcntl
 import io
 import math
+import os
+import pwd
+import runpy
+import sys
 from pathlib import Path
 
 import pytest
@@ -243,6 +250,219 @@ def test_a_key_that_a_file_names_twice_is_refused(tmp_path):
     file.write_text("release: force\npermanent_contact:\n  fig11: {}\n  fig11: {}\n", "utf-8")
     line = refusal({}, file)
     assert line == f"configuration: {file}: permanent_contact.fig11 occurs twice, in line 4 again"
+
+
+# Files, before Snakemake reads them: of a broken one it says no line, or shows a traceback.
+
+CHECKS = runpy.run_path(str(ROOT / "workflow/rules/checks.smk"))
+ALLOWED = "allowed: one YAML document of keys and values in UTF-8, as config/config.yaml"
+BROKEN = {
+    "a tab": (
+        b"release: force\npermanent_contact:\n\tfig11: {}\n",
+        r", line 3: '\tfig11: {}': found character '\t' that cannot start any token; " + ALLOWED,
+    ),
+    "a bracket": (
+        b"largest_step: 0.1\nrelease: [force\n",
+        ", line 2: 'release: [force': while parsing a flow sequence: expected ',' or ']'",
+    ),
+    "an alias": (b"release: *a\n", ", line 1: 'release: *a': found undefined alias 'a'; allowed: "),
+    "two documents": (
+        b"release: force\n---\nrelease: force\n",
+        ", line 2: '---': found another document; allowed: one YAML document",
+    ),
+    "a list": (b"- release\n", ", line 1: '- release': no keys; allowed: one YAML document"),
+    "a text": (b"release\n", ", line 1: 'release': no keys; allowed: one YAML document of keys"),
+    "nothing": (b"", ", line 1: the file is empty; allowed: one YAML document"),
+    "a comment": (b"# later\n", ", line 1: '# later': the file is empty; allowed: "),
+    "Latin-1": (
+        "release: force\n# größer\n".encode("latin-1"),
+        ", line 2: '# gr\ufffd\ufffder': the byte 0xf6 is not UTF-8; allowed: one YAML document",
+    ),
+    "UTF-16": ("release: force\n".encode("utf-16-le"), r", line 1: 'r\x00e\x00l\x00e"),
+    "UTF-16 with its mark": ("a: 1\n".encode("utf-16"), ": the byte 0xff is not UTF-8; allowed: "),
+    "an alias of what is around it": (
+        b"continuation: &a\n  fig08: *a\n",
+        ": continuation.fig08 contains itself, allowed: values without an alias",
+    ),
+    "an object of Python": (b"release: !!python/object:os.system x\n", ": could not determine a"),
+    "a list as a key": (b"? [a]\n: 1\n", ", line 1: '? [a]': found unhashable key; allowed: "),
+    "no mapping to merge": (b"<<: 3\n", ", line 1: '<<: 3': expected a mapping or list of"),
+    "a month that is none": (b"release: 2011-13-01\n", ": month must be in 1..12; allowed: "),
+    "a control character": (
+        b"release: \x1b[31mred\n",
+        r", line 1: 'release: \x1b[31mred': special characters are not allowed; allowed: ",
+    ),
+    "a key twice": (b"release: force\nrelease: force\n", ": release occurs twice, in line 2 again"),
+    "a key twice in a list": (b"a: [{b: 1, b: 2}]\n", ": a[0].b occurs twice, in line 1 again"),
+}
+
+
+def refused(*arguments) -> str:
+    """The text with which a command line ends before Snakemake reads its files and values."""
+    with pytest.raises(SystemExit) as ended:
+        CHECKS["refuse_command"]([*map(str, arguments)])
+    return ended.value.code
+
+
+@pytest.mark.parametrize("content, said", BROKEN.values(), ids=BROKEN)
+def test_a_broken_file_is_named_with_its_line_and_what_is_allowed(tmp_path, content, said):
+    file = tmp_path / "mine.yaml"
+    file.write_bytes(content)
+    line = refused("fig14", "--configfile", file, "--cores", "1")
+    assert line.startswith(f"configuration: {file}") and said in line
+    assert line.isprintable()
+
+
+def test_aliases_of_aliases_are_read_once(tmp_path):
+    """Nine of nine of nine and so on: 9^20 values, if each were read."""
+    lines = ["a0: &a0 []"]
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 21)]
+    file = tmp_path / "mine.yaml"
+    file.write_text("\n".join(lines), "utf-8")
+    CHECKS["refuse_command"](["--configfile", str(file)])
+
+
+def test_brackets_without_an_end_are_refused(tmp_path):
+    file = tmp_path / "mine.yaml"
+    file.write_text("release: " + "[" * 1000, "utf-8")
+    line = refused("--configfile", file)
+    assert line.startswith(f"configuration: {file}: maximum recursion depth exceeded")
+    assert "\n" not in line
+
+
+@pytest.mark.parametrize("file", ["", ".", "absent.yaml", "fig14"])
+def test_what_is_no_file_is_refused(file):
+    line = refused("--cores", "2", "--configfile", file)
+    reason = os.strerror(errno.EISDIR if os.path.isdir(file or ".") else errno.ENOENT)
+    assert line == (
+        f"configuration: {file or repr(file)}: {reason}; allowed: a file; --configfile takes all "
+        "names up to the next option"
+    )
+
+
+@pytest.mark.parametrize("entry", ["largest_step", "=3", "a=3", "3=a", "\x1b[31mred", ""])
+@pytest.mark.parametrize("option", ["--config", "-C"])
+def test_a_value_without_a_key_is_refused(option, entry):
+    line = refused("fig14", option, "release=force", entry)
+    shown = entry.replace("\x1b", r"\x1b")
+    assert line == f"configuration: --config {shown}: allowed: KEY=VALUE, as in largest_step=0.2"
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["fig14"], ["-C", "release=force"], ["--config", "release=", "--cores", "2"]]
+)
+def test_other_command_lines_are_left_to_snakemake(arguments):
+    CHECKS["refuse_command"](arguments)
+
+
+def test_snakemake_asks_the_checks_first(fresh, tmp_path):
+    """By its profile, here and from another folder; and of the file of the checkout as well."""
+    file = tmp_path / "mine.yaml"
+    file.write_bytes(b"release: force\n\tfig11: 3\n")
+    line = f"configuration: {file}, line 2: "
+    assert str(fresh.run("--list", "--configfile", str(file))[0]).startswith(line)
+    there = ["--snakefile", str(fresh.path / "Snakefile"), "--configfile", "mine.yaml"]
+    line = "configuration: mine.yaml, line 2: "
+    assert str(fresh.run("--list", *there, folder=tmp_path)[0]).startswith(line)
+    assert str(fresh.run("--list", "--config", "x")[0]).startswith("configuration: --config x: ")
+    (fresh.path / "config/config.yaml").write_bytes(b"release: [force")
+    line = "configuration: config/config.yaml, line 1: 'release: [force': expected"
+    assert str(fresh.run("--list")[0]).startswith(line)
+
+
+@pytest.mark.parametrize("value", [3, "{}", None, [1]])
+def test_a_further_figure_has_parameters(value):
+    line = refusal(nested("continuation.fig17", value))
+    assert line == (
+        f"configuration: continuation.fig17: {value!r} is not of type 'object' (parameters)"
+    )
+
+
+def test_control_characters_are_not_printed_raw():
+    assert refusal({"release": "\x1b[31mred"}).startswith(r"configuration: release: '\x1b[31mred'")
+    assert refusal({"re\x1b[31mlease": 3}).startswith(
+        r"configuration: unknown key re\x1b[31mlease,"
+    )
+
+
+@pytest.mark.parametrize("key, named", [(3, "[3]"), (None, "None"), (2.5, "2.5"), (True, "[True]")])
+def test_a_key_that_is_no_text_is_unknown(key, named):
+    assert refusal({key: 3}).startswith(f"configuration: unknown key {named}, allowed: release, ")
+
+
+# Users and places
+
+
+def test_a_user_without_a_name_is_told_what_to_set(monkeypatch):
+    def unknown(uid):
+        raise KeyError(f"getpwuid(): uid not found: {uid}")
+
+    monkeypatch.setattr(pwd, "getpwuid", unknown)
+    for name in ("LOGNAME", "USER", "LNAME", "USERNAME"):
+        monkeypatch.delenv(name, raising=False)
+    line = f"The user {os.getuid()} has no name on this machine: set USER to any name"
+    assert refused("fig14") == line
+    monkeypatch.setenv("USER", "anybody")
+    CHECKS["refuse_command"](["fig14"])
+
+
+@pytest.mark.parametrize("variable, folder", [("HOME", "file/.cache"), ("XDG_CACHE_HOME", "file")])
+def test_a_home_that_cannot_be_written_to_is_told_what_to_set(
+    variable, folder, tmp_path, monkeypatch
+):
+    """Below a file, because root may write to every folder."""
+    (tmp_path / "file").touch()
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setenv(variable, str(tmp_path / "file"))
+    reason = os.strerror(errno.ENOTDIR if variable == "HOME" else errno.EEXIST)
+    line = f"{tmp_path / folder}: {reason}; set XDG_CACHE_HOME to a folder that can be written to"
+    assert refused("fig14") == line
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    CHECKS["refuse_command"](["fig14"])
+
+
+def no_place(folder: Path) -> str:
+    """The text with which a run of a checkout in a folder ends."""
+    with pytest.raises(SystemExit) as ended:
+        CHECKS["refuse_place"](folder)
+    return ended.value.code
+
+
+@pytest.mark.parametrize("name, found", [("br{x}", "'{' '}'"), ("one{", "'{'"), ("}", "'}'")])
+def test_a_folder_with_braces_is_refused(name, found, tmp_path):
+    assert no_place(tmp_path / name) == (
+        f"{tmp_path / name} has {found} in its name, and Snakemake cannot run there: rename the "
+        "folder"
+    )
+
+
+@pytest.mark.parametrize("character", " '\"\\`$&|;<>(){}\n")
+def test_a_python_that_a_shell_misreads_is_refused(character, tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "executable", f"/a{character}b/bin/python")
+    line = no_place(tmp_path)
+    assert f" has {character!r} in its name".replace("\\n", r"\n") in line and line.isprintable()
+
+
+def test_other_names_of_folders_are_good(tmp_path):
+    CHECKS["refuse_place"](tmp_path / 'ünï co:de [1] 100% st*r\'s "x"')
+
+
+def test_a_file_system_without_locks_is_said_so(tmp_path, monkeypatch):
+    def refuse_locks(file, operation):
+        raise OSError(number, os.strerror(number))
+
+    number = errno.ENOLCK
+    monkeypatch.setattr(fcntl, "flock", refuse_locks)
+    assert no_place(tmp_path / "checkout") == (
+        f"{tmp_path}: the file system has no locks ({os.strerror(number)}): set "
+        "HDF5_USE_FILE_LOCKING=FALSE, and let one run at a time write here"
+    )
+    monkeypatch.setenv("HDF5_USE_FILE_LOCKING", "FALSE")
+    CHECKS["refuse_place"](tmp_path / "checkout")
+    # HDF5 goes on without locks if there is no such call.
+    monkeypatch.delenv("HDF5_USE_FILE_LOCKING")
+    number = errno.ENOSYS
+    CHECKS["refuse_place"](tmp_path / "checkout")
 
 
 def test_parameters_are_described_and_bounded():

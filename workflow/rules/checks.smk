@@ -1,9 +1,16 @@
-# What is wrong with a configuration, or with the place of results: the functions that both workflows
-# of this repository share.
+# What is wrong with a configuration, or with the place of a run: the functions that both workflows of
+# this repository share. Their Snakefiles include this file. Their profiles run it as well, because
+# Snakemake reads the files and values of its command line before it reads a Snakefile.
 
+import argparse
+import errno
+import fcntl
+import getpass
 import math
 import os
+import re
 import sys
+import tempfile
 from difflib import get_close_matches
 from pathlib import Path
 
@@ -11,11 +18,60 @@ import yaml
 from jsonschema import Draft202012Validator, validators
 
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+ALLOWED = "allowed: one YAML document of keys and values in UTF-8, as config/config.yaml"
+# Snakemake writes the path of Python into a command of the shell, and replaces names in braces.
+SPECIAL = set(" \t\n'\"\\`$&|;<>(){}")
+
+
+def end(*lines):
+    """End the run with these lines; control characters are written as escapes.
+
+    Snakemake would print an exception of its own in three lines, with places in this file.
+    """
+    shown = ("".join(c if c.isprintable() else ascii(c)[1:-1] for c in line) for line in lines)
+    sys.exit("\n".join(shown))
 
 
 def yaml_of(file):
     """What a YAML file says; libyaml reads it several times faster."""
     return yaml.load(Path(file).read_text("utf-8"), LOADER)
+
+
+def composed(file):
+    """The YAML node of a configuration file, and the line on it if it has none.
+
+    The loader in Python is used, because its messages name the character or the alias.
+    """
+    try:
+        content = Path(file).read_bytes()
+    except OSError as error:
+        allowed = "allowed: a file; --configfile takes all names up to the next option"
+        return None, f"{file or repr(file)}: {error.strerror}; {allowed}"
+    text = content.decode("utf-8", errors="replace")
+    try:
+        content.decode("utf-8")
+        node = yaml.compose(text, yaml.SafeLoader)
+        if isinstance(node, yaml.MappingNode):
+            # Tags and keys that YAML knows and a configuration cannot have.
+            yaml.SafeLoader("").construct_document(node)
+            return node, None
+        reason = "no keys" if node else "the file is empty"
+        line = node.start_mark.line if node else 0
+    except UnicodeDecodeError as error:
+        reason = f"the byte 0x{content[error.start]:02x} is not UTF-8"
+        line = content.count(b"\n", 0, error.start)
+    except yaml.reader.ReaderError as error:
+        reason, line = error.reason, text.count("\n", 0, error.position)
+    except yaml.MarkedYAMLError as error:
+        reason, line = error.problem.removeprefix("but "), error.problem_mark.line
+        if error.context_mark and line == len(text.splitlines()):
+            # Something is open at the end of the file.
+            reason, line = f"{error.context}: {reason}", error.context_mark.line
+    except (ValueError, RecursionError) as error:
+        # A date that no calendar has, or hundreds of brackets.
+        return None, f"{file}: {error}; {ALLOWED}"
+    stands = [repr(each[:60]) for each in text.splitlines()[line : line + 1]]
+    return None, f"{': '.join([f'{file}, line {line + 1}', *stands, reason])}; {ALLOWED}"
 
 
 def is_whole(checker, value):
@@ -33,7 +89,8 @@ Validator = validators.extend(Draft202012Validator, type_checker=TYPES)
 
 def place(keys):
     """The keys to a value, as `continuation.fig08.frequency_ratio[0]`."""
-    return "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)[1:]
+    parts = (f"[{key}]" if isinstance(key, int) else f".{key}" for key in keys)
+    return "".join(parts).removeprefix(".")
 
 
 def mistakes(config, schema, further=None):
@@ -48,6 +105,9 @@ def mistakes(config, schema, further=None):
             allowed = error.schema["properties"]
             for key in error.instance.keys() - allowed:
                 if further and len(error.absolute_path) == 1 and further.fullmatch(str(key)):
+                    if not isinstance(error.instance[key], dict):
+                        value = error.instance[key]
+                        yield f"{place([where, key])}: {value!r} is not of type 'object' (parameters)"
                     continue
                 near = get_close_matches(str(key), allowed, n=1) or allowed
                 yield f"unknown key {place([*error.absolute_path, key])}, allowed: {', '.join(near)}"
@@ -58,18 +118,32 @@ def mistakes(config, schema, further=None):
             yield f"{where or 'the file'}: {error.message}" + (f" ({reason})" if reason else "")
 
 
-def repeated(node, keys=()):
-    """A line for each key that a file names twice, of which YAML would take the last."""
+def repeated(node, keys=(), above=(), seen=None):
+    """A line for each key that a mapping has twice, of which YAML would take the last, and for each
+    alias inside of what it stands for. What several aliases stand for is read once.
+    """
+    seen = set() if seen is None else seen
+    if node in above:
+        yield f"{place(keys)} contains itself, allowed: values without an alias to what is around it"
+    if node in seen:
+        return
+    seen.add(node)
     if isinstance(node, yaml.SequenceNode):
         for index, item in enumerate(node.value):
-            yield from repeated(item, (*keys, index))
+            yield from repeated(item, (*keys, index), (*above, node), seen)
     if isinstance(node, yaml.MappingNode):
-        seen = set()
+        named = set()
         for key, value in node.value:
-            if key.value in seen:
+            if key.value in named:
                 yield f"{place([*keys, key.value])} occurs twice, in line {key.start_mark.line + 1} again"
-            seen.add(key.value)
-            yield from repeated(value, (*keys, key.value))
+            named.add(key.value)
+            yield from repeated(value, (*keys, key.value), (*above, node), seen)
+
+
+def wrong(file):
+    """A line for each mistake of a file by itself, without the schema."""
+    node, line = composed(file)
+    return [line] if line else [f"{file}: {each}" for each in repeated(node)]
 
 
 def unordered(limits, keys):
@@ -91,26 +165,84 @@ def below_saddle_node(n, case, keys):
                 )
 
 
-def refuse(files, config, schema, crossed, further=None):
-    """End the run with a line for each mistake: of its files, against its schema, and `crossed`,
-    a function that finds what a schema cannot know.
-    """
-    found = []
-    for file in dict.fromkeys(files):
-        node = yaml.compose(Path(file).read_text("utf-8"), LOADER)
-        found += [f"{file}: {line}" for line in repeated(node)]
-    found = found or list(mistakes(config, schema, further)) or list(crossed(config))
+def refuse_files(files):
+    """End the run with a line for each mistake of the files by themselves."""
+    found = [line for file in dict.fromkeys(map(str, files)) for line in wrong(file)]
     if found:
-        # Snakemake would print its WorkflowError in three lines, with places in this file.
-        sys.exit("\n".join(f"configuration: {line}" for line in found))
+        end(*(f"configuration: {line}" for line in found))
 
 
-def refuse_links(checkout):
-    """End the run if its results would be written over a checkout, for example through a link."""
+def refuse(config, schema, crossed, further=None):
+    """End the run with a line for each mistake against the schema, or that `crossed` finds, a function
+    for what a schema cannot know.
+    """
+    found = list(mistakes(config, schema, further)) or list(crossed(config))
+    if found:
+        end(*(f"configuration: {line}" for line in found))
+
+
+def refuse_command(arguments):
+    """End the run if a value or a file of the command line is no configuration, or if Snakemake would
+    fail for want of a user's name or of a folder for its cache.
+    """
+    parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
+    parser.add_argument("--configfile", "--configfiles", nargs="+", default=[])
+    parser.add_argument("--config", "-C", nargs="*", default=[])
+    given, _ = parser.parse_known_args(arguments)
+    for entry in given.config:
+        key, equals, _ = entry.partition("=")
+        if not (equals and re.fullmatch(r"[a-zA-Z_][\w-]*\w", key)):
+            end(f"configuration: --config {entry}: allowed: KEY=VALUE, as in largest_step=0.2")
+    refuse_files(given.configfile)
+    try:
+        getpass.getuser()
+    except (KeyError, OSError):
+        end(f"The user {os.getuid()} has no name on this machine: set USER to any name")
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=cache).close()
+    except OSError as error:
+        end(f"{cache}: {error.strerror}; set XDG_CACHE_HOME to a folder that can be written to")
+
+
+def refuse_place(checkout):
+    """End the run if Snakemake cannot run in this folder or with this Python, or if the results would
+    be written over a checkout, for example through a link, or where netCDF files cannot be locked.
+    """
+    for path, special in [(str(checkout), {*"{}"}), (sys.executable, SPECIAL)]:
+        if found := special & set(path):
+            named = " ".join(sorted(map(repr, found)))
+            end(
+                f"{path} has {named} in its name, and Snakemake cannot run there: rename the folder"
+            )
     for folder in (Path("results"), Path("results/figures")):
         target = folder.resolve()
         linked = target != folder.absolute() and target.is_relative_to(checkout)
         if linked or target.is_relative_to(checkout / "figures"):
-            sys.exit(f"{folder} is {target}: results must not be written over the checkout")
+            end(f"{folder} is {target}: results must not be written over the checkout")
         if target.exists() and not target.is_dir():
-            sys.exit(f"{folder} is no folder, but results are written there")
+            end(f"{folder} is no folder, but results are written there")
+    refuse_no_locks(Path("results") if Path("results").is_dir() else Path())
+
+
+def refuse_no_locks(folder):
+    """End the run if a file in a folder cannot be locked, as HDF5 does with each netCDF file."""
+    if os.environ.get("HDF5_USE_FILE_LOCKING") in ("FALSE", "0"):
+        return
+    try:
+        file = tempfile.TemporaryFile(dir=folder)
+    except OSError:
+        # Nothing can be written here; the jobs say so if they have to.
+        return
+    with file:
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            # HDF5 goes on if the system does not know of locks at all.
+            if error.errno == errno.ENOSYS:
+                return
+            end(
+                f"{folder.absolute()}: the file system has no locks ({error.strerror}): set "
+                "HDF5_USE_FILE_LOCKING=FALSE, and let one run at a time write here"
+            )

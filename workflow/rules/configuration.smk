@@ -15,12 +15,18 @@ include: "checks.smk"
 CHECKOUT = Path(workflow.current_basedir).parents[1].resolve()
 
 
-configfile: os.path.relpath(CHECKOUT / "config/config.yaml")
+refuse_place(CHECKOUT)
+given = os.path.relpath(CHECKOUT / "config/config.yaml")
+refuse_files([given])
+
+
+configfile: given
 
 
 # With --directory. A workflow that uses this one as a module may have its own file of this name.
 is_module = Path(workflow.basedir).resolve() != CHECKOUT
 if not is_module and Path.cwd() != CHECKOUT and os.path.exists("config/config.yaml"):
+    refuse_files(["config/config.yaml"])
 
     configfile: "config/config.yaml"
 
@@ -46,5 +52,5 @@ def crossed(parameters, keys=()):
 
 
 schema = yaml_of(CHECKOUT / "config/schema.yaml")
-refuse(workflow.configfiles, config, schema, crossed, FURTHER)
-refuse_links(CHECKOUT)
+refuse_files(workflow.configfiles)
+refuse(config, schema, crossed, FURTHER)

@@ -15,12 +15,18 @@ PACKAGE = Path(workflow.current_basedir).parents[1].resolve()
 REPLICATION = PACKAGE.parents[1]
 
 
-configfile: os.path.relpath(PACKAGE / "config/config.yaml")
+refuse_place(PACKAGE)
+given = os.path.relpath(PACKAGE / "config/config.yaml")
+refuse_files([given])
+
+
+configfile: given
 
 
 # With --directory. A workflow that uses this one as a module may have its own file of this name.
 is_module = Path(workflow.basedir).resolve() != PACKAGE
 if not is_module and Path.cwd() != PACKAGE and os.path.exists("config/config.yaml"):
+    refuse_files(["config/config.yaml"])
 
     configfile: "config/config.yaml"
 
@@ -38,5 +44,5 @@ def crossed(parameters, keys=()):
 
 
 schema = yaml_of(PACKAGE / "config/schema.yaml")
-refuse(workflow.configfiles, config, schema, crossed)
-refuse_links(PACKAGE)
+refuse_files(workflow.configfiles)
+refuse(config, schema, crossed)

@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
+from scipy.optimize import brentq
+from tests import independent
 
 from bouncing_ball import claims, errors, restitution, tables
 from bouncing_ball.datasets import parameters, printed_table, read
@@ -91,7 +93,7 @@ def test_numbers_that_are_those_of_the_paper_are_reproduced(reference):
 
 @pytest.mark.parametrize(
     ("ratio", "verdict"),
-    [(82.4, "reproduced"), (82.7, "not to the digit"), (83.0, "contradicted")],
+    [(82.4, "reproduced"), (82.7, "near"), (83.1, "not reproduced")],
 )
 def test_a_changed_number_changes_its_verdict_alone(reference, judged, ratio, verdict):
     changed = with_other(reference, "fig14", error_threshold=xr.DataArray(ratio))
@@ -108,25 +110,24 @@ READINGS = {
         [
             "the bouncing-off velocity",
             "the apparent restitution",
-            "the phase relative to its own value",
         ],
     ),
     "stiff row": (
         ["the printed row and Eqs. 7 and 8", "the computed row and the map of Eq. 5"],
-        ["the computed period doublings and Eq. 8 (apart by 0.0064, 0.0059, 0.0052)"],
+        ["the computed row and Eqs. 7 and 8"],
     ),
     "table velocities": (["all orbits of a branch but one"], ["every orbit"]),
     "closer with stiffness": (
-        ["the ends of every curve", "each step on the curve of r = 1"],
-        [f"each step on the curve of r = {r}" for r in ("0.85", "0.65", "0.1")],
+        ["the ends of every curve"],
+        ["each step on every curve"],
     ),
     "stable between": (
         ["the restitution model", "the stability of this range, in branches without it (0,"],
         ["all other orbits, in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)"],
     ),
     "compliant divergence": (
-        ["each step of the greatest height"],
-        ["each step of the apparent restitution coefficient", "each step of the Λ of the period"],
+        ["every quantity from the stiffest contact to the most compliant"],
+        ["(apparent restitution coefficient, Λ of the period doubling)"],
     ),
 }
 
@@ -145,17 +146,19 @@ def test_the_readings_of_a_statement_are_named_with_what_holds_in_them(judged, n
         assert text not in right
 
 
-# Numbers of the readings in their order, to three digits.
+# Numbers of the readings, to three digits: those that hold, and those that do not.
 FOUND = {
-    "safe above 100": [0.0086, 9.63e-5, 0.006, 0.00155, 0.00333, 0.0314, 0.0113, 0.0108, 0.139],
-    "bifurcations move apart": [0.0134, 0.0319, -0.00606],
-    "stiff row": [0.000447, 1.52e-5, 1.52e-5, 0.00637],
+    "safe above 100": [0.0086, 9.63e-5, 0.006, 0.00155, 0.00333, 0.0314, 0.0113, 0.0108],
+    "bifurcations move apart": [0.0319, -0.00606],
+    "stiff row": [1.52e-5, 0.000447, 0.00637],
     "apart when compliant": [0.311],
     "representative": [0.0279, 0.000462, 0.0157, 0.0279],
-    "static table": [0, 0.0022, 0.0227],
+    "static table": [0, 0.0022, 0.0022, 0.0227],
     "negligible above 100": [0.00108, 0.0108],
     "existence changes": [0.0423],
     "table velocities": [1, 6],
+    "high flights": [2.05, 2.05, 0.111],
+    "amplitude does not matter": [0.00417, 0.0163],
 }
 
 
@@ -177,11 +180,10 @@ CHANGES = {
     "height rises": ("fig14", "max_height", -1.0, "by reading"),
     "phases converge": ("fig13", "restitution_phase", 1.1, "contradicted"),
     "threshold ensures": ("fig14", "relative_error", -1.0, "contradicted"),
-    "lowest threshold": ("fig11", "threshold_amplitude", 0.99, "by reading"),
-    "stiff threshold": ("thresholds", "relative_error", 1.1, "contradicted"),
+    "high flights": ("fig05", "max_height", 0.1, "contradicted"),
+    "exactly computed": ("fig09", "bounce_velocity", 1.00001, "contradicted"),
     "dip at 1.2": ("fig06", "apparent_restitution", 0.99, "reproduced"),
     "negligible above 100": ("fig06", "apparent_restitution", 1.1, "contradicted"),
-    "depends on amplitude": ("fig06", "apparent_restitution", 0.1, "contradicted"),
 }
 
 
@@ -232,7 +234,7 @@ def test_the_end_of_a_curve_is_that_of_the_curve_of_the_largest_amplitude(refere
     assert verdict(name, others) == verdict(name, reference)
     curves[2, 0] = 0.84
     changed = with_other(reference, "fig06", apparent_restitution=curves)
-    assert verdict(name, changed) == "contradicted"
+    assert verdict(name, changed) == "not reproduced"
 
 
 def test_an_orbit_that_is_not_admissible_has_no_one_impact(reference):
@@ -257,16 +259,89 @@ def test_a_ball_is_chaotic_if_its_exponent_is_positive_by_five_standard_errors(
     assert verdict("kinds of motion", changed) == expected
 
 
-def test_an_unstable_orbit_below_the_doubling_breaks_the_rule(reference):
+def test_an_unstable_orbit_below_the_doubling_breaks_the_rule(reference, judged):
     data = reference["fig03"]
     one = data["stable"].copy()
     # Of the first family, that in the middle of the stable orbits.
     place = int(np.flatnonzero(one[0].values).mean())
     assert one[0, place]
     one[0, place] = False
-    for stable in (one, data["stable"] & False):
+    assert judged["own_sense"].sel(claim="stable between") == "holds"
+    for stable in (one, data["stable"] | True):
         changed = with_other(reference, "fig03", stable=stable)
-        assert verdict("saddle-node", changed) == "by reading"
+        assert answer(EVERY["stable between"], changed)["own_sense"] == "does not hold"
+
+
+def test_a_dip_that_cannot_be_seen_is_none(reference):
+    curves = reference["fig06"]["apparent_restitution"]
+    line = claims.seen(curves)
+    assert line == pytest.approx(0.01 * float(curves.max() - curves.min()))
+    for depth, expected in ((0.9, "contradicted"), (1.1, "reproduced")):
+        dipping = curves.copy()
+        dipping[-1, 150] = 0.65 - depth * line
+        changed = with_other(reference, "fig06", apparent_restitution=dipping)
+        assert verdict("dip at 1.2", changed) == expected
+
+
+def test_an_orbit_that_does_not_exist_is_not_inadmissible(reference):
+    data = reference["fig15"]
+    exists = xr.DataArray(np.arange(data.sizes["point"]) > 3, dims="point")
+    changed = with_other(
+        reference,
+        "fig15",
+        phase=data["phase"].where(exists),
+        admissible=data["admissible"] & exists,
+    )
+    assert verdict("one impact per period", changed) == "reproduced"
+
+
+def test_crossings_lie_between_the_points_of_a_dataset():
+    ratio = np.geomspace(1, 100, 21)
+    curve = xr.DataArray(1 / ratio, {"frequency_ratio": ratio}, ("frequency_ratio",))
+    # Its error is some 1e-4 on a grid of steps of 1.26.
+    assert claims.crossing(curve, 0.3) == pytest.approx(1 / 0.3, rel=1e-3)
+    assert np.isnan(claims.crossing(curve, 2.0))
+
+
+def test_amplitudes_matter_below_the_frequency_ratio_that_an_own_computation_finds(reference):
+    """At the crossing the three orbits are computed again, from the closed form."""
+    fig10 = reference["fig10"]
+    ratio = claims.crossing(claims.spread(fig10), 0.01)
+    zeta = independent.restitution_to_damping(0.85)
+    velocities = []
+    for curve in fig10["contact_duration"]:
+        amplitude = curve["amplitude"].item()
+        near = float(curve.interp(frequency_ratio=ratio))
+        duration = brentq(
+            lambda time, size=amplitude: (
+                independent.orbit(2, ratio, zeta, "displacement", time)[0] - size
+            ),
+            near - 1e-3,
+            near + 1e-3,
+        )
+        impact = independent.orbit(2, ratio, zeta, "displacement", duration)[2]
+        velocities.append(impact + 4 * np.pi - duration)
+    assert np.ptp(velocities) / (2 * np.pi) == pytest.approx(0.01, rel=1e-4)
+
+
+def test_what_is_by_construction_follows_from_the_formulas():
+    zeta = damping_ratio(0.65)
+    r = 10.0 ** -np.arange(1, 301)
+    lack = 1 - damping_ratio(r)
+    assert (lack > 0).all()
+    # The next term of the series is smaller by 3π²/(4 ln²r).
+    assert lack[-1] * 2 * np.log(r[-1]) ** 2 / np.pi**2 == pytest.approx(1, abs=1e-4)
+    assert damping_ratio(1.0) == 0
+    assert permanent_contact(1e4, zeta) == pytest.approx(1, abs=1e-8)
+    assert permanent_contact(1e-4, zeta) == pytest.approx(1e8, rel=1e-8)
+    assert permanent_contact(1.0, zeta) == pytest.approx(2 * zeta, abs=1e-12)
+    ratio = np.geomspace(0.1, 100, 2001)
+    lowest = permanent_contact(ratio, zeta).min() - 2 * zeta * np.sqrt(1 - zeta**2)
+    # It is a minimum, so that a grid misses it by the square of its step, 3.5e-3.
+    assert 0 <= lowest < 1e-4
+    for n in (1, 2, 3):
+        assert restitution.impact_phase(n, 0.65, restitution.saddle_node(n, 0.65)) == 0
+        assert restitution.trace(0.65, 0.0) == pytest.approx(1 + 0.65**2)
 
 
 def test_the_stable_ranges_of_a_branch_lie_between_its_special_points(reference):
@@ -305,15 +380,12 @@ def test_a_missing_dataset_takes_away_its_claims(reference, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_numbers_that_are_missing_take_away_their_claims(reference, judged, name):
+def test_numbers_that_are_missing_take_away_their_claims(reference, name):
     data = reference[name]
     broken = data.map(lambda values: values * np.nan if values.dtype.kind == "f" else values)
     datasets = reference | {name: broken.assign_attrs(data.attrs)}
     for claim in users(name):
-        # Whether an orbit is admissible is no floating-point number.
-        is_lost = claim.name != "one impact per period"
-        expected = "not computed" if is_lost else verdicts(judged)[claim.name]
-        assert verdict(claim.name, datasets) == expected
+        assert verdict(claim.name, datasets) == "not computed"
 
 
 @pytest.mark.parametrize("name", sorted(claims.PAPER))
@@ -380,8 +452,8 @@ def test_the_verdicts_on_the_printed_numbers(judged):
     found = tables.counts(judged)["printed number"]
     assert {verdict: number for verdict, number in found.items() if number} == {
         "reproduced": 8,
-        "not to the digit": 14,
-        "contradicted": 1,
+        "near": 2,
+        "not reproduced": 13,
     }
 
 
@@ -390,7 +462,9 @@ VERDICTS = {
         "stiff limit",
         "compliant divergence",
         "direct map",
+        "complete study",
         "no assumptions",
+        "exactly computed",
         "no analytical solution",
         "period doubling",
         "stable between",
@@ -402,9 +476,33 @@ VERDICTS = {
         "stiff row",
         "safe above 100",
     },
-    "definition": {"bounces off later", "no damping"},
+    "by construction": {
+        "saddle-node",
+        "bounces off later",
+        "critical damping",
+        "no damping",
+        "six unknowns",
+        "stiff threshold",
+        "compliant threshold",
+        "resonant threshold",
+        "lowest threshold",
+    },
     "contradicted": {"dip at 1.2"},
-    "undecidable": {"departure from nπ", "amplitude does not matter", "representative"},
+    "undecidable": {
+        "high flights",
+        "departure from nπ",
+        "amplitude does not matter",
+        "representative",
+        "other problems",
+    },
+}
+OWN_SENSE_FAILS = {
+    "complete study",
+    "period doubling",
+    "static table",
+    "closer with stiffness",
+    "bifurcations move apart",
+    "stiff row",
 }
 
 
@@ -412,6 +510,8 @@ def test_the_verdicts_on_the_statements(judged):
     found = verdicts(judged.isel(claim=judged["group"].values == "statement"))
     named = {name: verdict for verdict, names in VERDICTS.items() for name in names}
     assert found == dict.fromkeys(found, "reproduced") | named
+    fails = judged["claim"].values[judged["own_sense"].values == "does not hold"]
+    assert set(fails) == OWN_SENSE_FAILS
 
 
 def test_claims_have_different_names_a_place_and_a_text():

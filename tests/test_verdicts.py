@@ -15,17 +15,17 @@ from bouncing_ball import verdicts
     [
         (0.2545, "0.255", "reproduced"),
         (0.2555, "0.255", "reproduced"),
-        (0.25449, "0.255", "not to the digit"),
-        (0.25551, "0.255", "not to the digit"),
+        (0.25449, "0.255", "near"),
+        (0.256, "0.255", "near"),
+        (0.25399, "0.255", "not reproduced"),
         (0.7505, "0.750", "reproduced"),
-        (0.751, "0.750", "not to the digit"),
+        (0.751, "0.750", "near"),
         (0.751, "0.75", "reproduced"),
         (82.5, "82", "reproduced"),
-        (82.6, "82", "not to the digit"),
-        (82.82, "82", "not to the digit"),
-        (82.83, "82", "contradicted"),
+        (82.6, "82", "near"),
+        (83.01, "82", "not reproduced"),
         (6.49, "6", "reproduced"),
-        (6.51, "6", "contradicted"),
+        (7.01, "6", "not reproduced"),
         (np.nan, "6", "not computed"),
     ],
 )
@@ -44,6 +44,8 @@ def test_readings_that_agree_decide_and_others_are_named():
     assert verdicts.of_readings(claim, [high, high])["verdict"] == "contradicted"
     mixed = verdicts.of_readings(claim, [high, low])
     assert mixed["verdict"] == "by reading"
+    assert mixed["own_sense"] == "does not hold"
+    assert verdicts.of_readings(claim, [low, high])["own_sense"] == "holds"
     assert mixed["condition"] == (
         "right for the lower (2, required ≤ 2); not for the higher (2.1, required ≤ 2)"
     )
@@ -57,6 +59,12 @@ def test_what_the_text_lacks_makes_a_statement_undecidable_only_if_readings_diff
     assert undecidable["verdict"] == "undecidable"
     assert undecidable["reason"] == "the text lacks the axis"
     assert verdicts.of_readings(claim, [low, low])["verdict"] == "reproduced"
+    assert verdicts.of_readings(claim, [])["verdict"] == "undecidable"
+
+
+def test_what_is_so_by_construction_is_not_counted_as_reproduced():
+    claim = verdicts.Claim("name", "Eq. 1", "text", {}, list, because="by algebra")
+    assert verdicts.answer(claim, {}) == {"verdict": "by construction", "condition": "by algebra"}
 
 
 def test_conditions_take_the_worst_number_and_refuse_a_missing_one():

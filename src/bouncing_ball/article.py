@@ -1,18 +1,20 @@
 """The article, its supplement and the list of figures: templates filled in from datasets.
 
 A template has text and names of numbers, and no numbers; `filters` below are what it can do with a
-number. Numbers are rounded correctly, and a number that lies exactly between two roundings goes to
-the even digit, as everywhere in Python. Bounds are rounded up. A number that a dataset does not
-have, because it was computed with other parameters, is a dash.
+number. Numbers are rounded to the nearest, and a bound away from what it bounds (`to="up"` for an
+upper bound, `to="down"` for a lower one), so that the sentence with it stays true. A number that a
+dataset does not have, because it was computed with other parameters, is a dash.
 """
 
 from collections.abc import Iterable
-from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
+from functools import partial
 from pathlib import Path
 
 import jinja2
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
 from bouncing_ball.datasets import Datasets, parameters
@@ -32,9 +34,7 @@ def environment(templates: Path) -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    found.filters.update(
-        fixed=fixed, percent=percent, at_most=at_most, short=short, listed=listed, at=at, zip=zip
-    )
+    found.filters.update(fixed=fixed, percent=percent, short=short, listed=listed, at=at, zip=zip)
     return found
 
 
@@ -58,6 +58,9 @@ def filled_in(name: str, datasets: Datasets) -> str:
         holmes_period_doubling=restitution.holmes_period_doubling,
         error_of_eq_8=claims.error_of_eq_8,
         departure=claims.departure,
+        spread=claims.spread,
+        durations=partial(durations, datasets),
+        crossing=claims.crossing,
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
     )
@@ -65,44 +68,42 @@ def filled_in(name: str, datasets: Datasets) -> str:
 
 # Numbers as text
 
-
-def rounded(value: Decimal, digits: int, rounding: str) -> str:
-    """A number with a number of decimals; its sign is a minus and no hyphen."""
-    # Zero has no sign.
-    number = value.quantize(Decimal(1).scaleb(-digits), rounding=rounding) + 0
-    return str(number).replace("-", "−")
+ROUNDINGS = {"nearest": ROUND_HALF_EVEN, "up": ROUND_CEILING, "down": ROUND_FLOOR}
+NOISE = Decimal("1e-9")
+"""How far a number may pass a rounded one and still count as it, as a share of itself if it exceeds
+1: rounding errors of the datasets are smaller."""
 
 
-def fixed(value: float, digits: int) -> str:
-    """A number with a number of decimals.
+def fixed(value: float, digits: int, to: str = "nearest", shift: int = 0) -> str:
+    """A number with a number of decimals, rounded to the nearest, or as a bound up or down.
+
+    Its sign is a minus and no hyphen. `shift` moves the decimal point before it is rounded.
 
     >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
     ('82.18', '−0.2', '0.00', '–')
+    >>> fixed(0.00031460, 5, "up"), fixed(1.5462, 2, "down"), fixed(0.5000000000001, 1, "up")
+    ('0.00032', '1.54', '0.5')
     """
-    number = float(value)
-    return rounded(Decimal(number), digits, ROUND_HALF_EVEN) if np.isfinite(number) else "–"
-
-
-def percent(value: float, digits: int = 0, rounding: str = ROUND_HALF_EVEN) -> str:
-    """A share in per cent.
-
-    >>> percent(0.01), percent(0.02673, 1)
-    ('1 %', '2.7 %')
-    """
-    number = float(value)
-    if not np.isfinite(number):
+    if not np.isfinite(value):
         return "–"
     # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
-    return rounded(100 * Decimal(repr(number)), digits, rounding) + " %"
+    number = Decimal(repr(float(value))).scaleb(shift)
+    last = Decimal(1).scaleb(-digits)
+    nearest = number.quantize(last, rounding=ROUND_HALF_EVEN)
+    if abs(number - nearest) > NOISE * max(abs(number), 1):
+        nearest = number.quantize(last, rounding=ROUNDINGS[to])
+    # Zero has no sign.
+    return str(nearest + 0).replace("-", "−")
 
 
-def at_most(value: float, digits: int) -> str:
-    """A bound in per cent, rounded up.
+def percent(value: float, digits: int = 0, to: str = "nearest") -> str:
+    """A share in per cent.
 
-    >>> at_most(0.00861, 2), at_most(0.008604, 2)
-    ('0.87 %', '0.87 %')
+    >>> percent(0.01), percent(0.02673, 1), percent(0.00861, 2, "up"), percent(0.00861, 1, "down")
+    ('1 %', '2.7 %', '0.87 %', '0.8 %')
     """
-    return percent(value, digits, ROUND_CEILING)
+    text = fixed(value, digits, to, shift=2)
+    return text if text == "–" else f"{text} %"
 
 
 def short(value: float) -> str:
@@ -143,6 +144,12 @@ def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
 
 
 # Numbers that several datasets give together
+
+
+def durations(datasets: Datasets, ratio: float) -> NDArray:
+    """The durations of all contacts of Figs. 8 and 9 at a frequency ratio."""
+    figures = [datasets[name].contact_duration for name in ("fig08", "fig09")]
+    return np.concatenate([np.ravel(at(figure, frequency_ratio=ratio)) for figure in figures])
 
 
 def stiff_errors(datasets: Datasets) -> xr.DataArray:

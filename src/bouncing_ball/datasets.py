@@ -207,6 +207,7 @@ VARIABLES = {
     ),
     # Claims
     "verdict": Variable("verdict on the claim"),
+    "own_sense": Variable("whether a statement by reading holds in the sense of its own sentence"),
     "item": Variable("figure, table, equation or section of the paper"),
     "statement": Variable("what the claim says"),
     "remark": Variable("how the claim was read"),

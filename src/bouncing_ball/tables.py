@@ -177,6 +177,7 @@ SECTIONS = {
         "where": "item",
         "what the paper says": "statement",
         "verdict": "verdict",
+        "own sense": "own_sense",
         "found": "condition",
         "at": "parameters",
         "remark": "notes",
@@ -200,6 +201,7 @@ EVERYTHING = {
     "computed": "computed",
     "distance": "distance",
     "verdict": "verdict",
+    "own sense": "own_sense",
     "found, or checked by": "condition",
     "remark": "notes",
     "decided by, or computed by": "decided_by",
@@ -241,13 +243,16 @@ INTRODUCTION = """\
 
 A row is one claim of the paper, in our words, with its place in the paper.
 
-- A printed number is *reproduced* if the computed one rounds to it, *not to the digit* if it does
-  not, but differs by at most 1 %, and *contradicted* beyond. The distance is in units of the last
-  printed digit and in per cent of the printed number.
-- A statement is turned into a condition for each way in which its words can be read. It is
-  *reproduced* or *contradicted* if all these readings agree. It is right *by reading* if they do
-  not, and the readings are named for which it is right and for which it is not. It is *undecidable*
-  if the text lacks what would choose among them, and a *definition* if it could not have failed.
+- A printed number is *reproduced* if the computed one rounds to it, *near* if it is off by at most
+  one unit of the last printed digit, as a number is whose last digit was cut off or rounded twice,
+  and *not reproduced* beyond. The distance is in units of the last printed digit and in per cent of
+  the printed number.
+- A statement is turned into a condition for each way in which its words can be read; the first is
+  the sense of the paper's own sentence. It is *reproduced* or *contradicted* if all these readings
+  agree. It is right *by reading* if they do not; then the readings are named for which it is right
+  and for which it is not, and the column *own sense* says whether the first is among those that
+  hold. It is *by construction* if it follows from restored formulas by algebra or could not have
+  failed, and *undecidable* if the text lacks what would decide it.
 - A claim is *not asked* if this run has other parameters than the claim needs, and *not computed*
   if a dataset or a number is missing.
 - A formula was *restored* from the damaged text by deriving it again. That the tests confirm it

@@ -1,13 +1,18 @@
 """How a claim of the paper is judged.
 
-A claim is a printed number or a statement. A printed number is compared with the computed one:
-*reproduced* if this rounds to it, *not to the digit* if it does not but differs by at most 1 %, and
-*contradicted* beyond. A statement is turned into one condition for each way in which its words can
-be read. It is *reproduced* or *contradicted* if all of these readings agree, and *by reading* if
-they do not: then the verdict names those for which it is right and those for which it is not. It is
-*undecidable* if the text lacks what would choose among the readings, and a *definition* if it could
-not have failed. A claim is *not asked* if a dataset was computed with other parameters than the
-claim needs, and *not computed* if a dataset or a number is missing.
+A claim is a printed number or a statement. A printed number is *reproduced* if the computed number
+rounds to it, *near* if it is off by at most one unit of the last printed digit, as a number is
+whose last digit was cut off or rounded twice, and *not reproduced* beyond.
+
+A statement is turned into one condition for each way in which its words can be read. The first is
+the sense of the paper's own sentence; the others are stricter, weaker, or about another quantity. A
+statement is *reproduced* or *contradicted* if all of its readings agree, and *by reading* if they
+do not. It is *by construction* if it follows from restored formulas by algebra or could not have
+failed, so that computing it would test the restoration and not the paper, and *undecidable* if the
+text lacks what would decide it.
+
+A claim is *not asked* if a dataset was computed with other parameters than the claim needs, and
+*not computed* if a dataset or a number is missing.
 """
 
 from collections.abc import Callable, Mapping
@@ -27,11 +32,12 @@ ROUNDING = 1e-9
 
 VERDICTS = (
     "reproduced",
-    "definition",
+    "near",
     "by reading",
-    "not to the digit",
-    "contradicted",
+    "by construction",
     "undecidable",
+    "not reproduced",
+    "contradicted",
     "not asked",
     "not computed",
 )
@@ -55,22 +61,21 @@ def against_print(found: float, printed: str) -> Comparison:
 
     A number halfway between two roundings counts as rounding to either.
 
-    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2570, 0.2580)]
-    ['reproduced', 'not to the digit', 'contradicted']
+    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2560, 0.2561)]
+    ['reproduced', 'near', 'not reproduced']
     """
     decimals = len(printed.partition(".")[2])
     distance = found - float(printed)
     units = distance * 10.0**decimals
-    share = distance / abs(float(printed))
     if np.isnan(found):
         verdict = "not computed"
     elif abs(units) <= 0.5 + ROUNDING:
         verdict = "reproduced"
-    elif abs(share) <= LIMIT + ROUNDING:
-        verdict = "not to the digit"
+    elif abs(units) <= 1 + ROUNDING:
+        verdict = "near"
     else:
-        verdict = "contradicted"
-    return Comparison(verdict, units, share)
+        verdict = "not reproduced"
+    return Comparison(verdict, units, distance / abs(float(printed)))
 
 
 # Statements
@@ -129,7 +134,9 @@ class Claim:
 
     `datasets` are the names of the datasets that decide it, with the parameters that it needs of
     each. `decide` takes these datasets in their order, and returns the computed number if a number
-    is `printed`, and otherwise the readings. `missing` is what the text lacks to choose among them.
+    is `printed`, and otherwise the readings, that of the paper's own sentence first. `missing` is
+    what the text lacks to choose among them. `because` is the reason why a claim is so by
+    construction; nothing decides such a claim.
     """
 
     name: str
@@ -139,7 +146,7 @@ class Claim:
     decide: Callable[..., Any]
     printed: str = ""
     missing: str = ""
-    definition: bool = False
+    because: str = ""
     remark: str = ""
 
 
@@ -157,6 +164,8 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
+    if claim.because:
+        return {"verdict": "by construction", "condition": claim.because}
     try:
         decided = claim.decide(*(datasets[name] for name in claim.datasets))
         if claim.printed:
@@ -174,18 +183,25 @@ def of_number(claim: Claim, computed: ArrayLike) -> dict:
 
 
 def of_readings(claim: Claim, readings: list[Reading]) -> dict:
-    """The verdict on a statement from its readings; the number found is that of the first."""
+    """The verdict on a statement from its readings; the number found is that of the first.
+
+    If they differ, `own_sense` says whether the first holds, that of the paper's own sentence.
+    """
     right = [reading for reading in readings if reading.holds]
     wrong = [reading for reading in readings if not reading.holds]
-    found = {"found": readings[0].found, "condition": listed(readings)}
-    if not wrong:
-        return found | {"verdict": "definition" if claim.definition else "reproduced"}
-    if not right:
-        return found | {"verdict": "contradicted"}
-    found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
-    if not claim.missing:
-        return found | {"verdict": "by reading"}
-    return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
+    found = {
+        "found": readings[0].found if readings else np.nan,
+        "condition": listed(readings),
+        "verdict": "reproduced" if right else "contradicted",
+    }
+    if right and wrong:
+        found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
+        found["verdict"] = "by reading"
+    if claim.missing and (found["verdict"] == "by reading" or not readings):
+        return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
+    if found["verdict"] == "by reading":
+        found["own_sense"] = "holds" if readings[0].holds else "does not hold"
+    return found
 
 
 def listed(readings: list[Reading]) -> str:

@@ -58,11 +58,11 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"reproduced*, off by up to {article.fixed(units, 2, 'up')} units of the last digit or "
         f"{article.percent(share, 2, 'up')}.",
         f"greatest height (off by at most {worst['max_height']} on",
-        f"bouncing-off velocity (up to {worst['bounce_velocity']}) and the apparent restitution (up "
-        f"to {worst['apparent_restitution']}).",
+        f"bouncing-off velocity (up to {worst['bounce_velocity']}) and the apparent restitution "
+        f"(up to {worst['apparent_restitution']}).",
         f"Of the {sum(by.values())} statements that we judged, {by['reproduced']} are "
-        f"*reproduced*, {by['by construction']} are right *by construction*, {by['by reading']} are "
-        f"right *by reading* ({own} of them in the sense of the paper's own sentence), "
+        f"*reproduced*, {by['by construction']} are right *by construction*, {by['by reading']} "
+        f"are right *by reading* ({own} of them in the sense of the paper's own sentence), "
         f"{by['undecidable']} are *undecidable*, and {by['contradicted']} is",
         f"stable again for Λ = {article.fixed(low, 5, 'up')} to {article.fixed(high, 5, 'down')}, "
         f"and ends at Λ = {article.fixed(branch.amplitude[0], 6)} in permanent contact",

@@ -12,8 +12,23 @@ import click
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
 from bouncing_ball_contacts.diagnosis import diagnose
 from bouncing_ball_contacts.engines import ENGINES
+from bouncing_ball_contacts.rebounds import (
+    BY_NUMBER,
+    Rebound,
+    engine_by_number,
+    falling,
+    number_for,
+    rebound,
+)
 from bouncing_ball_contacts.scripts import drop_script
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused
+from bouncing_ball_contacts.units import (
+    STANDARD_GRAVITY,
+    Refused,
+    in_si,
+    positive,
+    show,
+    step_in_si,
+)
 
 _DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
@@ -46,7 +61,7 @@ _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240
 
 
 def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
-    return [name for name in ENGINES if name.startswith(typed)]
+    return [name for name in [*ENGINES, *BY_NUMBER] if name.startswith(typed)]
 
 
 _ENGINE = click.Option(
@@ -80,12 +95,14 @@ def main(context: click.Context) -> None:
 
 def _values(found: Any) -> dict[str, Any]:
     values = dataclasses.asdict(found)
+    if isinstance(found, Rebound):
+        values |= {"snippet": found.snippet, "notes": found.notes}
     if isinstance(found, Design):
         values |= {"parameters": found.parameters, "snippet": found.snippet}
     return values
 
 
-def _print(found: Any, as_json: bool, written: Design | None = None) -> None:
+def _print(found: Any, as_json: bool, written: Design | Rebound | None = None) -> None:
     if not as_json:
         click.echo("\n\n".join(str(each) for each in (found, written) if each is not None))
         return
@@ -121,7 +138,14 @@ def design_command(
     as_json: bool,
     **bounce: Any,
 ) -> None:
-    """Write the contact of an engine for the bounce that you want."""
+    """Write the contact of an engine, or its restitution number, for the bounce that you want."""
+    row = engine_by_number(engine)
+    if row is not None and engine not in ENGINES:
+        for option, value in {"--one-body": one_body, "--pick": pick, "--script": script}.items():
+            if value:
+                raise Refused(f"{option} has no place where the restitution is a number")
+        _print(number_for(falling(**bounce), row, time_step), as_json)
+        return
     found = design(
         Bounce(**bounce),
         engine,
@@ -145,6 +169,15 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
             raise Refused(f"{name.strip()} is given twice")
         found[name.strip()] = value.strip()
     return found
+
+
+def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]:
+    """Return ODE's numbers of a spring and a damper: ERP = h k/(h k + c), CFM = 1/(h k + c)."""
+    if time_step is None:
+        raise Refused("the time step is missing: ODE's soft_erp and soft_cfm depend on it")
+    pull = step_in_si(time_step) * positive("kp", spring["kp"], "N/m")
+    both = pull + in_si("kd", spring["kd"], "N s/m")
+    return {"soft_erp": pull / both, "soft_cfm": 1 / both}
 
 
 @main.command(
@@ -174,14 +207,17 @@ def diagnose_command(
 
     Without numbers they are the engine's defaults, if it has some.
     """
-    found = diagnose(
-        Bounce(**bounce),
-        engine,
-        _assigned(parameters),
-        time_step,
-        other=_assigned(other) if other or one_body else None,
-    )
-    _print(found, as_json)
+    typed = _assigned(parameters)
+    if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
+        typed = _own_of_ode(typed, time_step)
+    beside = _assigned(other) if other or one_body else None
+    row = engine_by_number(engine)
+    # PhysX has springs as well.
+    has_numbers = row is not None and {name.lower() for name in typed} <= row.names.keys()
+    if row is not None and (engine not in ENGINES or (has_numbers and typed)):
+        _print(rebound(falling(**bounce), row, typed, time_step, beside), as_json)
+        return
+    _print(diagnose(Bounce(**bounce), engine, typed, time_step, other=beside), as_json)
 
 
 def _lines(text: str | None) -> tuple[int, ...]:
@@ -248,8 +284,13 @@ def fit_command(
     }
     of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
     given = [name for name, value in (contact | of_design).items() if value is not None]
-    written = None
-    if engine is not None:
+    written: Design | Rebound | None = None
+    row = None if engine is None else engine_by_number(engine)
+    if row is not None and engine not in ENGINES:
+        ball = {"mass": found.mass, "radius": found.diameter and found.diameter / 2}
+        wanted = {"restitution": found.restitution, "speed": found.speed}
+        written = number_for(falling(**ball, **wanted, **contact), row, time_step)
+    elif engine is not None:
         bounce = found.bounce(**contact)
         written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
         _write_script(written, script)
@@ -274,6 +315,12 @@ def engines_command() -> None:
         for row in ENGINES.values()
     ]
     click.echo("\n".join(aligned([head, *rows])))
+    head = ["engine", "restitution", "numbers of two bodies", "threshold", "run in"]
+    rows = [
+        [row.name, row.parameter, row.pair.text, show(row.threshold, "m/s"), row.ran]
+        for row in BY_NUMBER.values()
+    ]
+    click.echo("\n" + "\n".join(aligned([head, *rows])))
 
 
 def run() -> None:

@@ -1,0 +1,877 @@
+"""Engines whose restitution is a number, and the bounce that they make of it.
+
+Such an engine reverses the velocity of a body within one step. Which velocity it takes, whether the
+step's gravity belongs to it, and where the body is at the end of that step, differ from engine to
+engine, and so r = √(h′/h) is not the number. The rules below have one step of each engine for a
+ball over a surface: its height z and velocity v, both upwards, before and after the step. They were
+found in the source of the engines and by dropping balls in them; ``tests/engine_drops.csv`` has the
+drops, with which ``tests/test_rebounds.py`` compares the rules.
+
+r depends on where in a step the ball meets the surface, by about g h/v, the speed that a step h of
+gravity adds over that of the impact. It is given as its least, mean and greatest value over all
+instants.
+"""
+
+import difflib
+import math
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Page, Quantity
+from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, Rule
+from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si, within
+
+LARGER = Rule("the larger of both counts", max, lambda x: x, lambda x, other: x)
+_CLAMPED_SUM = Rule(
+    "added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2, lambda x, other: x
+)
+INSTANTS = 24
+"""Of the impact within a step."""
+# Where a body flies freely: no engine finds its contact farther away, in m.
+_REACH = 0.06
+
+
+@dataclass(frozen=True)
+class Fall:
+    """A ball on its way down: what the rule of an engine depends on, in SI units.
+
+    ``number`` is the restitution coefficient of both bodies together. Impacts slower than
+    ``threshold`` have none.
+    """
+
+    number: float
+    step: float
+    gravity: float
+    threshold: float
+    radius: float
+
+    @property
+    def added(self) -> float:
+        """The speed that gravity adds in a step."""
+        return self.gravity * self.step
+
+
+Steps = Iterator[tuple[float, float]]
+"""Height and velocity after each step, without an end."""
+
+
+def _jolt(at: Fall, z: float, v: float) -> Steps:
+    """Contacts are found 20 mm ahead; the velocity before the step's gravity is reversed."""
+    while True:
+        u = v - at.added
+        if z <= 0.02:
+            touches = u < -max(z, 0.0) / at.step
+            u = max(u, -at.number * v if touches and u < -at.threshold else -max(z, 0.0) / at.step)
+        z += at.step * u
+        v = u
+        yield z, v
+
+
+def _physx(at: Fall, z: float, v: float, ahead: float) -> Steps:
+    """Within both contact offsets, the velocity with the step's gravity is reversed.
+
+    Below the threshold the body is stopped at the surface.
+    """
+    while True:
+        v -= at.added
+        if z < ahead and z + at.step * v < 0 and v < 0:
+            v = -at.number * v if v < -at.threshold else -max(z, 0.0) / at.step
+        z += at.step * v
+        yield z, v
+
+
+# Rapier and Box2D 3 make a step of four substeps, and a contact with a fixed body is a spring of
+# 60 Hz with a damping ratio of 10 that pushes a body out with at most 3 m/s.
+_SUBSTEPS = 4
+_DAMPING_RATIO = 10.0
+_PUSH = 3.0
+_PREDICTION = 0.02
+_SLOP = 0.005
+
+
+def _fly(at: Fall, z: float, v: float) -> tuple[float, float]:
+    """Return a step of free flight; a ball faster than half a radius per step is held at 5 mm."""
+    z += at.step * (v - at.added * (_SUBSTEPS + 1) / (2 * _SUBSTEPS))
+    v -= at.added
+    is_fast = abs(v) * at.step > at.radius / 2
+    return (max(z, -_SLOP) if is_fast else z), v
+
+
+def _soft_contact(
+    at: Fall, z: float, v: float, impulse: float, frequency: float
+) -> tuple[float, float, float, bool]:
+    """Return height, velocity and impulse after a step, and whether the contact pushed at all.
+
+    Impulses are per unit of mass. Each substep solves the contact twice: with the spring that takes
+    back a penetration, and then without.
+    """
+    h = at.step / _SUBSTEPS
+    omega = 2 * math.pi * frequency
+    softness = omega * h * (2 * _DAMPING_RATIO + omega * h)
+    share = softness / (1 + softness)
+    pushed = False
+    for _ in range(_SUBSTEPS):
+        v += impulse - at.gravity * h
+        bias = z / h if z > 0 else max(omega * z / (2 * _DAMPING_RATIO + omega * h), -_PUSH)
+        soft = max(impulse - v - bias, 0.0) * (1 if z > 0 else share)
+        v += soft - impulse
+        z += v * h
+        impulse = max(soft - v - max(z, 0.0) / h, 0.0)
+        v += impulse - soft
+        pushed |= max(soft, impulse) > 0
+    return z, v, impulse, pushed
+
+
+def _rebounding(at: Fall, before: float, v: float, impulse: float) -> tuple[float, float]:
+    """Return velocity and impulse after a step at whose end v is r times that before it."""
+    kick = max(impulse - v - at.number * before, 0.0)
+    return v + kick - impulse, kick
+
+
+def _box2d(at: Fall, z: float, v: float) -> Steps:
+    """The velocity before the step is reversed at its end."""
+    impulse = 0.0
+    # At low rates the spring is made softer.
+    frequency = 2 * min(30.0, _SUBSTEPS / at.step / 8)
+    while True:
+        if z < _PREDICTION:
+            before = v
+            z, v, impulse, pushed = _soft_contact(at, z, v, impulse, frequency)
+            if before < -at.threshold and pushed:
+                v, impulse = _rebounding(at, before, v, impulse)
+        else:
+            impulse = 0.0
+            z, v = _fly(at, z, v)
+        yield z, v
+
+
+def _rapier(at: Fall, z: float, v: float) -> Steps:
+    """As Box2D, but a contact is looked for again only after a way of 20 mm, or 50 mm in contact.
+
+    A contact that already pushed in the step before does not bounce.
+    """
+    impulse = 0.0
+    in_contact = False
+    leaf = z
+    looked = math.inf
+    while True:
+        # The ball has a box in a tree, with a margin of 40 mm around it.
+        if abs(z - leaf) > 0.04:
+            leaf = z
+        if leaf > 0.06:
+            in_contact = False
+            looked = math.inf
+        elif abs(z - looked) > (0.05 if in_contact else _PREDICTION):
+            looked = z
+            in_contact = z < _PREDICTION
+        if in_contact:
+            before = v
+            is_new = impulse == 0
+            z, v, impulse, pushed = _soft_contact(at, z, v, impulse, 60.0)
+            if before < 0 and pushed and at.number > 0 and (is_new or at.number >= 1):
+                v, impulse = _rebounding(at, before, v, impulse)
+        else:
+            impulse = 0.0
+            z, v = _fly(at, z, v)
+        yield z, v
+
+
+# Box2D 2 and planck have a skin around polygons.
+_SKIN = 2 * _SLOP
+
+
+def _out(z: float) -> float:
+    """Return where a ball at the time of its impact is put, in iterations with a factor of 3/4."""
+    for _ in range(20):
+        apart = z - _SKIN
+        z += min(max(-0.75 * (apart + _SLOP), 0.0), 0.2)
+        if apart >= -1.5 * _SLOP:
+            break
+    return z
+
+
+def _box2d_2(at: Fall, z: float, v: float) -> Steps:
+    """The velocity with the step's gravity is reversed, in the step that begins in the skin.
+
+    A ball that would be deeper than 6 mm is stopped where it is 5 mm deep, and moves on from there.
+    """
+    touches = False
+    while True:
+        u = v - at.added
+        v = u if u > 0 else -at.number * u * (u < -at.threshold)
+        if touches and abs(z + _SLOP) <= _SLOP / 4 and v > 0:
+            z = _out(z) + at.step * v
+        elif touches:
+            z += at.step * v
+            for _ in range(3):
+                apart = z - _SKIN
+                z += min(max(-0.2 * (apart + _SLOP), 0.0), 0.2)
+                if apart >= -3 * _SLOP:
+                    break
+        elif z + at.step * u < -1.25 * _SLOP:
+            rest = 1 + (z + _SLOP) / (at.step * u)
+            z = _out(-_SLOP) + rest * at.step * v
+        else:
+            v = u
+            z += at.step * v
+        touches = z < _SKIN
+        yield z, v
+
+
+def _chipmunk(at: Fall, z: float, v: float) -> Steps:
+    """The body moves first; below the surface the velocity before the step's gravity counts."""
+    while True:
+        z += at.step * v
+        u = v - at.added
+        v = max(u, -at.number * v) if z < 0 and v < 0 else u
+        yield z, v
+
+
+def _dart(at: Fall, z: float, v: float) -> Steps:
+    """A body below the surface is reversed, if it then leaves faster than the threshold."""
+    while True:
+        v -= at.added
+        if z < 0 and v < 0:
+            back = min(-0.01 * z / at.step, 1e-3)
+            v = -at.number * v if -at.number * v > at.threshold else back
+        z += at.step * v
+        yield z, v
+
+
+def _xpbd(at: Fall, z: float, v: float) -> Steps:
+    """Two iterations that take back 0.8 of the penetration each; then v is reversed."""
+    while True:
+        v -= at.added
+        z += at.step * v
+        if z < 0 and v < 0:
+            z *= 0.04
+            v *= -at.number
+        yield z, v
+
+
+def _matter(at: Fall, z: float, v: float) -> Steps:
+    """The body is put back to the surface, and its velocity with gravity is reversed."""
+    while True:
+        v -= at.added
+        z += at.step * v
+        if z < 0 and v < 0:
+            z = 0.0
+            v *= -at.number
+        yield z, v
+
+
+def _cannon(at: Fall, z: float, v: float) -> Steps:
+    """A spring of 10⁷ N/m that is relaxed over three steps, with (1 + r) v beside it.
+
+    The body has 1 kg; heavier ones sink deeper.
+    """
+    a = 4 / (at.step * 13)
+    b = 12 / 13
+    softness = 4 / (at.step**2 * 1e7 * 13)
+    while True:
+        impulse = 0.0
+        if z < 0:
+            impulse = max((at.added - z * a - (1 + at.number) * v * b) / (1 + softness), 0.0)
+        v += impulse - at.added
+        z += at.step * v
+        yield z, v
+
+
+@dataclass(frozen=True)
+class ByNumber:
+    """An engine whose restitution is a number.
+
+    ``parameter`` is its name, ``pair`` how the engine combines those of two bodies, ``default`` the
+    one of a body that has none. Impacts slower than ``threshold`` have no restitution, or, if it
+    ``is_of_rebound``, bodies that would leave more slowly; ``set_by`` is its setting, empty if
+    there is none that can be changed. ``sinks`` is by how many times g h² a body falls farther in a
+    step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
+    ``written`` is the line to paste.
+    """
+
+    name: str
+    rule: Callable[[Fall, float, float], Steps]
+    ran: str
+    written: str
+    parameter: str = "restitution"
+    pair: Rule = MEAN
+    default: float = 0.0
+    threshold: float = 0.0
+    is_of_rebound: bool = False
+    set_by: str = ""
+    sinks: float = 1.0
+    remembers: int = 2
+    notes: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> dict[str, str]:
+        """What the names that may be typed stand for, in small letters."""
+        known = {"restitution": "number", self.parameter.lower(): "number"}
+        if self.set_by:
+            last = re.split(r"[.:/]", self.set_by.lower())[-1]
+            known |= {"threshold": "threshold", last: "threshold"}
+        return known
+
+
+_JOLT = ByNumber(
+    name="jolt",
+    rule=_jolt,
+    ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
+    written="bodySettings.mRestitution = {number}f;  // of both bodies",
+    parameter="mRestitution",
+    pair=LARGER,
+    threshold=1.0,
+    set_by="PhysicsSettings::mMinVelocityForRestitution",
+)
+_PHYSX = ByNumber(
+    name="physx",
+    rule=partial(_physx, ahead=0.04),
+    ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
+    written="material->setRestitution({number}f);  // of both shapes",
+    threshold=2.0,
+    set_by="bounceThresholdVelocity",
+)
+_BOX2D_2 = ByNumber(
+    name="box2d-2",
+    rule=_box2d_2,
+    ran="Box2D 2.3.10 of Python",
+    written="fixtureDef.restitution = {number}f;  // of one of both fixtures",
+    pair=LARGER,
+    threshold=1.0,
+    notes=("The threshold is a constant of the library, b2_velocityThreshold",),
+)
+_DART = ByNumber(
+    name="dart",
+    rule=_dart,
+    ran="DART 6.20 (dartpy)",
+    written="dynamicsAspect->setRestitutionCoeff({number});  // of both bodies",
+    pair=PRODUCT,
+    threshold=0.1,
+    is_of_rebound=True,
+)
+_RAPIER = ByNumber(
+    name="rapier",
+    rule=_rapier,
+    ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
+    written="ColliderBuilder::ball(radius).restitution({number})  // and the ground",
+    sinks=(_SUBSTEPS + 1) / (2 * _SUBSTEPS),
+    remembers=2000,
+    notes=("Before 0.35 Rapier had another rule",),
+)
+BY_NUMBER = {
+    each.name: each
+    for each in (
+        _JOLT,
+        replace(
+            _JOLT,
+            name="godot-jolt",
+            written="physics_material.bounce = {number}  # of both bodies",
+            parameter="bounce",
+            pair=_CLAMPED_SUM,
+            set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
+            notes=("Godot was not run: its source hands these numbers to Jolt",),
+        ),
+        _PHYSX,
+        replace(
+            _PHYSX,
+            name="unity",
+            rule=partial(_physx, ahead=0.02),
+            written="material.bounciness = {number}f;  // of both colliders, combined by Average",
+            parameter="bounciness",
+            set_by="Physics.bounceThreshold",
+            notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
+        ),
+        replace(
+            _PHYSX,
+            name="isaac-lab",
+            written="RigidBodyMaterialCfg(restitution={number})  # of both bodies",
+            rule=partial(_physx, ahead=math.inf),
+            threshold=0.5,
+            set_by="PhysxCfg.bounce_threshold_velocity",
+            notes=(
+                "Isaac Lab was not run: it has PhysX 5. The contact offset is taken as longer than "
+                "the way of the body in a step",
+            ),
+        ),
+        replace(
+            _PHYSX,
+            name="isaac-sim",
+            written="PhysicsMaterial(restitution={number})  # of both bodies",
+            rule=partial(_physx, ahead=math.inf),
+            threshold=0.2,
+            set_by="physxScene:bounceThreshold",
+            notes=(
+                "Isaac Sim was not run: it has PhysX 5. The contact offset is taken as longer than "
+                "the way of the body in a step",
+            ),
+        ),
+        _RAPIER,
+        ByNumber(
+            name="box2d",
+            rule=_box2d,
+            ran="Box2D 3 (box2d3-wasm 5.2.0)",
+            written="shapeDef.material.restitution = {number}f;  // of one of both shapes",
+            pair=LARGER,
+            threshold=1.0,
+            set_by="b2WorldDef.restitutionThreshold",
+            sinks=_RAPIER.sinks,
+            notes=("Box2D 2 has another rule: --engine box2d-2",),
+        ),
+        _BOX2D_2,
+        replace(
+            _BOX2D_2,
+            name="planck",
+            ran="planck 1.4.2",
+            written="body.createFixture({{shape, restitution: {number}}})  // one of both",
+            set_by="Settings.velocityThreshold",
+            notes=(),
+        ),
+        ByNumber(
+            name="chipmunk",
+            rule=_chipmunk,
+            ran="Chipmunk 7 (pymunk 7.3.1)",
+            written="shape.elasticity = {number}  # of both shapes",
+            parameter="elasticity",
+            pair=PRODUCT,
+            sinks=0.0,
+        ),
+        _DART,
+        replace(
+            _DART,
+            name="gazebo-sim",
+            written="<bounce><restitution_coefficient>{number}</restitution_coefficient></bounce>"
+            "  <!-- of both collisions -->",
+            parameter="restitution_coefficient",
+            notes=(
+                "Gazebo was not run: with its default engine it hands this number to DART, and the "
+                "threshold of the same element is not read",
+            ),
+        ),
+        ByNumber(
+            name="matter-js",
+            rule=_matter,
+            ran="matter-js 0.20.0",
+            written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // one of both",
+            pair=LARGER,
+            notes=(
+                "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
+                "that is lower by 0.02",
+                "Of gravity and lengths in pixels give those in metres at the same ratio, and "
+                "frictionAir = 0",
+            ),
+        ),
+        ByNumber(
+            name="newton-xpbd",
+            rule=_xpbd,
+            ran="Newton 1.8.0",
+            written="ShapeConfig(restitution={number})  # SolverXPBD(model, "
+            "enable_restitution=True)",
+        ),
+        ByNumber(
+            name="cannon-es",
+            rule=_cannon,
+            ran="cannon-es 0.20.0",
+            written="new ContactMaterial(a, b, {{restitution: {number}}})",
+            pair=PAIR,
+            notes=(
+                "With contactEquationRelaxation = 3 and contactEquationStiffness = 1e7, the "
+                "defaults; r depends on where in a step the impact is",
+            ),
+        ),
+    )
+}
+"""The engines, and products on top of one, by their names."""
+_OTHER_NAMES = {
+    "box2d-3": "box2d",
+    "cannon": "cannon-es",
+    "dartpy": "dart",
+    "gz": "gazebo-sim",
+    "gz-sim": "gazebo-sim",
+    "ignition": "gazebo-sim",
+    "isaac": "isaac-sim",
+    "joltphysics": "jolt",
+    "jolt-physics": "jolt",
+    "matter": "matter-js",
+    "planck-js": "planck",
+    "pybox2d": "box2d-2",
+    "pymunk": "chipmunk",
+    "rapier2d": "rapier",
+    "rapier3d": "rapier",
+    "unity3d": "unity",
+    "xpbd": "newton-xpbd",
+}
+WITHOUT_ANSWER = {
+    "bepu": "BepuPhysics 2 has no restitution: a contact is a spring with a frequency and a "
+    "damping ratio, which was not run",
+    "brax": "Brax has four pipelines, of which none was run; for the one of MJX take mujoco",
+    "godot": "Godot has two engines: take godot-jolt for Jolt Physics; Godot Physics was not run",
+    "havok": "Havok was not run, and its source cannot be read",
+    "physx-3": "PhysX 3 was not run; unity and physx have the rule of PhysX 4 and 5",
+    "unreal": "Unreal 5 has Chaos, which was not run, and Unreal 4 has PhysX 3.4",
+}
+"""Names that people type, and why there is no answer."""
+
+
+def engine_by_number(name: str) -> ByNumber | None:
+    """Return the engine of this name whose restitution is a number; None if it has another row.
+
+    Raises
+    ------
+    Refused
+        If the name is known, but nothing is known of its bounce.
+    """
+    plain = name.strip().lower().replace("_", "-").replace(" ", "-").removesuffix(".js")
+    plain = _OTHER_NAMES.get(plain, plain)
+    for known, why in WITHOUT_ANSWER.items():
+        if plain.removesuffix("-5").removesuffix("-engine").removesuffix("physics") == known:
+            raise Refused(f"{name}: {why}")
+    near = difflib.get_close_matches(plain, BY_NUMBER, 1, 0.8)
+    if plain not in BY_NUMBER and near:
+        raise Refused(f"engine {name!r} is not known; did you mean {near[0]}?")
+    return BY_NUMBER.get(plain)
+
+
+def _first_rebound(engine: ByNumber, at: Fall, height: float, speed: float) -> float:
+    """Return r of a ball that is dropped from a height, or without gravity arrives with a speed."""
+    z = height
+    v = 0.0 if at.gravity else -speed
+    near = _REACH + 4 * speed * at.step
+    drop = at.added * at.step
+    if drop:
+        # Down to where a contact may be found the ball flies n steps freely.
+        n = math.floor(math.sqrt(2 * max(z - near, 0.0) / drop))
+        n = max(n - engine.remembers, 0)
+        z -= drop * (n * (n - 1) / 2 + engine.sinks * n)
+        v -= at.added * n
+    rises = False
+    most = 2000 + math.ceil(6 * near / (speed * at.step))
+    steps = engine.rule(at, z, v)
+    for z_next, v in islice(steps, most):
+        if rises and z_next < z:
+            return math.sqrt(max(z, 0.0) / height)
+        rises |= z_next > z
+        z = z_next
+        if v > 0 and z > _REACH and rises:
+            if not drop:
+                return v / speed
+            # And so it flies up to its top.
+            n = max(math.floor(v / at.added - engine.sinks) + 1, 0)
+            z += n * at.step * v - drop * (n * (n - 1) / 2 + engine.sinks * n)
+            return math.sqrt(z / height)
+    # It lies still, or is pushed out slowly.
+    return 0.0
+
+
+def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int = INSTANTS) -> Array:
+    """Return √(h′/h) of impacts with a speed in m/s, at instants within a step.
+
+    Without gravity it is the ratio of the speeds.
+
+    >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
+    >>> restitutions(BY_NUMBER["jolt"], at, speed=1.4).round(2).mean()
+    np.float64(0.83)
+    """
+    fraction = np.arange(instants) / instants - 0.5
+    height = speed**2 / (2 * at.gravity) if at.gravity else _REACH + speed * at.step
+    heights = height + speed * at.step * fraction
+    if heights[0] <= 0:
+        raise Refused(
+            f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
+            "greater height"
+        )
+    return np.array([_first_rebound(engine, at, float(h), speed) for h in heights])
+
+
+# Of a body that is not given: no rule depends on the mass, and on the radius for fast bodies only.
+_BODY: Mapping[str, Quantity] = {"mass": 1.0, "radius": 0.1}
+
+
+def falling(**quantities: Quantity) -> Bounce:
+    """Return the bounce of a ball, which has a radius of 0.1 m if neither mass nor size is given.
+
+    Raises
+    ------
+    Refused
+        If a quantity cannot be read, or has no place here.
+    """
+    given = {name: value for name, value in quantities.items() if value is not None}
+    for name in ("penetration", "stiffness", "contact_time", "other_mass", "friction"):
+        if name in given:
+            option = name.replace("_", "-")
+            raise Refused(f"--{option} has no place where the restitution is a number")
+    if given.get("points", 1) != 1:
+        raise Refused("--points has no place where the restitution is a number: a ball is dropped")
+    body = {} if given.keys() & {"mass", "radius", "density"} else _BODY
+    return Bounce(**({"mass": 1.0} | dict(body) | given))
+
+
+@dataclass(frozen=True, repr=False)
+class Rebound(Page):
+    """What a restitution number does in an engine.
+
+    ``written`` is the number of a body: of both alike, or of one if ``other`` has that of the other
+    one. ``number`` is that of both together, ``threshold`` in m/s, and ``restitution`` has the
+    least, the mean and the greatest r; ``slower`` has those at a third of the speed. ``change``
+    is the same with r nearest to the wanted one, and ``shorter`` that at the longest step at which
+    r is within the tolerance; they are None if this one is.
+    """
+
+    engine: str
+    bounce: Bounce
+    time_step: float
+    written: float
+    other: float | None
+    number: float
+    threshold: float
+    restitution: tuple[float, float, float]
+    slower: tuple[float, float, float]
+    change: "Rebound | None" = None
+    shorter: "Rebound | None" = None
+
+    @property
+    def deviation(self) -> float:
+        """The largest distance of r from the wanted one."""
+        low, _, high = self.restitution
+        return max(self.bounce.restitution - low, high - self.bounce.restitution)
+
+    @property
+    def snippet(self) -> str:
+        """What is pasted into the engine."""
+        row = BY_NUMBER[self.engine]
+        line = row.written.format(number=f"{self.written:.4g}")
+        lowered = f"{row.set_by} = {self.threshold:.2g}"
+        return line if self.threshold == row.threshold else f"{line}\n{lowered}"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a user has to know, the severest first."""
+        row = BY_NUMBER[self.engine]
+        speed = self.bounce.impact_speed
+        mean = self.restitution[1]
+        limit = f"{show(self.threshold, 'm/s')}" + (f", {row.set_by}" if row.set_by else "")
+        slowest = self.threshold / (max(self.number, 1e-9) if row.is_of_rebound else 1.0)
+        is_slow = self.threshold > 0 and speed < slowest
+        lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
+        way = speed * self.time_step
+        said = {
+            f"it does not bounce: {show(speed, 'm/s')} is below the threshold of {limit}": is_slow
+            and mean < 0.1,
+            f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold of "
+            f"{limit}": self.restitution[0] == 0 < mean and slowest < speed < 2 * slowest,
+            f"r is up to {self.restitution[2]:.3f}: at some instants the ball gains energy": (
+                self.restitution[2] >= 1.0005
+            ),
+            f"at a third of the speed r is {_around(self.slower)}": not is_slow
+            and abs(self.slower[1] - mean) > TOLERANCE / 2,
+            f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
+                not is_slow and lowest > 0
+            ),
+            f"no number keeps r within {TOLERANCE:g} at this step": self.shorter is not None,
+            f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
+            "table": way > self.bounce.size,
+        }
+        return tuple(text for text, holds in said.items() if holds)
+
+    @property
+    def gives(self) -> str:
+        """What the number does, in words."""
+        row = BY_NUMBER[self.engine]
+        lowered = "" if self.threshold == row.threshold else f" and {row.set_by} = "
+        lowered += f"{self.threshold:.2g}" if lowered else ""
+        number = f"{row.parameter} = {self.written:.4g}{lowered}"
+        return f"{number} gives r = {_around(self.restitution)}"
+
+    def __repr__(self) -> str:
+        wanted = self.bounce.restitution
+        goal = "" if wanted is None else f"; {wanted:g} is wanted"
+        head = f"{self.engine} at a step of {show(self.time_step, 's')}: {self.gives}{goal}"
+        return "\n".join([head, *(f"! {note}" for note in self.notes)])
+
+    def __str__(self) -> str:
+        row = BY_NUMBER[self.engine]
+        other = "alike" if self.other is None else f"and {self.other:g} of the other body"
+        given = dict(self.bounce.given)
+        for name, value in _BODY.items():
+            if getattr(self.bounce, name) == value:
+                given.pop(name, None)
+        step = f"time step {show(self.time_step, 's', 4)}"
+        lines = [repr(self)]
+        if self.change is not None:
+            lines.append(f"Least change: {self.change.gives}.")
+        if self.shorter is not None:
+            step_of = show(self.shorter.time_step, "s", 4)
+            lines.append(f"At a step of {step_of} {self.shorter.gives}.")
+        lines += [
+            "",
+            (self.change or self).snippet,
+            "",
+            f"Given: {', '.join([*(f'{name} {value}' for name, value in given.items()), step])}.",
+            f"The numbers of both bodies, {other}: {row.pair.text}; together {self.number:.4g}.",
+            f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}.",
+            *(f"{note}." for note in row.notes),
+        ]
+        if self.bounce.drop_height is self.bounce.speed is None:
+            lines.append("Assumed: a drop from 1 m (--drop-height or --speed).")
+        return "\n".join(lines)
+
+
+def _around(restitution: tuple[float, float, float]) -> str:
+    low, mean, high = restitution
+    error = max(mean - low, high - mean)
+    return span(low, high) if 0 < mean <= error else f"{mean:.3f} ± {error:.3f}"
+
+
+def _rebound(
+    engine: ByNumber,
+    bounce: Bounce,
+    step: float,
+    threshold: float,
+    written: float,
+    other: float | None = None,
+) -> Rebound:
+    """Return what a number does."""
+    number = engine.pair.of(written, written if other is None else other)
+    at = Fall(number, step, bounce.load, threshold, bounce.size)
+    speed = bounce.impact_speed
+    found = restitutions(engine, at, speed)
+    try:
+        slower = restitutions(engine, at, speed / 3)
+    except Refused:
+        slower = found
+    return Rebound(
+        engine=engine.name,
+        bounce=bounce,
+        time_step=step,
+        written=written,
+        other=other,
+        number=number,
+        threshold=threshold,
+        restitution=(float(found.min()), float(found.mean()), float(found.max())),
+        slower=(float(slower.min()), float(slower.mean()), float(slower.max())),
+    )
+
+
+def _nearest(
+    engine: ByNumber, bounce: Bounce, step: float, threshold: float, other: float | None
+) -> Rebound:
+    """Return the rebound whose mean r is the wanted one, or the nearest to it, by bisection."""
+    speed = bounce.impact_speed
+    low = 0.0
+    high = 1.0
+    while high - low > 1e-4:
+        written = (low + high) / 2
+        number = engine.pair.of(written, written if other is None else other)
+        at = Fall(number, step, bounce.load, threshold, bounce.size)
+        if restitutions(engine, at, speed).mean() < bounce.restitution:
+            low = written
+        else:
+            high = written
+    written = float(f"{high:.4f}")
+    return _rebound(engine, bounce, step, threshold, written, other)
+
+
+def _wanted(
+    engine: ByNumber, bounce: Bounce, step: float, threshold: float, other: float | None
+) -> Rebound:
+    """Return the nearest rebound, with a lower threshold if this one is in the way.
+
+    It is lowered to a quarter of the speed, where it can be set.
+    """
+    found = _nearest(engine, bounce, step, threshold, other)
+    if found.deviation > TOLERANCE and engine.set_by and bounce.impact_speed < 1.5 * threshold:
+        lowered = float(f"{bounce.impact_speed / 4:.2g}")
+        lower = _nearest(engine, bounce, step, lowered, other)
+        return min(found, lower, key=lambda each: each.deviation)
+    return found
+
+
+def _shorter(found: Rebound, engine: ByNumber) -> Rebound | None:
+    """Return the rebound at a half, a quarter, … of the step, where r is within the tolerance."""
+    if found.deviation <= TOLERANCE:
+        return None
+    steps = [found.time_step / 2**n for n in range(1, 8)]
+    tried = (_wanted(engine, found.bounce, h, found.threshold, found.other) for h in steps)
+    return next((each for each in tried if each.deviation <= TOLERANCE), None)
+
+
+def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound:
+    """Return the restitution number with which a ball bounces as wanted, for both bodies alike.
+
+    Raises
+    ------
+    Refused
+        If the restitution or the step is missing.
+    """
+    if bounce.restitution is None:
+        raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
+    found = _wanted(engine, bounce, _step(time_step), engine.threshold, None)
+    return replace(found, shorter=_shorter(found, engine))
+
+
+def rebound(
+    bounce: Bounce,
+    engine: ByNumber,
+    parameters: Mapping[str, Any],
+    time_step: Quantity,
+    other: Mapping[str, Any] | None = None,
+) -> Rebound:
+    """Return the bounce that a restitution number gives, and the number for the one wanted.
+
+    Parameters
+    ----------
+    bounce : Bounce
+        Its restitution is the one that is wanted, and may be left out.
+    engine : ByNumber
+    parameters : mapping
+        The number by its name in the engine or as "restitution", and the threshold by its name or
+        as "threshold", if it can be set.
+    time_step : Quantity
+    other : mapping, optional
+        The number of the other body, by default that of the engine; without it both are alike.
+
+    Raises
+    ------
+    Refused
+        If a parameter or the step is missing, unknown or out of its range.
+    """
+    step = _step(time_step)
+    given = _given(engine, parameters)
+    if "number" not in given:
+        raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
+    beside = None
+    if other is not None:
+        beside = _given(engine, other).get("number", engine.default)
+    threshold = given.get("threshold", engine.threshold)
+    found = _rebound(engine, bounce, step, threshold, given["number"], beside)
+    if bounce.restitution is None or found.deviation <= TOLERANCE:
+        return found
+    change = _wanted(engine, bounce, step, threshold, beside)
+    return replace(found, change=change, shorter=_shorter(change, engine))
+
+
+def _step(time_step: Quantity) -> float:
+    if time_step is None:
+        raise Refused("the time step is missing: --time-step 1/60 or time_step='2 ms'")
+    return step_in_si(time_step)
+
+
+def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, float]:
+    """Return the number and the threshold that were typed."""
+    found = {}
+    for name, value in typed.items():
+        meant = engine.names.get(name.lower())
+        if meant == "number":
+            found[meant] = within(name, value, 0, 1)
+        elif meant == "threshold":
+            found[meant] = within(name, in_si(name, value, "m/s"), 0, math.inf)
+        else:
+            has = " and ".join(filter(None, [engine.parameter, engine.set_by]))
+            raise Refused(f"{engine.name} does not use {name!r}: it has {has}")
+    return found

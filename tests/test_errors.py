@@ -7,7 +7,13 @@ from tests import independent
 
 from bouncing_ball import errors, restitution
 from bouncing_ball.errors import Error
-from bouncing_ball.spring_damper import RELEASES, damping_ratio, permanent_contact_ratios
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import (
+    RELEASES,
+    Contact,
+    damping_ratio,
+    permanent_contact_ratios,
+)
 
 RATIOS = np.geomspace(1, 1e3, 61)
 
@@ -238,3 +244,77 @@ def test_a_period_doubling_that_is_lowest_at_an_end_has_no_lowest_place(ends):
     place, amplitude = errors.lowest_period_doublings([1], 0.85, ratios, "displacement")
     assert np.isnan(place).all()
     assert np.isnan(amplitude).all()
+
+
+NODES = {
+    # n, r, and the place of Λ between saddle-node and period doubling
+    "at the saddle-node": (1, 0.05, 0.0),
+    "beside the saddle-node": (1, 0.31, 0.004),
+    "beside a curve of the paper": (1, 0.1, 0.04),
+    "in the middle": (2, 0.57, 0.5),
+    "at the period doubling": (3, 0.83, 1.0),
+}
+
+
+def orbit_at(n, r, place, ratios):
+    """A family, its orbits along ϖ and their Λ, as `errors.enough_from` takes them."""
+    first = restitution.saddle_node(n, r)
+    amplitude = np.array([[first + place * (restitution.period_doubling(n, r) - first)]])
+    contact = Contact(ratios, np.array([[damping_ratio(r)]]))
+    family = Family(np.array([[n]]), contact)
+    return family, errors.orbits_along(family, amplitude), amplitude
+
+
+def integrated_errors(n, r, amplitude, ratio, y):
+    """The errors of the orbit y by an integration with events, and how much it fails to repeat."""
+    zeta = independent.restitution_to_damping(r)
+    moved = independent.cycle(ratio, zeta, "displacement", amplitude, y[1], y[2])
+    x = n * np.pi * (1 - r) / (1 + r)
+    lift = np.sqrt(max(amplitude**2 - x**2, 0.0))
+    found = [
+        moved.greatest_height() / (lift + (n * np.pi) ** 2 / 2) - 1,
+        moved.bounce / (n * np.pi) - 1,
+        -moved.contact.rate / (y[2] - amplitude * np.cos(y[1])) / r - 1,
+        (y[1] - np.arctan2(lift, x)) / (2 * np.pi),
+    ]
+    return np.abs(found), max(abs(moved.time - 2 * np.pi * n), abs(moved.velocity - y[2]))
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_the_error_is_the_tolerance_where_it_is_enough_by_integration_and_less_beyond(node):
+    n, r, place = NODES[node]
+    ratios = np.geomspace(10, 1e4, 31)
+    family, orbits, amplitude = orbit_at(n, r, place, ratios)
+    enough = errors.enough_from(family, orbits, np.array([[r]]), amplitude, 0.01)[:, 0]
+    assert (enough > 10).any()
+    for quantity in np.flatnonzero(enough > 10):
+        along = enough[quantity] * np.array([0.97, 1.0, 1.03, 10.0])
+        y = orbit_at(n, r, place, along)[1][:, 0]
+        below, at, above, far = (
+            integrated_errors(n, r, float(amplitude[0, 0]), ratio, y[:, k])
+            for k, ratio in enumerate(along)
+        )
+        assert max(repeats for _, repeats in (below, at, above, far)) < 1e-10
+        assert at[0][quantity] == pytest.approx(0.01, abs=1e-10)
+        assert below[0][quantity] > 0.01 > max(above[0][quantity], far[0][quantity])
+
+
+def test_an_error_that_is_never_within_the_tolerance_has_no_ratio_from_which_it_is():
+    ratios = np.geomspace(10, 1e3, 13)
+    family, orbits, amplitude = orbit_at(1, 0.05, 0.0, ratios)
+    enough = errors.enough_from(family, orbits, np.array([[0.05]]), amplitude, 0.01)[:, 0]
+    # At the saddle-node the height needs a contact stiffer than the stiffest of this scan.
+    assert np.isnan(enough[0])
+    assert np.isfinite(enough[1:]).all()
+    # An orbit that ceases below the first ratio that is enough is no answer either.
+    ceased = orbits.copy()
+    ceased[..., :6] = np.nan
+    lost = errors.enough_from(family, ceased, np.array([[0.05]]), amplitude, 0.9)
+    assert np.isnan(lost).all()
+    assert (errors.enough_from(family, orbits, np.array([[0.05]]), amplitude, 0.9) == 10).all()
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.05), (3, 0.5)])
+def test_the_summit_of_a_stiff_contact_is_the_greatest_height(n, r):
+    family, orbits, _ = orbit_at(n, r, 0.3, np.geomspace(10, 1e3, 5))
+    assert family.summit(orbits) == pytest.approx(family.max_height(orbits), rel=1e-14)

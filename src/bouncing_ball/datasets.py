@@ -263,8 +263,11 @@ def save(
     )
     for name, variable in described.variables.items():
         variable.attrs = description(variables[str(name)], variable.dtype)
+    numeric = [name for name, each in described.variables.items() if each.dtype.kind in "fib"]
     with whole(path) as unfinished:
-        described.to_netcdf(unfinished, engine="netcdf4")
+        described.to_netcdf(
+            unfinished, engine="netcdf4", encoding={name: {"zlib": True} for name in numeric}
+        )
 
 
 @contextmanager

@@ -11,15 +11,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize.elementwise import find_root
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import (
+    WALK_START,
     Condition,
     at_amplitude,
     at_bifurcation,
     bifurcations,
     correct,
     stable_orbits,
+    walk,
 )
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import Numbers
@@ -172,6 +175,94 @@ def errors(
         known |= bifurcation_errors(n, r, ratios, release)
     known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
     return {name: known[name] for name in quantities}
+
+
+COMPARED = ("max_height", "bounce_velocity", "apparent_restitution", "phase_in_periods")
+"""The quantities of an orbit in the first axis of `errors_of_orbits`."""
+
+
+def errors_of_orbits(family: Family, y: NDArray, r: Numbers, amplitude: Numbers) -> NDArray:
+    """The errors of the quantities `COMPARED` on orbits y at amplitudes Λ, shape (4, ...).
+
+    They are relative to the restitution model with r, but for the phase, whose error is a share of
+    a period of the table. The greatest height is that of the flight.
+    """
+    n = family.n
+    phase = restitution.impact_phase(n, r, amplitude)
+    errors = (
+        relative_error(family.summit(y), restitution.max_height(n, r, amplitude)),
+        relative_error(family.bounce_velocity(y), restitution.bounce_velocity(n)),
+        relative_error(family.apparent_restitution(y), r),
+        np.abs(y[1] - phase) / (2 * np.pi),
+    )
+    return np.stack(np.broadcast_arrays(*errors))
+
+
+def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
+    """Stable orbits at amplitudes, shape (orbits, 1), along the ϖ of the family's contact.
+
+    Here Λ may be that of the saddle-node of the restitution model (Eq. 7). A stiff contact has its
+    saddle-node at a lower Λ, by a share of 1/ϖ, so that the lift of its orbit is there of the order
+    of √(X/ϖ). See `continuation.walk` for what is returned.
+    """
+    ratios = np.asarray(family.contact.frequency_ratio)
+    x = restitution.saddle_node(family.n, family.contact.restitution)
+    # A guess, somewhat too large, with the ϖ at which the walk starts.
+    lift = np.sqrt(amplitude**2 - x**2 + 8 * x / max(WALK_START, 2 * ratios.max()))
+    return walk(family, ratios, at_amplitude(amplitude), x, lift)
+
+
+def enough_from(
+    family: Family, orbits: NDArray, r: NDArray, amplitude: NDArray, tolerance: float
+) -> NDArray:
+    """The frequency ratios from which on the errors of orbits stay within a tolerance.
+
+    Parameters
+    ----------
+    family : Family
+        With n and ζ of the shape (orbits, 1), and the ascending frequency ratios of a scan. Two
+        crossings of the tolerance between two neighbours are not noticed.
+    orbits : ndarray, shape (4, orbits, ratios)
+        Those of `orbits_along`.
+    r, amplitude : ndarray, shape (orbits, 1)
+    tolerance : float
+
+    Returns
+    -------
+    ndarray, shape (quantities, orbits)
+        The quantities are `COMPARED`. Where the error is within the tolerance at all ratios, it is
+        the lowest of them. Where it is not so at the largest one, or where there is no orbit at the
+        ratio below the first that is enough, it is NaN.
+    """
+    ratios = np.asarray(family.contact.frequency_ratio)
+    logarithms = np.log(ratios)
+    outside = ~(errors_of_orbits(family, orbits, r, amplitude) <= tolerance)
+    last = ratios.size - 1 - np.argmax(outside[..., ::-1], axis=-1)
+    crossed = outside.any(axis=-1) & (last < ratios.size - 1)
+    quantity, orbit = np.nonzero(crossed)
+
+    def excess(logarithm, quantity, orbit, below):
+        low, high = logarithms[below], logarithms[below + 1]
+        part = (logarithm - low) / (high - low)
+        guess = (1 - part) * orbits[:, orbit, below] + part * orbits[:, orbit, below + 1]
+        contact = replace(
+            family.contact,
+            frequency_ratio=np.exp(logarithm),
+            damping_ratio=family.contact.damping_ratio[orbit, 0],
+        )
+        one = Family(family.n[orbit, 0], contact)
+        at = amplitude[orbit, 0]
+        found = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
+        return found[quantity, np.arange(quantity.size)] - tolerance
+
+    below = last[quantity, orbit]
+    bracket = logarithms[below], logarithms[below + 1]
+    # The ratios are known to 1e-11, which is what the orbits are known to.
+    precision = {"xatol": 1e-11, "xrtol": 0.0}
+    found = find_root(excess, bracket, args=(quantity, orbit, below), tolerances=precision)
+    enough = np.where(outside.any(axis=-1), np.nan, ratios[0])
+    enough[quantity, orbit] = np.where(found.success, np.exp(found.x), np.nan)
+    return enough
 
 
 def lowest_period_doublings(

@@ -238,6 +238,14 @@ class Family:
         _, _, u = self.start(y)
         return -self.release(y).gap_velocity / u
 
+    def summit(self, y: NDArray) -> NDArray:
+        """Greatest height of the flight, which is at one of its ends if the ball falls, or rises,
+        throughout.
+        """
+        end = self.release(y)
+        rise = np.clip(end.velocity, 0, end.flight)
+        return end.table_height + end.gap + end.velocity * rise - rise**2 / 2
+
     def max_height(self, y: NDArray) -> NDArray:
         """Greatest height of the ball over a cycle.
 
@@ -245,15 +253,13 @@ class Family:
         flies, as compliant contacts can, a height in contact.
         """
         x, lift, u = self.start(y)
-        end = self.release(y)
+        duration = y[3] / self.contact.frequency_ratio
 
         def in_contact(part):
-            s = part * end.duration
+            s = part * duration
             return x * np.sin(s) + lift * np.cos(s) + self.contact.motion(s, u, x, lift)[0]
 
-        # The summit is at an end of the flight if the ball falls, or rises, throughout.
-        rise = np.clip(end.velocity, 0, end.flight)
-        summit = end.table_height + end.gap + end.velocity * rise - rise**2 / 2
+        summit = self.summit(y)
         return np.maximum(summit, -_least(lambda part: -in_contact(part), summit.shape))
 
     def possible(self, y: NDArray) -> NDArray:

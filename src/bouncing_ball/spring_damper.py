@@ -129,12 +129,12 @@ class Contact:
         root = self.frequency_ratio * (-zeta + 1j * np.sqrt(1 - zeta**2))
         free = np.exp(root * s)
         # The real force 1 has a real response, the force e^{is} a complex one.
-        unit = (_quotient(0, root, s) - _quotient(0, np.conj(root), s)) / (root - np.conj(root))
+        unit = _quotient(0, root, s).imag / root.imag
         wave = (_quotient(1j, root, s) - _quotient(1j, np.conj(root), s)) / (root - np.conj(root))
         return Responses(
             impulse=free.imag / root.imag,
             impulse_rate=(free * root).imag / root.imag,
-            constant=unit.real,
+            constant=unit,
             sine=wave.imag,
             cosine=wave.real,
         )

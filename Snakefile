@@ -18,7 +18,6 @@ report: "workflow/report/workflow.rst"
 include: "workflow/rules/configuration.smk"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/stages.smk"
-include: "workflow/rules/figures.smk"
 include: "workflow/rules/texts.smk"
 include: "workflow/rules/reference.smk"
 include: "workflow/rules/targets.smk"
@@ -29,5 +28,5 @@ rule all:
     default_target: True
     localrule: True
     input:
-        [files(name) for name in ARTIFACTS],
+        [files(name) for name in KINDS],
         rules.article.output,

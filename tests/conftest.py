@@ -1,5 +1,6 @@
 """Copies of the workflow, in which a script only writes its outputs: a whole run takes seconds."""
 
+import ast
 import contextlib
 import io
 import os
@@ -18,7 +19,16 @@ ROOT = Path(__file__).resolve().parents[1]
 STUB = """from pathlib import Path
 for file in snakemake.output:
     Path(file).write_text("made by a stub")
+if False:
+    {imports}
 """
+
+
+def stub(script: Path) -> str:
+    """A script that only writes its outputs. It names the modules that the true one imports."""
+    nodes = ast.walk(ast.parse(script.read_text("utf-8")))
+    imports = [ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
+    return STUB.format(imports="\n    ".join(imports))
 
 
 @dataclass(frozen=True)
@@ -77,7 +87,7 @@ def stubs(tmp_path_factory) -> Checkout:
         shutil.copytree(ROOT / name, folder / name, ignore=without)
     shutil.copyfile(ROOT / "Snakefile", folder / "Snakefile")
     for script in (folder / "workflow/scripts").glob("*.py"):
-        script.write_text(STUB, encoding="utf-8")
+        script.write_text(stub(script), encoding="utf-8")
     return Checkout(folder)
 
 

@@ -370,12 +370,49 @@ def test_snakemake_asks_the_checks_first(fresh, tmp_path):
     assert str(fresh.run("--list")[0]).startswith(line)
 
 
+# Titles
+
+
 @pytest.mark.parametrize("value", [3, "{}", None, [1]])
-def test_a_further_figure_has_parameters(value):
+def test_an_unknown_key_without_parameters_is_no_new_figure(value):
     line = refusal(nested("continuation.fig17", value))
-    assert line == (
-        f"configuration: continuation.fig17: {value!r} is not of type 'object' (parameters)"
-    )
+    assert line.startswith("configuration: unknown key continuation.fig17, allowed: fig")
+
+
+def test_a_new_figure_has_a_title_and_may_have_any_parameters():
+    new = {"title": "Figure 17: another", "n": -1, "frequency_ratio": {"min": 2, "max": 1}}
+    read_workflow(nested("continuation.fig17", new))
+    line = refusal({"validity": {"title": "A stage", "validity_map": new}})
+    assert line.startswith("configuration: validity: there is no workflow/scripts/validity.py")
+    line = refusal(nested("continuation.fig17", {"n": 2}))
+    assert line.startswith("configuration: unknown key continuation.fig17, allowed: fig")
+    assert line.endswith(", or a new one with a title")
+
+
+@pytest.mark.parametrize(
+    "changes, said",
+    [
+        (nested("continuation.title", 3), "continuation.title = 3: must be a text"),
+        (nested("continuation.fig08.title", None), "continuation.fig08.title = None: must be"),
+        (nested("continuation.fig08.caption", 3), "continuation.fig08.caption = 3: must be a text"),
+        (
+            nested("continuation.table1.table", "yes"),
+            "continuation.table1.table = yes: must be true or false",
+        ),
+        (
+            nested("continuation.fig-17", {"title": "Figure 17"}),
+            "continuation.fig-17: a name has letters, digits and underscores",
+        ),
+        (
+            nested("continuation.fig14", {"title": "Figure 14"}),
+            "error_thresholds.fig14: another stage has this name too",
+        ),
+        (nested("schematics.fig01.n", 3), "unknown key schematics.fig01.n, allowed: "),
+    ],
+)
+def test_titles_captions_and_names_are_checked(changes, said):
+    line = refusal(changes)
+    assert line.startswith(f"configuration: {said}") and "\n" not in line
 
 
 def test_control_characters_are_not_printed_raw():

@@ -80,15 +80,25 @@ def shortened(given):
 )
 def test_a_stage_writes_each_dataset_under_its_name_with_its_parameters(run, tmp_path, stage):
     config = shortened(CONFIG[stage])
-    files = {name: str(tmp_path / f"{name}.nc") for name in config}
+    entries = {
+        name: {"title": f"title of {name}", "parameters": given}
+        for name, given in config.items()
+        if name != "title"
+    }
+    files = {name: str(tmp_path / f"{name}.nc") for name in entries}
     code = [str(SCRIPTS / f"{stage}.py")]
     settings = {} if stage == "restitution_model" else {"release": "force"}
-    run(stage, {"code": code}, files, {"config": config} | settings)
+    run(stage, {"code": code}, files, {"entries": entries, "settings": settings})
     for name, file in files.items():
         data = read(file)
         assert parameters(data) == config[name] | settings
-        title = data.attrs["title"]
-        assert not name.startswith("fig") or title.startswith(f"Figure {int(name[3:])}:")
+        assert data.attrs["title"] == f"title of {name}"
+
+
+def test_an_entry_without_a_function_is_named(run):
+    entries = {name: {"title": "", "parameters": {}} for name in ("fig11", "fig99")}
+    with pytest.raises(ValueError, match="STAGE has no function for fig99"):
+        run("permanent_contact", {"code": []}, {}, {"entries": entries, "settings": {}})
 
 
 def test_tables_are_written_beside_their_datasets(run, tmp_path):

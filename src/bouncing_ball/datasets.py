@@ -283,21 +283,26 @@ def whole(path: Path) -> Iterator[Path]:
 
 
 def save_stage(
-    stage: Mapping[str, tuple[Callable[..., xr.Dataset], str]],
-    parameters: Mapping[str, Mapping],
+    stage: Mapping[str, Callable[..., xr.Dataset]],
+    entries: Mapping[str, Mapping],
     settings: Mapping,
     files: Mapping[str, str],
     code: Iterable[str | Path],
     variables: Mapping[str, Variable] = VARIABLES,
 ) -> None:
-    """Compute and save the datasets of a stage, which has the function and the title of each.
+    """Compute and save the datasets of a stage, each by its function in `stage`.
 
-    A function takes the parameters of its dataset and the settings of the whole run.
+    An entry has the "title" and the "parameters" of its dataset. A function takes the parameters
+    and the settings of the whole run. Raises ValueError for an entry without a function.
     """
-    for name, (compute, title) in stage.items():
-        dataset = compute(parameters[name], **settings)
-        known = {**parameters[name], **settings}
-        save(dataset, files[name], title, known, code, variables)
+    missing = [name for name in entries if name not in stage]
+    if missing:
+        raise ValueError(f"STAGE has no function for {', '.join(missing)}")
+    for name, compute in stage.items():
+        given = entries[name]["parameters"]
+        dataset = compute(given, **settings)
+        title = entries[name]["title"]
+        save(dataset, files[name], title, {**given, **settings}, code, variables)
 
 
 def description(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

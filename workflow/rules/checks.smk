@@ -93,24 +93,72 @@ def place(keys):
     return "".join(parts).removeprefix(".")
 
 
-def mistakes(config, schema, further=None):
-    """A line for each mistake that the schema knows.
+def entries(section):
+    """The stages of a configuration, or the figures, tables and datasets of a stage, by name."""
+    return {name: entry for name, entry in section.items() if isinstance(entry, dict)}
 
-    In a stage, names that match the pattern `further` may have any parameters.
+
+def parameters_of(entry):
+    """What an entry has beside its title, its caption, and `table`."""
+    return {key: value for key, value in entry.items() if key not in ("title", "caption", "table")}
+
+
+def without_new(section, known):
+    """A section without the entries that `known` does not have and that have a title: they are new,
+    and may have any parameters.
     """
+    return {
+        name: entry
+        for name, entry in section.items()
+        if name in known or not isinstance(entry, dict) or "title" not in entry
+    }
+
+
+def judged_by(schema, config):
+    """What of a configuration its schema judges: the parameters of what it knows."""
+    found = without_new(config, schema["properties"])
+    for stage, section in entries(found).items():
+        known = schema["properties"].get(stage, {}).get("properties", {})
+        kept = without_new(parameters_of(section), known)
+        found[stage] = kept | {name: parameters_of(entry) for name, entry in entries(kept).items()}
+    return found
+
+
+def undescribed(config):
+    """A line for each stage, figure, table or dataset that is not described as it must be."""
+    described = [((stage,), section) for stage, section in entries(config).items()]
+    for stage, section in entries(config).items():
+        described += [((stage, name), entry) for name, entry in entries(section).items()]
+    names = []
+    for keys, entry in described:
+        for key, kind, what in (
+            ("title", str, "a text"),
+            ("caption", str, "a text"),
+            ("table", bool, "true or false"),
+        ):
+            if (key in entry or key == "title") and not isinstance(entry.get(key), kind):
+                yield f"{place([*keys, key])} = {entry.get(key)}: must be {what}"
+        if not str(keys[-1]).isidentifier():
+            yield f"{place(keys)}: a name has letters, digits and underscores"
+        if len(keys) > 1:
+            if keys[-1] in names:
+                yield f"{place(keys)}: another stage has this name too"
+            names.append(keys[-1])
+
+
+def mistakes(config, schema):
+    """A line for each mistake that the schema knows."""
     for error in Validator(schema).iter_errors(config):
         where = place(error.absolute_path)
         reason = error.schema.get("description")
         if error.validator == "additionalProperties":
             allowed = error.schema["properties"]
             for key in error.instance.keys() - allowed:
-                if further and len(error.absolute_path) == 1 and further.fullmatch(str(key)):
-                    if not isinstance(error.instance[key], dict):
-                        value = error.instance[key]
-                        yield f"{place([where, key])}: {value!r} is not of type 'object' (parameters)"
-                    continue
                 near = get_close_matches(str(key), allowed, n=1) or allowed
-                yield f"unknown key {place([*error.absolute_path, key])}, allowed: {', '.join(near)}"
+                # Parameters are numbers, texts and lists, and entries are not.
+                new = ", or a new one with a title" if isinstance(error.instance[key], dict) else ""
+                where = place([*error.absolute_path, key])
+                yield f"unknown key {where}, allowed: {', '.join(near)}{new}"
         elif (
             error.validator != "required"
             or error.instance.keys() <= error.schema["properties"].keys()
@@ -172,11 +220,12 @@ def refuse_files(files):
         end(*(f"configuration: {line}" for line in found))
 
 
-def refuse(config, schema, crossed, further=None):
+def refuse(config, schema, crossed):
     """End the run with a line for each mistake against the schema, or that `crossed` finds, a function
     for what a schema cannot know.
     """
-    found = list(mistakes(config, schema, further)) or list(crossed(config))
+    known = judged_by(schema, config)
+    found = list(mistakes(known, schema)) or list(undescribed(config)) or list(crossed(known))
     if found:
         end(*(f"configuration: {line}" for line in found))
 

@@ -10,7 +10,7 @@ rule diff:
         code=code("compare"),
     params:
         names=requested,
-        artifacts={name: description(name) for name in ARTIFACTS},
+        artifacts={name: description(name) for name in KINDS},
         results=results_folder,
         reference=checkout("."),
     log:
@@ -29,7 +29,7 @@ rule accept:
         code=code("accept"),
     params:
         names=requested,
-        artifacts={name: description(name) for name in ARTIFACTS},
+        artifacts={name: description(name) for name in KINDS},
         results=results_folder,
         reference=checkout("."),
         # The reference is that of the configuration in git.

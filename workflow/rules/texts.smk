@@ -20,8 +20,8 @@ rule table:
 rule claims:
     """The claims of the paper and their verdicts"""
     input:
+        **PRINTED,
         data=expand("results/figures/{name}.nc", name=DATASETS),
-        printed=checkout(PRINTED),
         code=code("claims"),
     output:
         nc="results/figures/claims.nc",

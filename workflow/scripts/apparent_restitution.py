@@ -75,17 +75,14 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
     return dataset.assign(labelled=("frequency_ratio", np.isin(merged, round_values)))
 
 
-STAGE = {
-    "fig05": (
-        cases,
-        "Figure 5: apparent restitution along the frequency ratio, by restitution and amplitude",
-    ),
-    "fig06": (cases, "Figure 6: apparent restitution along the frequency ratio, by amplitude"),
-    "fig10": (fig10, "Figure 10: bouncing-off velocity along the frequency ratio"),
-    "fig13": (fig13, "Figure 13: Poincaré map of both models along the frequency ratio"),
-}
+STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
-    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)
+    save_stage(
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+    )

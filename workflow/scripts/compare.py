@@ -28,10 +28,15 @@ def configured() -> dict[str, dict]:
     configuration = yaml.safe_load(text)
     stages = {key: value for key, value in configuration.items() if isinstance(value, dict)}
     settings = {key: value for key, value in configuration.items() if key not in stages}
+    described = ("title", "caption", "table")
     return {
-        name: {"parameters": parameters, "settings": settings}
+        name: {
+            "parameters": {key: value for key, value in entry.items() if key not in described},
+            "settings": settings,
+        }
         for stage in stages.values()
-        for name, parameters in stage.items()
+        for name, entry in stage.items()
+        if isinstance(entry, dict)
     }
 
 

@@ -147,27 +147,21 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-TITLES = {
-    "fig08": "Figure 8: existence and stability domains of the spring-damper model, first family",
-    "fig09": "Figure 9: existence and stability domains of the spring-damper model, second family",
-    "fig15": "Figure 15: existence and stability domains of both models",
-    "table1": "Table 1: stability ranges over the amplitude",
-    "lowest_doubling": "Frequency ratio at which the period doubling is lowest, by family",
-}
-
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    config = snakemake.params.config
-    release = snakemake.params.release
-    step = snakemake.params.largest_step
+    entries = snakemake.params.entries
+    settings = snakemake.params.settings
+    given = {name: entry["parameters"] for name, entry in entries.items()}
+    release = settings["release"]
+    step = settings["largest_step"]
     printed = printed_table(snakemake.input.printed).astype(float)
     computed = {
-        "fig08": branches(config["fig08"], release, step),
-        "fig09": branches(config["fig09"], release, step),
-        "fig15": fig15(config["fig15"], release, step),
-        "table1": table1(config["table1"], release, printed),
-        "lowest_doubling": lowest_doubling(config["lowest_doubling"], release),
+        "fig08": branches(given["fig08"], release, step),
+        "fig09": branches(given["fig09"], release, step),
+        "fig15": fig15(given["fig15"], release, step),
+        "table1": table1(given["table1"], release, printed),
+        "lowest_doubling": lowest_doubling(given["lowest_doubling"], release),
     }
     for name, dataset in computed.items():
-        known = {**config[name], "release": release, "largest_step": step}
-        save(dataset, snakemake.output[name], TITLES[name], known, snakemake.input.code)
+        title = entries[name]["title"]
+        save(dataset, snakemake.output[name], title, given[name] | settings, snakemake.input.code)

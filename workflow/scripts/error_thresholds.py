@@ -62,18 +62,14 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "fig14": (
-        fig14,
-        "Figure 14: greatest height of both models, and the threshold of the error",
-    ),
-    "thresholds": (
-        thresholds,
-        "Frequency ratio from which the error of the restitution model is tolerable",
-    ),
-}
+STAGE = {"fig14": fig14, "thresholds": thresholds}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
-    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)
+    save_stage(
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+    )

@@ -40,12 +40,14 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "fig11": (fig11, "Figure 11: threshold of permanent contact along the frequency ratio"),
-    "fig16": (fig16, "Figure 16: threshold of permanent contact of both models"),
-}
+STAGE = {"fig11": fig11, "fig16": fig16}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
-    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)
+    save_stage(
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+    )

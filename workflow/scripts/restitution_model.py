@@ -94,16 +94,14 @@ def three_balls(parameters: dict) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "fig02": (fig02, "Figure 2: n-T response of the restitution model"),
-    "fig03": (fig03, "Figure 3: existence and stability domains of the restitution model"),
-    "three_balls": (
-        three_balls,
-        "Periodic, subharmonic and chaotic motion of the restitution model",
-    ),
-}
+STAGE = {"fig02": fig02, "fig03": fig03, "three_balls": three_balls}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {}
-    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)
+    save_stage(
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+    )

@@ -260,7 +260,7 @@ if __name__ == "__main__":
     save(
         table1_readings(printed_table(snakemake.input.printed).astype(float)),
         snakemake.output.table1_readings,
-        "Table 1 under readings of what the authors may have done",
+        snakemake.params.entries["table1_readings"]["title"],
         {},
         snakemake.input.code,
     )

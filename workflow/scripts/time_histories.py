@@ -87,12 +87,14 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "fig07": (fig07, "Figure 7: one cycle of the spring-damper model"),
-    "fig12": (fig12, "Figure 12: time histories of both models"),
-}
+STAGE = {"fig07": fig07, "fig12": fig12}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
-    save_stage(STAGE, snakemake.params.config, settings, snakemake.output, snakemake.input.code)
+    save_stage(
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+    )

@@ -1,18 +1,6 @@
-# Targets by name for each figure with its tables.
+# Targets by name for each figure, table and dataset, and what `snakemake --list` says of them.
 
-# What each of them is, for `snakemake --list`.
-ABOUT = {
-    "ext_impact": "restitution and duration of a free impact, by damping and release",
-    "ext_instant": "flights before and after a contact meet at the centroid of its force",
-    "ext_orders": "errors of both models along the frequency ratio, and their orders",
-    "ext_map": "how stiff a contact must be for the greatest height, over r and Λ",
-    "ext_laws": "errors of both models on contacts of five laws",
-    "ext_phase": "what the phase of the touch tells about a contact",
-    "ext_event": "motions from random starts, a dataset without a figure",
-}
-
-
-for name in [*FIGURES, "ext_event"]:
+for name in [name for name in ENTRIES if name not in [*DRAWN, "explorer"]]:
 
     rule:
         name:
@@ -24,4 +12,4 @@ for name in [*FIGURES, "ext_event"]:
 
 # The text of a docstring cannot be a variable. As a module with a prefix, rules have other names.
 for target in workflow.rules:
-    target.docstring = target.docstring or ABOUT.get(target.name)
+    target.docstring = target.docstring or listed(target.name)

@@ -33,3 +33,19 @@ rule article:
         ENVIRONMENT
     script:
         "../scripts/article.py"
+
+
+rule explorer:
+    """A page to explore the models, with the orbits that it checks itself against"""
+    input:
+        data=datasets("explorer").values(),
+        page=[package(path) for path in EXPLORER],
+        code=code("explorer_page"),
+    output:
+        html="results/figures/explorer.html",
+    log:
+        "results/logs/explorer.log",
+    conda:
+        ENVIRONMENT
+    script:
+        "../scripts/explorer_page.py"

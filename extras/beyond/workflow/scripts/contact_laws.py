@@ -272,15 +272,15 @@ def ext_laws(parameters: dict) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "ext_laws": (
-        ext_laws,
-        "Errors of the restitution model and of the corrected one on the contacts of engineers",
-    ),
-}
+STAGE = {"ext_laws": ext_laws}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save_stage(
-        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
     )

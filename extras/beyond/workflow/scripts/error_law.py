@@ -196,20 +196,14 @@ def ext_orders(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "ext_orders": (
-        ext_orders,
-        "Order of convergence of the restitution model and of the corrected one",
-    ),
-}
+STAGE = {"ext_orders": ext_orders}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
     save_stage(
         STAGE,
-        snakemake.params.config,
-        settings,
+        snakemake.params.entries,
+        snakemake.params.settings,
         snakemake.output,
         snakemake.input.code,
         VARIABLES,

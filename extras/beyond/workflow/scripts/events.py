@@ -106,12 +106,15 @@ def ext_event(parameters: dict) -> xr.Dataset:
     return xr.concat(found, restitution).transpose(*order)
 
 
-STAGE = {
-    "ext_event": (ext_event, "Motions from random starts on a contact and in both models"),
-}
+STAGE = {"ext_event": ext_event}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save_stage(
-        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
     )

@@ -203,15 +203,15 @@ def explorer(parameters: dict) -> xr.Dataset:
     return found.merge(balls())
 
 
-STAGE = {
-    "explorer": (
-        explorer,
-        "A page to explore the models, and the orbits that it checks itself against",
-    ),
-}
+STAGE = {"explorer": explorer}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save_stage(
-        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
     )

@@ -86,24 +86,14 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "ext_impact": (
-        ext_impact,
-        "Restitution and duration of a free impact, by damping and release",
-    ),
-    "ext_instant": (
-        ext_instant,
-        "Flights before and after a contact meet at the centroid of its force",
-    ),
-}
+STAGE = {"ext_impact": ext_impact, "ext_instant": ext_instant}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    settings = {"release": snakemake.params.release}
     save_stage(
         STAGE,
-        snakemake.params.config,
-        settings,
+        snakemake.params.entries,
+        snakemake.params.settings,
         snakemake.output,
         snakemake.input.code,
         VARIABLES,

@@ -353,12 +353,15 @@ def ext_phase(parameters: dict) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "ext_phase": (ext_phase, "What the phase of the touch tells about a contact"),
-}
+STAGE = {"ext_phase": ext_phase}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save_stage(
-        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
     )

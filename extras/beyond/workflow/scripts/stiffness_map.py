@@ -424,15 +424,15 @@ def ext_map(parameters: dict) -> xr.Dataset:
     )
 
 
-STAGE = {
-    "ext_map": (
-        ext_map,
-        "How stiff a contact must be to bounce, to be stable and to bounce as high, over r and Λ",
-    ),
-}
+STAGE = {"ext_map": ext_map}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
     save_stage(
-        STAGE, snakemake.params.config, {}, snakemake.output, snakemake.input.code, VARIABLES
+        STAGE,
+        snakemake.params.entries,
+        snakemake.params.settings,
+        snakemake.output,
+        snakemake.input.code,
+        VARIABLES,
     )

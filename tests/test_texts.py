@@ -81,6 +81,14 @@ def test_abstracts_are_that_of_the_article(file):
     assert yaml.safe_load(text(file))["abstract"].strip() == plain
 
 
+def test_empty_fields_of_the_metadata_say_why():
+    empty = re.findall(r"^[ -]*(\w+):(?: *#(.*))?$", text("metadata.yaml"), flags=re.MULTILINE)
+    mappings = {"authors", "affiliations", "code", "data", "replication", "review", "contributors"}
+    mappings |= {"dates", "article", "journal"}
+    reasons = {reason.strip() for name, reason in empty if name not in mappings}
+    assert reasons == {"not known", "given by the journal", "none: the references are in paper.md"}
+
+
 def test_versions_agree():
     cited = yaml.safe_load(text("CITATION.cff"))
     assert bouncing_ball.__version__ == cited["version"]

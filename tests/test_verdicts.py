@@ -79,10 +79,3 @@ def test_conditions_take_the_worst_number_and_refuse_a_missing_one():
         for values in ([1.0, np.nan], []):
             with pytest.raises(ValueError, match="missing"):
                 condition("", values)
-
-
-def test_parameters_in_words_name_each_figure_and_its_cases():
-    cases = [{"restitution": 0.65, "amplitude": 0.7}, {"restitution": 1.0, "amplitude": 1.2}]
-    needed = {"fig06": {"n": 1, "cases": cases}, "three_balls": {}, "table1": {"n": [1, 2]}}
-    text = "Fig. 6: n = 1, (r, Λ) = (0.65, 0.7), (1, 1.2); Table 1: n = 1, 2"
-    assert verdicts.parameters_text(needed) == text

@@ -27,7 +27,6 @@ from bouncing_ball.verdicts import (
     at_least,
     at_most,
     complete,
-    parameters_text,
 )
 
 STIFF = 100.0
@@ -1109,7 +1108,6 @@ NOTHING = {
     "group": "",
     "item": "",
     "statement": "",
-    "parameters": "",
     "decided_by": "",
     "printed_text": "",
     "found": np.nan,
@@ -1142,7 +1140,6 @@ def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
             "group": "printed number" if claim.printed else "statement",
             "item": claim.place,
             "statement": claim.text,
-            "parameters": parameters_text(claim.datasets),
             "decided_by": ", ".join(claim.datasets),
             "printed_text": claim.printed,
             "remark": claim.remark,

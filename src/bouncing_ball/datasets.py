@@ -212,7 +212,6 @@ VARIABLES = {
     "statement": Variable("what the claim says"),
     "remark": Variable("how the claim was read"),
     "condition": Variable("condition that decides a statement in words"),
-    "parameters": Variable("r, n, Λ, ϖ and ζ at which the number is found"),
     "group": Variable("what the claim is counted as"),
     "printed_text": Variable("the number as printed"),
     "decided_by": Variable("datasets that decide"),

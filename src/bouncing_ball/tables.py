@@ -179,7 +179,7 @@ SECTIONS = {
         "verdict": "verdict",
         "own sense": "own_sense",
         "found": "condition",
-        "at": "parameters",
+        "decided by": "decided_by",
         "remark": "notes",
     },
     "restored formula": {
@@ -196,7 +196,6 @@ EVERYTHING = {
     "group": "group",
     "where": "item",
     "what the paper says": "statement",
-    "at": "parameters",
     "printed": "printed_text",
     "computed": "computed",
     "distance": "distance",

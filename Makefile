@@ -1,7 +1,7 @@
 # make              sets up .venv from the lock file, and makes everything in results/
 # make test         the tests
 # make replication  everything from nothing, and its comparison with the reference: results/diff/index.html
-# make diff         the comparison; snakemake --cores 2 fig14 diff makes and compares one figure
+# make diff         the comparison; `snakemake --cores 2 fig14 diff` makes and compares one figure
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -11,6 +11,7 @@ PIP := $(RUN) pip install --quiet --disable-pip-version-check
 LOCKED := $(PIP) --require-hashes --only-binary :all: --no-binary connection-pool --no-build-isolation
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade
 VERSION := $(shell sed -n 's/^version: //p' CITATION.cff)
+RELEASED := $(shell sed -n 's/^date-released: //p' CITATION.cff)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
 
@@ -67,9 +68,12 @@ accept: setup
 report: all
 	$(RUN) snakemake --report results/report.html
 
-# A file to cite, and to run without git. Only what gives the results of the reference is released.
+# A file to cite, and to run without git. It needs a commit in which CITATION.cff has the date of the
+# release, CHANGELOG.md has it in place of the word unreleased, and the results are those of the reference.
 release: setup
 	@test -z "$$(git status --porcelain)" || { echo "A release is a commit: there are changes."; exit 1; }
+	@test -n "$(RELEASED)" || { echo "A release has a date: date-released: YYYY-MM-DD in CITATION.cff."; exit 1; }
+	@grep -qxF "## $(VERSION) ($(RELEASED))" CHANGELOG.md || { echo "CHANGELOG.md has no ## $(VERSION) ($(RELEASED))."; exit 1; }
 	$(MAKE) replication
 	mkdir -p dist
 	git archive --prefix=bouncing-ball-$(VERSION)/ --output=dist/bouncing-ball-$(VERSION).tar.gz HEAD

@@ -1,7 +1,10 @@
 """README and its companions: their numbers, links, code and words."""
 
 import doctest
+import os
 import re
+import shutil
+import subprocess
 from collections import Counter
 from pathlib import Path
 
@@ -57,6 +60,9 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"*reproduced*, {count['near']} are *near* and {count['not reproduced']} are *not "
         f"reproduced*, off by up to {article.fixed(units, 2, 'up')} units of the last digit or "
         f"{article.percent(share, 2, 'up')}.",
+        f"the paper says (it is off by at most {worst['max_height']}).",
+        f"bouncing-off velocity (up to {worst['bounce_velocity']}) and the apparent restitution "
+        f"(up to {worst['apparent_restitution']}) so well.",
         f"greatest height (off by at most {worst['max_height']} on",
         f"bouncing-off velocity (up to {worst['bounce_velocity']}) and the apparent restitution "
         f"(up to {worst['apparent_restitution']}).",
@@ -69,8 +75,10 @@ def test_numbers_of_readme_are_those_of_the_datasets():
     ]
     readme = words("README.md")
     assert [sentence for sentence in sentences if sentence not in readme] == []
-    verdict = readme.partition("## The verdict")[2].partition("## Run it")[0]
-    typed = re.findall(r"\d+\.\d+", verdict)
+    answer = readme.partition(" enough? ")[2].partition(" A ball bounces")[0]
+    verdicts = readme.partition("## The verdicts ")[2].partition("## Read it")[0]
+    assert len(answer) > 100 and len(verdicts) > 1000
+    typed = re.findall(r"\d+\.\d+", answer + verdicts)
     assert [number for number in typed if not any(number in each for each in sentences)] == ["1.2"]
 
 
@@ -93,7 +101,53 @@ def test_versions_agree():
     cited = yaml.safe_load(text("CITATION.cff"))
     assert bouncing_ball.__version__ == cited["version"]
     assert f'version = "{cited["version"]}"' in text("pyproject.toml")
-    assert f"## {cited['version']} ({cited['date-released']})" in text("CHANGELOG.md")
+    date = cited.get("date-released", "unreleased")
+    assert f"## {cited['version']} ({date})\n" in text("CHANGELOG.md")
+
+
+@pytest.mark.parametrize("extra", ["beyond", "contacts"])
+def test_each_extra_has_a_readme_a_changelog_and_a_citation(extra):
+    folder = f"extras/{extra}"
+    cited = yaml.safe_load(text(f"{folder}/CITATION.cff"))
+    assert f'version = "{cited["version"]}"' in text(f"{folder}/pyproject.toml")
+    date = cited.get("date-released", "unreleased")
+    assert f"## {cited['version']} ({date})\n" in text(f"{folder}/CHANGELOG.md")
+    assert {"CHANGELOG.md", "CITATION.cff"} <= {
+        *re.findall(r"\((.*?)\)", text(f"{folder}/README.md"))
+    }
+
+
+def test_a_release_needs_a_date(tmp_path):
+    """Make in a copy of which git says that nothing has changed, and which is set up."""
+    for name in ("Makefile", "CITATION.cff", "CHANGELOG.md"):
+        shutil.copyfile(ROOT / name, tmp_path / name)
+    for name in ("requirements.lock", "requirements-build.lock", ".venv/.installed"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin/git").write_text("#!/bin/sh\necho git $* >&2\n", "utf-8")
+    (tmp_path / "bin/git").chmod(0o755)
+    path = f"{tmp_path / 'bin'}{os.pathsep}{os.environ['PATH']}"
+
+    def release() -> subprocess.CompletedProcess:
+        command = ["make", "release", "MAKE=true"]
+        environment = os.environ | {"PATH": path}
+        return subprocess.run(
+            command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        )
+
+    cited = yaml.safe_load(text("CITATION.cff"))
+    version = cited["version"]
+    if "date-released" not in cited:
+        assert "A release has a date: date-released: YYYY-MM-DD" in release().stdout
+        with (tmp_path / "CITATION.cff").open("a") as file:
+            file.write("date-released: 2030-01-02\n")
+        assert f"CHANGELOG.md has no ## {version} (2030-01-02)." in release().stdout
+        log = text("CHANGELOG.md").replace("(unreleased)", "(2030-01-02)")
+        (tmp_path / "CHANGELOG.md").write_text(log, "utf-8")
+    done = release()
+    assert done.returncode == 0
+    assert f"git archive --prefix=bouncing-ball-{version}/" in done.stderr
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -348,20 +348,32 @@ def test_the_packages_that_scripts_import_are_in_every_environment():
 # Continuous integration
 
 
-def test_a_failed_step_does_not_hide_the_others(tmp_path):
-    """`.ci/run` with a make that notes its targets and fails for the tests."""
-    program = tmp_path / "make"
-    program.write_text(
-        f'#!/bin/sh\necho "$@" >> "{tmp_path}/called"\n[ "$1" != test ]\n', encoding="utf-8"
-    )
-    program.chmod(0o755)
-    environment = os.environ | {"PATH": f"{tmp_path}{os.pathsep}{os.environ['PATH']}"}
+@pytest.mark.parametrize("ci, root", [("", True), ("true", False), ("true", True)])
+def test_a_failed_step_does_not_hide_the_others(tmp_path, ci, root):
+    """`.ci/run` with a make that notes its targets and fails for the tests, and without a browser.
+
+    It finds the programs of one folder only.
+    """
+    for name, then in {
+        "make": f'echo "$@" >> "{tmp_path}/called"; [ "$1" != test ]',
+        "apt-get": f'echo apt-get >> "{tmp_path}/called"; exit 100',
+        "id": f"echo {0 if root else 1000}",
+    }.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{then}\n", "utf-8")
+        (tmp_path / name).chmod(0o755)
+    for name in ("bash", "dirname"):
+        (tmp_path / name).symlink_to(shutil.which(name))
+    environment = {"PATH": str(tmp_path), "CI": ci}
     done = subprocess.run(
         [ROOT / ".ci/run"], env=environment, capture_output=True, text=True, check=False
     )
     called = (tmp_path / "called").read_text("utf-8").splitlines()
     first = ["setup", "lint", "clean", "all", "diff", "test", "test-cluster"]
     assert called[:7] == first
-    assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in called[7:])
+    extras = [line for line in called[7:] if line != "apt-get"]
+    assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in extras)
+    assert len(extras) == 8
+    assert ("apt-get" in called) == (ci == "true" and root)
+    assert ("the tests in a browser are skipped" in done.stdout) == ("apt-get" in called)
     assert "The replication: red in test." in done.stdout
     assert done.returncode == 1 and done.stdout.splitlines()[-1] == "Failed: make test"

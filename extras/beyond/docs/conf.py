@@ -79,7 +79,12 @@ PARTS = {
         "extras/contacts/docs/measured",
         "extras/contacts/docs/python",
     ],
-    "Changes": ["CONTRIBUTING", "CHANGELOG"],
+    "Changes": [
+        "CONTRIBUTING",
+        "CHANGELOG",
+        "extras/beyond/CHANGELOG",
+        "extras/contacts/CHANGELOG",
+    ],
 }
 
 

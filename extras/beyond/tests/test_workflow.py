@@ -9,9 +9,11 @@ import io
 import os
 import re
 import shutil
+import sys
 import warnings
 from modulefinder import ModuleFinder
 from pathlib import Path
+from unittest import mock
 
 import pytest
 import yaml
@@ -68,6 +70,8 @@ class Checkout:
             contextlib.chdir(self.path / "extras/beyond"),
             contextlib.redirect_stdout(printed),
             contextlib.redirect_stderr(printed),
+            # The profile reads the command line.
+            mock.patch.object(sys, "argv", ["snakemake", *arguments]),
             pytest.raises(SystemExit) as ended,
         ):
             cli.main([*arguments])
@@ -200,7 +204,10 @@ def test_a_parameter_runs_its_stages_again(used, old, new, again):
         ("extras/beyond/workflow/studies/figures.py", {*STAGES, "all"}),
         ("extras/beyond/workflow/explorer/model.js", {"explorer", "all"}),
         ("extras/beyond/workflow/templates/article.md.j2", {"article", "all"}),
-        ("extras/beyond/workflow/scripts/impacts.py", {"compute_impacts", "impacts", "article", "all"}),
+        (
+            "extras/beyond/workflow/scripts/impacts.py",
+            {"compute_impacts", "impacts", "article", "all"},
+        ),
         ("src/bouncing_ball/compare.py", set()),
         ("extras/beyond/config/schema.yaml", set()),
     ],
@@ -264,6 +271,15 @@ def test_a_mistake_is_one_line(complete, tmp_path, changes, line):
     file.write_text(yaml.safe_dump(changes), "utf-8")
     status, _ = complete.run("--dry-run", "ext_map", "--configfile", str(file))
     assert str(status).startswith(f"configuration: {line}") and "\n" not in str(status)
+
+
+def test_a_broken_file_is_one_line_before_snakemake_reads_it(complete, tmp_path):
+    """By the profile, and by the checks of the replication."""
+    file = tmp_path / "mine.yaml"
+    file.write_text("release: force\n\timpacts: {}\n", "utf-8")
+    status, _ = complete.run("--list", "--configfile", str(file))
+    assert str(status).startswith(f"configuration: {file}, line 2: ") and "\n" not in str(status)
+    assert str(complete.run("--list", "--config", "x")[0]).startswith("configuration: --config x: ")
 
 
 # Comparison

@@ -38,9 +38,9 @@ def test_a_penetration_is_kept_and_used_at_a_short_step(name):
 @pytest.mark.parametrize("name", STEPPED)
 def test_every_engine_has_a_contact_at_a_given_step(name, of_ball):
     found = of_ball(name)
-    assert found.chosen == YOURS
-    assert found.row.step == 0.5e-3
-    assert found.row.outcome.deviation(0.8) <= 0.0205
+    assert found.chosen == (IMPULSE if name == "pybullet" else YOURS)
+    for row in (found.row, found.rows[YOURS]):
+        assert row.step == 0.5e-3 and row.outcome.deviation(0.8) <= 0.0205
 
 
 @pytest.mark.parametrize("name", [name for name in ENGINES if name not in STEPPED])
@@ -121,21 +121,24 @@ def test_a_spring_that_gains_energy_is_said_so():
     assert most > 1.001 and f"up to {most:.3f}: at some instants the body gains" in repr(found)
 
 
-def test_the_impulse_is_shown_where_an_engine_has_it_or_no_spring_works():
+def test_the_impulse_is_shown_where_an_engine_has_it():
     assert IMPULSE in design(SHORT, "physx", "1 ms").rows
-    assert IMPULSE not in design(SHORT, "lammps", "0.2 ms").rows
-    assert IMPULSE in design(SHORT, "lammps", "10 ms").rows
+    for step in ("0.2 ms", "10 ms"):
+        assert IMPULSE not in design(SHORT, "lammps", step).rows
 
 
 @pytest.mark.parametrize("name", ["pybullet", "physx", "ode", "gazebo"])
 def test_the_impulse_is_the_one_of_the_engine(name):
     """PhysX and Gazebo had the number of PyBullet, whose product over both bodies counts."""
-    found = design(Bounce(mass=1, restitution=0.75, contact_time="4 ms"), name, "1/60")
-    row = found.rows[IMPULSE]
+    wanted = Bounce(mass=1, restitution=0.75, contact_time="4 ms")
+    found = design(wanted, name, "1/60", pick=IMPULSE)
+    row = found.row
     assert row.outcome.restitution[1] == pytest.approx(0.75, abs=1e-3)
     again = diagnose(found.bounce, name, row.parameters, row.step)
     assert again.outcome == row.outcome
-    assert f"{ENGINES[name].number} = {row.parameters[ENGINES[name].number]:g}" in str(found)
+    assert f"{row.parameters[ENGINES[name].number]:.6g}" in found.snippet
+    assert "@" not in found.snippet and "The numbers take back" not in str(found)
+    assert "--pick impulse writes it" in str(design(wanted, name, "1/60"))
 
 
 def test_a_bounce_is_needed():
@@ -151,11 +154,50 @@ def test_a_step_that_is_short_enough_is_taken_with_what_was_given():
 
 
 def test_the_note_speaks_of_the_contact_that_is_written():
-    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
-    row = found.row
-    assert f"it sinks {row.outcome.depth[1] * 1e3:.1f} mm" in found.notes[0]
-    assert "its centre passes the surface" in found.notes[0]
-    assert row.outcome.depth[1] > found.bounce.size
+    ball = Bounce(mass="50 g", restitution=0.8, radius="4 cm")
+    found = design(ball, "mujoco", "2 ms")
+    assert found.chosen == YOURS and 0.9 * ball.size < found.row.outcome.depth[1] < ball.size
+    assert f"it sinks {found.row.outcome.depth[1] * 1e3:.1f} mm" in found.notes[0]
+
+
+def test_a_row_that_is_starred_works_in_a_scene():
+    """Five common balls were designed to sink up to 32 radii, and a table of 2 cm let them through.
+
+    Two free bodies that overlap by more than a quarter of a radius slide past each other.
+    """
+    ball = Bounce(mass="50 g", restitution=0.8)
+    deep = design(ball, "mujoco", "2 ms")
+    assert deep.rows[YOURS].outcome.depth[1] > ball.size
+    assert deep.chosen == WANTED and deep.row.outcome.depth[1] <= ball.size / 10
+    assert "its centre passes the surface" in deep.notes[0]
+    assert "more than the radius is too deep for a scene" in deep.notes[0]
+    assert design(ball, "physx", "2 ms").chosen == IMPULSE
+    # The depth that is wanted is kept also if it is larger.
+    assert design(replace(ball, stiffness=500), "mujoco", "2 ms").chosen == YOURS
+    pair = Bounce(mass="50 g", other_mass="50 g", speed=3, restitution=0.8, radius="4 cm")
+    found = design(pair, "mujoco", "1 ms")
+    assert 0.25 * pair.size < found.rows[YOURS].outcome.depth[1] < pair.size
+    assert found.chosen == WANTED and "a quarter of the radius" in found.notes[0]
+
+
+def test_pybullet_bounces_by_its_number():
+    """Oblique impacts gain energy on its springs (0.72 to 1.38 for 0.8), and none by the number."""
+    ball = Bounce(mass="500 g", restitution=0.8, radius="10 cm")
+    assert design(ball, "pybullet", "1 ms").chosen == IMPULSE
+    assert design(replace(ball, points=4), "pybullet", "1/60").chosen == IMPULSE
+    assert design(replace(ball, penetration=0.05), "pybullet", "1 ms").chosen == YOURS
+    assert design(replace(ball, restitution=0), "pybullet", "1 ms").chosen == YOURS
+    # A ball that moves by more than its radius in a step passes through a table.
+    assert design(replace(ball, radius=0.02), "pybullet", "1/60").chosen == WANTED
+    assert "contactBreakingThreshold=0.2" in design(ball, "pybullet").snippet
+
+
+def test_a_body_at_rest_is_not_thrown_back():
+    """With a threshold of 0 it hops for ever by the speed that a step of gravity adds."""
+    ball = Bounce(mass="500 g", restitution=0.8, radius="10 cm")
+    found = design(ball, "pybullet", "1/240")
+    assert found.parameters["restitutionVelocityThreshold"] > 9.80665 / 240
+    assert found.row.outcome.rest == 0
 
 
 def test_the_permitted_penetration_is_said_to_be_assumed(of_ball):
@@ -184,10 +226,9 @@ def test_a_step_at_which_no_spring_works_is_said_so():
     """5 g at r = 0.95 and 10 ms once lay 877 mm deep in Drake."""
     bounce = Bounce(mass="5 g", restitution=0.95, drop_height="1 m")
     found = design(bounce, "drake", "10 ms")
-    assert YOURS not in found.rows
+    assert list(found.rows) == [WANTED]
     assert "no spring works in drake" in found.notes[0]
     assert "moves 44.3 mm in a step" in found.notes[0]
-    assert found.rows[IMPULSE].outcome.restitution[1] == pytest.approx(0.95, abs=0.002)
     assert found.row.outcome.rest < 1e-3
 
 
@@ -201,7 +242,7 @@ def test_grains_are_not_lost_in_a_wall(name):
 
 def test_an_infinite_wall_of_mercurydpm_holds_a_grain_whose_centre_passes_it():
     """MercuryDPM 1.0 returned a grain of 50 mm from a depth of 169 mm."""
-    found = design(Bounce(mass="50 g", restitution=0.8), "mercurydpm", "1 ms")
+    found = design(Bounce(mass="50 g", restitution=0.8), "mercurydpm", "1 ms", pick=YOURS)
     assert found.row.outcome.depth[1] > found.bounce.size
 
 
@@ -209,7 +250,10 @@ def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
     found = design(Bounce(mass="50 g", restitution=0.8), "pybullet", "1/240", pick=IMPULSE)
     assert found.parameters["restitution"] == pytest.approx(math.sqrt(0.798), abs=0.003)
     # The snippet sets the others to 0 as well.
-    assert [name for name, value in found.parameters.items() if value] == ["restitution"]
+    assert {name for name, value in found.parameters.items() if value} == {
+        "restitution",
+        "restitutionVelocityThreshold",
+    }
     assert "restitution=0.89" in found.snippet
     assert found.row.outcome.error < 0.01
     with pytest.raises(Refused, match="is not one that is written here: 'what you want'"):
@@ -221,7 +265,9 @@ def test_points_share_the_force(name):
     contact = Candidate(depth=2e-3, ratio=0.1, step=1e-5)
     one, four = (Problem(replace(SHORT, points=n), ENGINES[name]).row(contact) for n in (1, 4))
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
-    if not name.startswith("drake") and name not in ("ode", "genesis", "mujoco"):
+    # At an impedance near 1 points do not matter.
+    by_impedance = ("genesis", "mujoco", "newton-mujoco")
+    if not name.startswith("drake") and name not in ("ode", *by_impedance):
         first = ENGINES[name].names[0]
         assert four.parameters[first] == pytest.approx(one.parameters[first] / 4, rel=1e-3)
 
@@ -298,9 +344,8 @@ def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
 
 def test_friction_is_named_where_it_changes_the_bounce(of_ball):
     found = design(Bounce(**BALL, friction=0.5), "mujoco")
-    assert any("0.697 and 0.630 in place of 0.744" in note for note in found.notes)
-    plain = of_ball("mujoco")
-    assert 'cone="elliptic"' in str(plain) and not any("0.697" in note for note in plain.notes)
+    assert any("holds at every friction" in note for note in found.notes)
+    assert "friction" not in repr(of_ball("mujoco"))
 
 
 def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
@@ -392,7 +437,7 @@ def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
     assert "@" not in found.snippet
     for value in found.parameters.values():
         for number in np.atleast_1d(value):
-            assert f"{number:.6g}" in found.snippet or number == 1e-4
+            assert f"{number:.6g}" in found.snippet
 
 
 def test_a_random_ball_bounces_as_wanted():
@@ -533,16 +578,19 @@ def test_a_given_contact_through_which_bodies_pass_is_said():
     assert "bodies that sink more than 60 mm pass through each other" in found.notes
 
 
-@pytest.mark.parametrize("mass", ["1 g", "10 g"])
-def test_a_stiff_contact_of_newton_has_an_impedance_that_allows_it(mass):
-    """With the least one Newton had 0.66 to 0.67 for 0.8, because MuJoCo bounds the stiffness."""
-    found = design(Bounce(mass=mass, restitution=0.8), "newton-mujoco")
-    stiffness = found.row.parameters["ke"]
-    impedance = found.row.parameters["solimp"][0]
-    assert stiffness > 1e7
-    # Of solref MuJoCo takes (time constant times damping ratio times impedance)² as at least 1e-15.
-    assert impedance**2 / stiffness >= 1e-15
-    assert f"({impedance:.6g}, {impedance:.6g}, 0.001" in found.snippet
+@pytest.mark.parametrize("name", ["mujoco", "genesis", "newton-mujoco"])
+def test_an_impedance_near_one_needs_neither_points_nor_load(name):
+    """With 1e-4 a friction of 0.1 threw a ball up by 6.5 to 11.9 times its speed."""
+    ball = Bounce(mass="500 g", restitution=0.8, radius="10 cm", contact_time="20 ms")
+    one, four, moon = (
+        design(replace(ball, **more), name, "2 ms").row
+        for more in ({}, {"points": 4}, {"gravity": 1.62, "speed": ball.impact_speed})
+    )
+    assert one.parameters["solimp"] == (0.999, 0.999, 0.001)
+    for key, value in one.parameters.items():
+        assert four.parameters[key] == pytest.approx(value, rel=2e-3)
+        # The top of the rise falls between two steps.
+        assert moon.parameters[key] == pytest.approx(value, rel=0.02)
 
 
 def test_one_compliant_body_of_physx_has_the_whole_contact():

@@ -25,7 +25,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball_contacts.engines import (
-    ENGINES,
     Engine,
     Parameters,
     Setting,
@@ -37,6 +36,7 @@ from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
     Drops,
+    Implicit,
     Law,
     OfSolver,
     Solved,
@@ -70,10 +70,7 @@ WANTED = "what you want"
 YOURS = "your step"
 IMPULSE = "impulse"
 
-HOPS = (
-    "no depth at rest is given: the speed that gravity adds in each step exceeds the threshold and "
-    "is thrown back, so that the body may hop for ever"
-)
+STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
 VAGUE = "the depth at rest is less than the engine resolves: its positions have single precision"
 
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
@@ -380,6 +377,17 @@ class Problem:
     tolerance: float = TOLERANCE
 
     @property
+    def usable_depth(self) -> float:
+        """The largest depth in m with which a contact works in a scene.
+
+        A ball that sinks by more than its radius may leave a table on its other side, and two free
+        bodies that overlap by more than a quarter of one slide past each other.
+        """
+        if self.bounce.other_mass is None:
+            return self.bounce.size
+        return min(self.bounce.size, self.bounce.other_size) / 4
+
+    @property
     def deepest(self) -> float:
         """The depth in m from which on the engine loses the body, or two bodies change places."""
         size = self.bounce.size
@@ -561,29 +569,44 @@ class Problem:
         combined = {**self.engine.write(law, self.setting(contact.step)), **self.engine.beside}
         values = self.engine.of_one if self.one_body else self.engine.of_each
         parameters = {name: _written(value) for name, value in values(combined).items()}
-        stiffness = float(law.stiffness) * self.bounce.reduced_mass
+        stiffness = float(law.deep.stiffness) * self.bounce.reduced_mass
         outcome = self.outcome(self.law_of(parameters, contact.step), contact.step)
         return Row(contact.step, stiffness, outcome, parameters)
 
     def impulse(self, step: float) -> Row:
         """Return the restitution by number that has the wanted mean r, without a spring.
 
-        The number and r differ by little, so that it is corrected by their difference. It is
-        PyBullet's if the engine has none.
+        The number and r differ by little, so that it is corrected by their difference. A body at
+        rest is not thrown back by the speed that a step of gravity adds.
         """
-        engine = self.engine if self.engine.number else ENGINES["pybullet"]
-        problem = replace(self, engine=engine, one_body=False)
+        engine = self.engine
+        beside = {**engine.undisturbed, engine.threshold: _written(2 * self.bounce.load * step)}
         number = self.bounce.restitution
         tried = []
         for _ in range(12):
             alike = _written(engine.rules[engine.number].alike(number))
-            parameters = {engine.number: alike, **engine.undisturbed}
-            outcome = problem.outcome(problem.law_of(parameters, step), step)
+            parameters = {engine.number: alike, **beside}
+            outcome = self.outcome(self.law_of(parameters, step), step)
             tried.append(Row(step, math.nan, outcome, parameters))
             # Half of it, because r may depend on the number by jumps.
             short = (self.bounce.restitution - outcome.restitution[1]) / 2
             number = float(np.clip(number + short, 0, 1))
         return min(tried, key=lambda row: row.outcome.deviation(self.bounce.restitution))
+
+    def best(self, rows: Mapping[str, Row], keeps: bool) -> str:
+        """Return the name of the row that is written if none is picked.
+
+        If a depth or a contact was given, it is the row that keeps it. Otherwise it is one at the
+        given step that works in a scene, or the row of a short step if there is none.
+        """
+        if self.bounce.gives_contact:
+            return YOURS if keeps else WANTED
+        by_number = self.engine.bounces_by_number and self.bounce.restitution > 0
+        for name in (IMPULSE, YOURS) if by_number else (YOURS, IMPULSE):
+            found = rows[name].outcome if name in rows else None
+            if found and self.is_near(found) and found.depth[1] <= self.usable_depth:
+                return name
+        return WANTED
 
 
 def design(
@@ -652,18 +675,16 @@ def design(
         contact = kept if keeps else problem.stiffest(step)
         if keeps or problem.works(contact):
             rows[YOURS] = problem.row(contact)
-        is_known = problem.engine.number or YOURS not in rows
-        if bounce.points == 1 and not one_body and is_known:
+        is_known = bounce.points == 1 or problem.engine.bounces_by_number
+        if problem.engine.number and is_known and not one_body:
             rows[IMPULSE] = problem.impulse(step)
-    usual = YOURS if YOURS in rows and (keeps or not bounce.gives_contact) else WANTED
-    chosen = usual if pick is None else pick.strip().lower()
-    is_impulse_written = snippet_of(f"{problem.engine.name}-{IMPULSE}") and not one_body
-    written = [name for name in rows if name != IMPULSE or is_impulse_written]
-    names = ", ".join(map(repr, written))
-    refuse([(chosen not in written, f"row {pick!r} is not one that is written here: {names}")])
+    chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
+    names = ", ".join(map(repr, rows))
+    refuse([(chosen not in rows, f"row {pick!r} is not one that is written here: {names}")])
     found = Design(
         bounce=bounce,
         engine=problem.engine.name,
+        source=problem.engine,
         one_body=one_body,
         time_step=step,
         rows=rows,
@@ -685,7 +706,10 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     slow = replace(problem, bounce=slower).outcome(law, row.step)
     wanted = found.rows[WANTED]
     depth = found.rows.get(YOURS, wanted).outcome.depth[1]
-    is_deeper = not keeps and depth > 1.01 * wanted.outcome.depth[1]
+    is_deeper = depth > 1.01 * wanted.outcome.depth[1] and not keeps and found.chosen != IMPULSE
+    is_unusable = (
+        found.chosen == WANTED and depth > problem.usable_depth and not bounce.gives_contact
+    )
     share = f"{100 * depth / bounce.size:.3g} % of its {bounce.size_name}"
     thickness = show(2 * (depth - bounce.size), "m")
     passes = f"its centre passes the surface (a table has to be thicker than {thickness})"
@@ -695,6 +719,11 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
         f"because it moves {show(bounce.impact_speed * step, 'm')} in a step; at "
         f"{show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
     )
+    quarter = "" if bounce.other_mass is None else "a quarter of "
+    unusable = (
+        f"; more than {quarter}the {bounce.size_name} is too deep for a scene, and the row for "
+        f"{show(wanted.step, 's')} is written (--pick {YOURS!r} for the other one)"
+    )
     size = f"{bounce.size_name} of {show(bounce.size, 'm')}"
     no_deeper = (
         f"sinks less than {show(problem.deepest, 'm')}"
@@ -703,8 +732,10 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     )
     return holding(
         [
+            (outcome.depth[1] > problem.deepest, problem.lost),
+            (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
             (
-                found.time_step and YOURS not in found.rows,
+                found.time_step and YOURS not in found.rows and found.chosen == WANTED,
                 f"at {at_yours} no spring works in {found.engine}: none keeps r within "
                 f"{problem.tolerance:g} and {no_deeper}, {moves}",
             ),
@@ -715,7 +746,8 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
             (
                 is_deeper,
                 f"at your step it sinks {show(depth, 'm')}, "
-                f"{passes if depth > bounce.size else share}, {moves}",
+                f"{passes if depth > bounce.size else share}, {moves}"
+                f"{unusable if is_unusable else ''}",
             ),
             (
                 YOURS in found.rows and bounce.gives_contact and not keeps,
@@ -733,7 +765,6 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 and outcome.depth[1] > bounce.limit,
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
-            (outcome.depth[1] > problem.deepest, problem.lost),
             (math.isnan(outcome.rest) and not law.is_number, VAGUE),
             (
                 problem.engine.fixed_steps
@@ -750,7 +781,6 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 outcome.deviation(bounce.restitution) > problem.tolerance and not is_undamped,
                 f"r is {span(low, high)}: no contact that is nearer was found",
             ),
-            (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
             (
                 abs(slow.restitution[1] - mean) > TOLERANCE / 2,
                 f"at a third of the speed r is {slow.around}",
@@ -773,6 +803,7 @@ class Design(Page):
 
     bounce: Bounce
     engine: str
+    source: Engine
     one_body: bool
     time_step: float | None
     rows: dict[str, Row]
@@ -810,7 +841,7 @@ class Design(Page):
     @property
     def table(self) -> list[list[str]]:
         """The cells of the table, the headings first."""
-        engine = engine_named(self.engine)
+        engine = self.source
         return [
             ["", "step", "k", "sinks", "at rest", "force", "r"],
             *(
@@ -831,12 +862,10 @@ class Design(Page):
     def remarks(self) -> list[str]:
         """The lines below the snippet: what was given and assumed, and what the engine needs."""
         bounce = self.bounce
-        engine = engine_named(self.engine)
+        engine = self.source
         at = "" if self.time_step is None else f", time step {show(self.time_step, 's', 4)}"
         given = ", ".join(f"{name} {value}" for name, value in bounce.given.items()) + at
-        impulse = self.rows[IMPULSE].parameters if IMPULSE in self.rows else {}
-        numbers = ", ".join(f"{name} = {value:g}" for name, value in impulse.items())
-        source = engine if engine.number else ENGINES["pybullet"]
+        is_impulse = self.chosen == IMPULSE
         said = [
             (True, f"Given: {given}"),
             (bounce.assumed, f"Assumed: {'; '.join(bounce.assumed)}"),
@@ -846,14 +875,12 @@ class Design(Page):
                 "reduced mass",
             ),
             (
-                impulse,
-                f"The row of the impulse is a restitution by number in {source.name}: {numbers}, "
-                f"{source.rules[source.number].text}",
+                IMPULSE in self.rows and not is_impulse,
+                f"The row of the impulse is a restitution by number: --pick {IMPULSE} writes it",
             ),
-            (impulse and math.isnan(self.rows[IMPULSE].outcome.rest), f"With it {HOPS}"),
-            (impulse and snippet_of(f"{self.engine}-{IMPULSE}"), f"--pick {IMPULSE} writes it"),
             (not engine.ran, f"The row of {self.engine} was never run in its engine"),
             *((True, note) for note in engine.notes),
+            (isinstance(engine.scheme, Implicit) and not is_impulse, STEP_ONLY),
             (bounce.points > 1, engine.box),
             (bounce.other_mass is None, engine.floor),
         ]

@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.designs import (
-    HOPS,
     IMPULSE,
     LEAST_RESTITUTION,
     TOLERANCE,
@@ -51,6 +50,10 @@ from bouncing_ball_contacts.schemes import (
 )
 from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
 
+HOPS = (
+    "no depth at rest is given: the speed that gravity adds in each step exceeds the threshold and "
+    "is thrown back, so that the body may hop for ever"
+)
 _SHARES = (
     "bounce",
     "coefficientRestitution",
@@ -456,7 +459,7 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
     bounce = found.bounce
     law = contact.law
     highest = found.outcome.restitution[2]
-    impedance = getattr(law, "high", 0.0)
+    impedance = getattr(law, "high", 1.0)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
     facts = [
@@ -489,9 +492,10 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
         (found.outcome.depth[1] > contact.problem.deepest, contact.problem.lost),
         (math.isnan(found.outcome.rest), HOPS if law.is_number else VAGUE),
         (
-            bounce.load and impedance > _VISIBLE,
-            f"with the impedance {impedance:g} a contact feels {1 - impedance:.2g} of gravity; a "
-            "spring and a damper feel all of it with solimp = 1e-4 1e-4 0.001",
+            impedance < 0.99,
+            f"at an impedance of {impedance:g} this is r at a friction of 1, and another one "
+            f"changes it; at solimp = {_spelled(row.beside.get('solimp', ''))}, as designs have, "
+            "no friction does",
         ),
         (row.caution, row.caution),
         (bounce.points > 1 and row.box, row.box),

@@ -32,8 +32,14 @@ from bouncing_ball_contacts.schemes import (
 from bouncing_ball_contacts.units import Refused
 
 Parameters = Mapping[str, Any]
-LEAST_IMPEDANCE = 1e-4
-"""MuJoCo's, with which a contact feels its load as a spring and a damper do."""
+IMPEDANCE = 0.999
+"""MuJoCo's of a design, at every depth.
+
+Near 1 the reference acceleration of a contact is followed whatever else acts on the body: r depends
+neither on the load and the number of points, nor on the friction, its cone and condim. The edges of
+a friction pyramid turn an impedance d into d/(d + (1 - d) μ² (1 + μ²)/2).
+"""
+_LEAST_IMPEDANCE = 1e-4
 
 
 @dataclass(frozen=True)
@@ -120,8 +126,12 @@ class Engine:
         What friction does to r.
     number : str
         The parameter that is a restitution coefficient, if the engine has one.
+    threshold : str
+        The parameter of the speed below which nothing is thrown back by this coefficient.
     undisturbed : mapping
-        What this needs beside it, for bounces that are alike at all instants and speeds.
+        What the coefficient needs beside it, for bounces that are alike at all instants and speeds.
+    bounces_by_number : bool
+        Whether the coefficient bounces better in a scene than a spring.
     caution : str
         What a diagnosis takes for granted.
     """
@@ -148,7 +158,9 @@ class Engine:
     floor: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
     number: str = ""
+    threshold: str = ""
     undisturbed: Parameters = field(default_factory=dict)
+    bounces_by_number: bool = False
     caution: str = ""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
@@ -267,10 +279,15 @@ def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
     return {"names": names, "units": units, "write": write, "read": read}
 
 
+def _impedance_of_depth(depth: Array, ratio: Array, speed: float) -> Impedance:
+    """Return the contact of an undamped depth in MuJoCo, whose k is K d² and whose c is b d."""
+    d = IMPEDANCE
+    spring = Linear.of_depth(depth, ratio, speed)
+    return Impedance(spring.stiffness / d**2, spring.damping / d, low=d, high=d)
+
+
 def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
-    # N points of the impedance d act as one of N d/(1 + (N - 1) d).
-    share = (1 + (at.points - 1) * LEAST_IMPEDANCE) / at.points
-    return {"solref": (-float(law.stiffness) * share, -float(law.damping) * share)}
+    return {"solref": (-float(law.deep.stiffness), -float(law.deep.damping))}
 
 
 def _solimp(values: Any) -> tuple[float, ...]:
@@ -278,7 +295,7 @@ def _solimp(values: Any) -> tuple[float, ...]:
     low, high, width, middle, power = given + [0.9, 0.95, 0.001, 0.5, 2.0][len(given) :]
 
     # MuJoCo keeps impedances and the middle within these bounds.
-    low, high, middle = np.clip([low, high, middle], LEAST_IMPEDANCE, 1 - LEAST_IMPEDANCE)
+    low, high, middle = np.clip([low, high, middle], _LEAST_IMPEDANCE, 1 - _LEAST_IMPEDANCE)
     return float(low), float(high), max(width, 1e-15), float(middle), max(power, 1.0)
 
 
@@ -325,8 +342,7 @@ def _alone_solimp(value: Any, other: Any) -> tuple[float, ...]:
 _BY_TIMES = replace(MEAN, text="by averaged time constants and damping ratios")
 _SOLIMP = Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp)
 _DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
-# With it a contact is a spring and a damper.
-_LEAST_SOLIMP = (LEAST_IMPEDANCE, LEAST_IMPEDANCE, 0.001)
+_DESIGNED_SOLIMP = (IMPEDANCE, IMPEDANCE, 0.001)
 _MUJOCO_RULES = {
     "solref": Rule("least of both", _mix_solref, lambda x: x, lambda x, other: x),
     "solimp": _SOLIMP,
@@ -335,11 +351,10 @@ _MUJOCO_RULES = {
 
 
 def _write_genesis(law: Law, at: Setting) -> dict[str, Any]:
-    c = float(law.damping) / at.points
+    c = float(law.deep.damping)
     if c <= 0:
         raise Refused("genesis has no contact without damping: its time constant is 2 m/c")
-    k = float(law.stiffness) / at.points
-    return {"timeconst": 2 / c, "dampratio": c / (2 * math.sqrt(k))}
+    return {"timeconst": 2 / c, "dampratio": c / (2 * math.sqrt(law.deep.stiffness))}
 
 
 def _read_genesis(p: Parameters, at: Setting) -> Law:
@@ -355,14 +370,7 @@ def _solref(ke: float, kd: float) -> tuple[float, float]:
 def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
     if float(law.damping) <= 0:
         raise Refused("newton-mujoco has no contact without damping: kd = 0 stands for a default")
-    ke = float(law.stiffness) / at.points
-    # With a lower impedance MuJoCo would not take so short a time constant.
-    impedance = max(LEAST_IMPEDANCE, math.sqrt(1.01e-15 * ke))
-    return {
-        "ke": ke,
-        "kd": float(law.damping) / at.points,
-        "solimp": (impedance, impedance, 0.001),
-    }
+    return {"ke": float(law.deep.stiffness), "kd": float(law.deep.damping)}
 
 
 def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
@@ -388,15 +396,17 @@ _BULLET_DEFAULTS = {
     "restitutionVelocityThreshold": 0.2,
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
+    "contactBreakingThreshold": 0.02,
 }
-UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:], 0.0)
+UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:-1], 0.0)
 """What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    # A ball is found within 2 % of half the diagonal of the box around it; two balls, or two boxes,
-    # when they touch.
-    seen = 0.0 if at.both_free or at.points > 1 else 0.02 * math.sqrt(3) * at.radius
+    # A ball is found within a share of half the diagonal of the box around it, 2 % by default; two
+    # balls, or two boxes, when they touch.
+    share = 0.0 if at.both_free or at.points > 1 else p["contactBreakingThreshold"]
+    seen = share * math.sqrt(3) * at.radius
     law = Bullet(
         restitution=np.asarray(p["restitution"]),
         threshold=p["restitutionVelocityThreshold"],
@@ -547,7 +557,15 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
     }
 
 
-_STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
+_SLIDING = (
+    "r holds at every friction, cone and condim, but for a body that slides faster than it falls: "
+    "its damper acts along the surface as well, and at r below 0.5 it leaves faster"
+)
+_MANIFOLD = (
+    "the impulse keeps r at every friction and sliding speed; a spring does as long as the body "
+    "slides less than a third of its radius in a step, and a box that slides on springs may gain "
+    "energy"
+)
 _DRAKE_BOX = (
     "A pair of shapes has one contact, a box as well; a box needs a HalfSpace below, because on a "
     "Box it tumbles (r = 0.632 in place of 0.614)"
@@ -564,27 +582,31 @@ ENGINES: Mapping[str, Engine] = {
             names=("solref", "solref"),
             scheme=SemiImplicit(),
             write=_write_mujoco,
-            beside={"solimp": _LEAST_SOLIMP},
+            beside={"solimp": _DESIGNED_SOLIMP},
             read=_read_mujoco,
-            meaning="solref = -k/m -c/m, solimp = 1e-4 1e-4 0.001",
+            meaning="solref = -k/m -c/m, solimp = 0.999 0.999 0.001",
             rules=_MUJOCO_RULES,
+            of_depth=_impedance_of_depth,
             defaults={"solref": (0.02, 1.0), "solimp": _DEFAULT_SOLIMP, "refsafe": 1.0},
             ran="MuJoCo 4.0.0",
             notes=(
                 "The numbers of solref are per unit of mass: they hold for every mass, and for two "
                 "free bodies",
                 "Give both geoms the class, because MuJoCo averages their solimp",
-                'With a condim of 4 or 6 r needs the option cone="elliptic"',
             ),
-            friction="MuJoCo: condim 1 and 3 keep r; with the pyramidal cone 4 and 6 lower it "
-            '(0.697 and 0.630 in place of 0.744), cone="elliptic" does not',
+            friction=_SLIDING,
         ),
         Engine(
             name="pybullet",
             scheme=Implicit(),
             names=_BULLET["names"],
             write=_BULLET["write"],
-            beside={"linearDamping": 0.0, "contactSlop": 0.0, "contactProcessingThreshold": 0.0},
+            beside={
+                "linearDamping": 0.0,
+                "contactSlop": 0.0,
+                "contactProcessingThreshold": 0.0,
+                "contactBreakingThreshold": 0.2,
+            },
             read=_read_pybullet,
             units=_BULLET["units"]
             | {
@@ -598,15 +620,17 @@ ENGINES: Mapping[str, Engine] = {
                 "contactStiffness": _if_set(SERIES, 1e18),
                 "contactDamping": _if_set(SUM, 0.1),
                 "restitution": PRODUCT,
-                **dict.fromkeys(UNDISTURBED, PAIR),
+                **dict.fromkeys([*UNDISTURBED, "contactBreakingThreshold"], PAIR),
             },
             defaults=_BULLET_DEFAULTS,
             ran="PyBullet 3.2.7",
-            notes=(_STEP_ONLY,),
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.598 to 0.618 for 0.500)",
             number="restitution",
+            threshold="restitutionVelocityThreshold",
             undisturbed=UNDISTURBED,
+            bounces_by_number=True,
+            friction=_MANIFOLD,
         ),
         Engine(
             name="drake",
@@ -619,7 +643,6 @@ ENGINES: Mapping[str, Engine] = {
             rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             ran="Drake 1.51.1",
-            notes=(_STEP_ONLY,),
             caution='the discrete_contact_approximation is taken as "sap"; with the default, '
             '"lagged", Drake ignores relaxation_time, and the row is drake-hunt-crossley; '
             "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
@@ -728,27 +751,32 @@ ENGINES: Mapping[str, Engine] = {
             scheme=SemiImplicit(),
             write=_write_newton_mujoco,
             read=_read_newton_mujoco,
-            meaning="ke = k/m, kd = c/m, solimp = 1e-4 1e-4 0.001, in SolverMuJoCo",
+            beside={"solimp": _DESIGNED_SOLIMP},
+            meaning="ke = k/m, kd = c/m, solimp = 0.999 0.999 0.001, in SolverMuJoCo",
             units={"ke": "1/s^2", "kd": "1/s"},
             rules={"ke": _BY_TIMES, "kd": _BY_TIMES, "solimp": _SOLIMP},
+            of_depth=_impedance_of_depth,
             defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
             resolution=_SINGLE,
             ran="Newton 1.8.0",
-            notes=("Keep mujoco:condim = 1: without it and without friction there are no numbers",),
+            notes=("Without friction set mujoco:condim = 1, or there are no numbers",),
+            friction=_SLIDING,
         ),
         Engine(
             name="genesis",
             names=("timeconst", "dampratio"),
             scheme=SemiImplicit(),
             write=_write_genesis,
-            beside={"solimp": _LEAST_SOLIMP},
+            beside={"solimp": _DESIGNED_SOLIMP},
             read=_read_genesis,
-            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m), solimp = 1e-4 1e-4 0.001",
+            of_depth=_impedance_of_depth,
+            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m), solimp = 0.999 0.999 0.001",
             ran="Genesis 1.4.5",
             units={"timeconst": "s"},
             rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
             defaults={"solimp": _DEFAULT_SOLIMP},
             notes=("The numbers hold for every mass",),
+            friction=_SLIDING,
         ),
         PhysX(
             name="physx",
@@ -776,10 +804,10 @@ ENGINES: Mapping[str, Engine] = {
             resolution=_SINGLE,
             notes=(
                 "Use the solver PGS",
-                _STEP_ONLY,
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
             number="restitution",
+            threshold="bounceThresholdVelocity",
             undisturbed={"bounceThresholdVelocity": 0.0},
             caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
@@ -804,10 +832,11 @@ ENGINES: Mapping[str, Engine] = {
             rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
             sets_pair=True,
-            notes=("These are numbers of a contact joint", _STEP_ONLY),
+            notes=("These are numbers of a contact joint",),
             box="dCollide has to be asked for at least 4 contacts: with 1, 2 or 3 a box on a plane "
             "tilts, and r is wrong (0.89, 0.85 and 0.83 for 0.80)",
             number="bounce",
+            threshold="bounce_vel",
         ),
         Engine(
             name="gazebo",
@@ -835,13 +864,13 @@ ENGINES: Mapping[str, Engine] = {
                 "contact_max_correcting_vel": 100.0,
             },
             notes=(
-                _STEP_ONLY,
                 "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default, and "
                 "contact_max_correcting_vel of the world, which caps stiff contacts at short steps",
             ),
             box="max_contacts has to be at least 4, as by default: with 1, 2 or 3 a box on a plane "
             "tilts, and r is wrong (0.91, 0.85 and 0.82 for 0.80)",
             number="restitution_coefficient",
+            threshold="threshold",
             # With such a damper the default spring takes nothing of the penetration back.
             undisturbed={"threshold": 0.0, **_UNCAPPED, "kd": 1e12},
             caution="min_depth is taken as 0, as in the snippet; a larger one lowers r",
@@ -913,7 +942,9 @@ def engine_named(name: str | Engine) -> Engine:
     Refused
         If there is none; the message has the nearest names, or all of them.
     """
-    wanted = getattr(name, "name", str(name)).strip().lower().replace("_", "-").replace(" ", "-")
+    if isinstance(name, Engine):
+        return name
+    wanted = str(name).strip().lower().replace("_", "-").replace(" ", "-")
     wanted = _ALIASES.get(wanted, wanted)
     if wanted in ENGINES:
         return ENGINES[wanted]

@@ -89,6 +89,11 @@ class Law:
         return False
 
     @property
+    def deep(self) -> "Law":
+        """The spring and the damper of all points together, at the full impedance of MuJoCo."""
+        return self
+
+    @property
     def of_position(self) -> "Law":
         """The law whose velocity moves the body: the same one, but in Gazebo."""
         return self
@@ -243,7 +248,6 @@ class Impedance(Law):
 
     @property
     def deep(self) -> Linear:
-        """The spring and the damper of all points together below the width."""
         shared = self._shared(np.asarray(self.high))
         return Linear(shared * self.high * self.stiffness, shared * self.damping)
 

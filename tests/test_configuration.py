@@ -484,6 +484,14 @@ def test_other_names_of_folders_are_good(tmp_path):
     CHECKS["refuse_place"](tmp_path / 'ünï co:de [1] 100% st*r\'s "x"')
 
 
+@pytest.mark.parametrize("file", ["results/paper.md", "results/figures/fig14.nc"])
+def test_a_pipe_among_the_results_is_refused(file, tmp_path):
+    Path("results/figures").mkdir(parents=True)
+    os.mkfifo(file)
+    line = f"{file} is a pipe or a device, which would be waited for: remove it"
+    assert no_place(tmp_path / "checkout") == line
+
+
 def test_a_file_system_without_locks_is_said_so(tmp_path, monkeypatch):
     def refuse_locks(file, operation):
         raise OSError(number, os.strerror(number))

@@ -105,6 +105,13 @@ def test_versions_agree():
     assert f"## {cited['version']} ({date})\n" in text("CHANGELOG.md")
 
 
+@pytest.mark.parametrize("folder", ["", "extras/beyond/", "extras/contacts/"])
+def test_a_package_that_says_it_is_typed_has_the_mark(folder):
+    project = text(f"{folder}pyproject.toml")
+    (module,) = re.findall(r'\[tool.flit.module\]\nname = "(\w+)"', project)
+    assert ("Typing :: Typed" in project) == (ROOT / folder / f"src/{module}/py.typed").is_file()
+
+
 @pytest.mark.parametrize("extra", ["beyond", "contacts"])
 def test_each_extra_has_a_readme_a_changelog_and_a_citation(extra):
     folder = f"extras/{extra}"

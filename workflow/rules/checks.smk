@@ -272,6 +272,9 @@ def refuse_place(checkout):
             end(f"{folder} is {target}: results must not be written over the checkout")
         if target.exists() and not target.is_dir():
             end(f"{folder} is no folder, but results are written there")
+        for path in sorted(folder.glob("*")):
+            if path.exists() and not (path.is_file() or path.is_dir()):
+                end(f"{path} is a pipe or a device, which would be waited for: remove it")
     refuse_no_locks(Path("results") if Path("results").is_dir() else Path())
 
 

@@ -4,11 +4,12 @@ As in the replication, a template has text and names of numbers, and no numbers.
 """
 
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from bouncing_ball.article import environment, rounded
+from bouncing_ball.article import environment, fixed, percent
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
@@ -17,7 +18,9 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 def filled_in(name: str, datasets: Datasets) -> str:
     """The text of a template, Markdown: "article", "appendix", or "figures", the list of all."""
     templates = environment(TEMPLATES)
-    templates.filters.update(digits=digits, bound=bound, bound_digits=bound_digits)
+    # Upper bounds, as numbers and in per cent, are rounded up.
+    up = {"bound": partial(fixed, to="up"), "at_most": partial(percent, to="up")}
+    templates.filters.update(digits=digits, bound_digits=bound_digits, **up)
     return templates.get_template(f"{name}.md.j2").render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
@@ -41,16 +44,6 @@ def digits(value: float, count: int, rounding: str = ROUND_HALF_EVEN) -> str:
         power = str(exponent).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
         return f"{rounded.scaleb(-exponent)}·10{power}".replace("-", "−")
     return f"{rounded:f}".replace("-", "−")
-
-
-def bound(value: float, decimals: int) -> str:
-    """An upper bound with a number of decimals, rounded up, as `at_most` does in per cent.
-
-    >>> bound(0.324, 1), bound(0.0055, 3), bound(0.3, 1)
-    ('0.4', '0.006', '0.3')
-    """
-    number = float(value)
-    return rounded(Decimal(repr(number)), decimals, ROUND_CEILING) if np.isfinite(number) else "–"
 
 
 def bound_digits(value: float, count: int) -> str:

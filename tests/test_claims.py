@@ -475,6 +475,7 @@ VERDICTS = {
         "bifurcations move apart",
         "stiff row",
         "safe above 100",
+        "safe on all orbits",
     },
     "by construction": {
         "saddle-node",
@@ -503,6 +504,7 @@ OWN_SENSE_FAILS = {
     "closer with stiffness",
     "bifurcations move apart",
     "stiff row",
+    "safe on all orbits",
 }
 
 

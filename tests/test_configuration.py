@@ -382,8 +382,8 @@ def test_an_unknown_key_without_parameters_is_no_new_figure(value):
 def test_a_new_figure_has_a_title_and_may_have_any_parameters():
     new = {"title": "Figure 17: another", "n": -1, "frequency_ratio": {"min": 2, "max": 1}}
     read_workflow(nested("continuation.fig17", new))
-    line = refusal({"validity": {"title": "A stage", "validity_map": new}})
-    assert line.startswith("configuration: validity: there is no workflow/scripts/validity.py")
+    line = refusal({"chaos": {"title": "A stage", "attractor": new}})
+    assert line.startswith("configuration: chaos: there is no workflow/scripts/chaos.py")
     line = refusal(nested("continuation.fig17", {"n": 2}))
     assert line.startswith("configuration: unknown key continuation.fig17, allowed: fig")
     assert line.endswith(", or a new one with a title")

@@ -1020,6 +1020,30 @@ def safe_above_100(fig05, fig06, fig10, fig16, thresholds):
 
 
 @claim(
+    "safe on all orbits",
+    "Conclusion",
+    "considering all the results, a frequency ratio above 100 makes the restitution model good, "
+    "whatever the orbit",
+    "validity_map",
+    remark="the stable orbits of n = 1, 2 and 3 for r from 0.05 to 0.95; the curves of Figs. 5, 6 "
+    "and 10 are nine orbits",
+)
+def safe_on_all_orbits(validity_map):
+    largest = validity_map["stiff_error"].max(["restitution", "place"], skipna=False)
+    highest = largest.sel(quantity="max_height")
+    others = {
+        "bounce_velocity": "the bouncing-off velocity",
+        "apparent_restitution": "the apparent restitution",
+        "phase_in_periods": "the phase as a share of a period",
+    }
+    return [
+        at_most("the greatest height", highest, LIMIT),
+        *(at_most(f"that of n = {n}", highest.sel(n=n), LIMIT) for n in highest["n"].values),
+        *(at_most(name, largest.sel(quantity=each), LIMIT) for each, name in others.items()),
+    ]
+
+
+@claim(
     "other problems",
     "Conclusion",
     "a frequency ratio above 100 is enough for bouncing-ball-like problems",

@@ -155,6 +155,39 @@ VARIABLES = {
         "Eqs. 37-38",
     ),
     "threshold_status": Variable("whether the threshold lies within the range scanned"),
+    # Where a frequency ratio is enough. Single precision has seven digits.
+    "place": Variable("place between saddle-node (0) and period doubling (1), linear in Λ"),
+    "enough_from": Variable(
+        "frequency ratio from which on the error stays within the tolerance, or the lowest one "
+        "scanned",
+        "ϖ",
+        tolerance=1e-6,
+    ),
+    "stiff_error": Variable(
+        "largest error at the advised frequency ratio and above; that of the phase is a share of a "
+        "period, the others are relative",
+        tolerance=1e-6,
+    ),
+    "not_reached": Variable("number of orbits without an answer"),
+    "failing_share": Variable(
+        "share of the range of Λ on which the advised frequency ratio is not enough", tolerance=1e-6
+    ),
+    "failing_mean": Variable("mean of this share over r", tolerance=1e-6),
+    "failing_up_to": Variable("r up to which it is not enough for some Λ", "r", tolerance=1e-6),
+    "halved_enough_from": Variable(
+        "frequency ratio from which on half the tolerance is kept by the orbit that needs most",
+        "ϖ",
+        tolerance=1e-6,
+    ),
+    "doubled_share": Variable(
+        "share of the range of Λ on which the period has doubled at the advised frequency ratio",
+        tolerance=1e-6,
+    ),
+    "curve": Variable("curve of the paper"),
+    "curve_n": Variable("family of the curve", "n"),
+    "curve_restitution": Variable("restitution coefficient of the curve", "r"),
+    "curve_amplitude": Variable("excitation amplitude of the curve", "Λ"),
+    "curve_place": Variable("place of the curve between saddle-node and period doubling"),
     # Table 1
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", "Table 1"),
@@ -262,11 +295,11 @@ def save(
     )
     for name, variable in described.variables.items():
         variable.attrs = description(variables[str(name)], variable.dtype)
-    numeric = [name for name, each in described.variables.items() if each.dtype.kind in "fib"]
+    # The blocks of a small variable need more space than their compression saves.
+    large = [name for name, each in described.variables.items() if each.nbytes > 8192]
+    packed = {name: {"zlib": True} for name in large if described[name].dtype.kind in "fib"}
     with whole(path) as unfinished:
-        described.to_netcdf(
-            unfinished, engine="netcdf4", encoding={name: {"zlib": True} for name in numeric}
-        )
+        described.to_netcdf(unfinished, engine="netcdf4", encoding=packed)
 
 
 @contextmanager

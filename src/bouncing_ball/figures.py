@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Circle, Rectangle
+from matplotlib.patches import Circle, Patch, Rectangle
 
 from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
@@ -507,6 +507,72 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     along_ratio(axes, data.frequency_ratio)
 
 
+# Where the frequency ratio of the paper is enough
+
+FAILURES: Mapping[str, tuple[str, Look]] = {
+    "max_height": ("greatest height", {"facecolor": "0.65"}),
+    "bounce_velocity": ("bouncing-off velocity", {"hatch": "////"}),
+    "apparent_restitution": ("apparent restitution", {"hatch": "\\\\\\\\"}),
+    "phase_in_periods": ("phase", {"hatch": "-----"}),
+}
+"""Name of each quantity of `validity_map`, and the look of the region where it fails."""
+TENFOLD: Look = {"facecolor": "0.4"}
+DOUBLED = "0.88"
+CURVES: Look = {"marker": "o", "linestyle": "none", "color": "black", "markerfacecolor": "white"}
+
+
+def validity_map(data: xr.Dataset) -> Figure:
+    """Where the advised ϖ is not enough: regions of r and of the place of Λ, for each n."""
+    given = parameters(data)
+    figure, panel = panels(3.6, columns=data.sizes["n"], sharey=True, squeeze=False)
+    for axes, n in zip(panel[0], data.n.values, strict=True):
+        draw_failures(axes, data.sel(n=n), given)
+        curves = data.where(data.curve_n == n)
+        axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
+        axes.set(title=label(n=n), xlabel="restitution coefficient $r$")
+        axes.set(xlim=(data.restitution[0], data.restitution[-1]), ylim=(0, 1))
+        # The places near the saddle-node, where the errors change fastest, get more room.
+        axes.set_yscale("function", functions=(np.sqrt, np.square))
+        ticks = [0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1]
+        axes.set_yticks(ticks, [f"{100 * tick:g} %" for tick in ticks])
+    panel[0, 0].set_ylabel("place of $\\Lambda$ between\nsaddle-node and period doubling")
+    body: Look = {"edgecolor": "black", "facecolor": "white", "linewidth": 0.6}
+    advised = number(given["advised"])
+    entries = {
+        rf"$\varpi={advised}$ is not enough: {name}": Patch(**body | look)
+        for name, look in FAILURES.values()
+    }
+    tenfold = rf"$\varpi={number(10 * given['advised'])}$ is not enough: greatest height"
+    entries[tenfold] = Patch(**body | TENFOLD)
+    entries[rf"doubled at $\varpi={advised}$"] = Patch(facecolor=DOUBLED)
+    entries["curves of the paper"] = sample(**CURVES)
+    legend_below(figure, entries, columns=2)
+    return figure
+
+
+def draw_failures(axes: Axes, data: xr.Dataset, given: Mapping) -> None:
+    """The regions of one n, and the orbits for which no answer is known, as crosses."""
+    axes.fill_between(data.restitution, 1 - data.doubled_share, 1, color=DOUBLED, linewidth=0)
+    for quantity, (_, look) in FAILURES.items():
+        of_one = data.sel(quantity=quantity)
+        fill_positive(axes, of_one.stiff_error - given["tolerance"], look)
+        if quantity == "max_height":
+            fill_positive(axes, of_one.enough_from - 10 * given["advised"], TENFOLD)
+        row, column = np.nonzero(of_one.enough_from.isnull().values)
+        axes.plot(data.restitution[row], data.place[column], "x", color="black")
+
+
+def fill_positive(axes: Axes, values: xr.DataArray, look: Look) -> None:
+    """The region of positive values over r and place, with its border."""
+    if not (values > 0).any():
+        return
+    over = values.restitution, values.place, values.transpose("place", "restitution")
+    colour = look.get("facecolor", "none")
+    top = float(values.max()) + 1
+    axes.contourf(*over, levels=[0, top], colors=colour, hatches=[look.get("hatch")])
+    axes.contour(*over, levels=[0], colors="black", linewidths=0.8)
+
+
 SCHEMATICS = ("fig01", "fig04")
 """The figures of the models, which have no dataset."""
 FIGURES: Mapping[str, Callable[..., Figure]] = {
@@ -526,6 +592,7 @@ FIGURES: Mapping[str, Callable[..., Figure]] = {
     "fig14": fig14,
     "fig15": fig15,
     "fig16": fig16,
+    "validity_map": validity_map,
 }
 
 

@@ -200,6 +200,15 @@ def unordered(limits, keys):
         yield f"{place(keys)}.min = {limits['min']}: must be less than max = {limits['max']}"
 
 
+def outside(key, parameters, limits, keys):
+    """A line if a parameter is outside of a range."""
+    if not limits["min"] <= parameters[key] <= limits["max"]:
+        yield (
+            f"{place(keys)}.{key} = {parameters[key]}: must be within {limits['min']} and "
+            f"{limits['max']}, the ends of frequency_ratio"
+        )
+
+
 def below_saddle_node(n, case, keys):
     """A line for each amplitude at which the restitution model has no n-T orbit (Eq. 7)."""
     r = case["restitution"]

@@ -19,6 +19,7 @@ SETTINGS = {
     "continuation": ["release", "largest_step"],
     "permanent_contact": ["release"],
     "error_thresholds": ["release"],
+    "validity": ["release"],
     "time_histories": ["release"],
 }
 PRINTED = {"printed": checkout("config/table1_printed.csv")}

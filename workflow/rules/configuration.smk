@@ -36,8 +36,16 @@ def crossed(parameters, keys=()):
         if isinstance(value, dict):
             yield from crossed(value, (*keys, key))
     yield from unordered(parameters, keys)
-    if "n" not in parameters:
-        return
+    for index, curve in enumerate(parameters.get("curves", [])):
+        yield from below_saddle_node(curve["n"], curve, (*keys, "curves", index))
+    if "advised" in parameters:
+        yield from outside("advised", parameters, parameters["frequency_ratio"], keys)
+    elif "n" in parameters:
+        yield from too_low(parameters, keys)
+
+
+def too_low(parameters, keys):
+    """A line for each amplitude without an orbit, of the parameters or of its cases."""
     # Branches of several families need the orbit of the highest.
     n = max(parameters["n"]) if isinstance(parameters["n"], list) else parameters["n"]
     cases = parameters.get("cases", [parameters])

@@ -132,6 +132,12 @@ REFUSED = [
     ("apparent_restitution.fig05.cases", [], "[] should be non-empty"),
     ("apparent_restitution.fig05", None, "None is not of type 'object'"),
     ("continuation.lowest_doubling", [], "[] is not of type 'object'"),
+    ("validity.validity_map.restitution.max", 1.5, "1.5 is greater than the maximum of 0.999"),
+    ("validity.validity_map.restitution.min", -0.1, "-0.1 is less than the minimum of 0.05"),
+    ("validity.validity_map.restitution.samples", 0, "0 is less than the minimum of 2"),
+    ("validity.validity_map.places", 1, "1 is less than the minimum of 2"),
+    ("validity.validity_map.n", [], "[] should be non-empty"),
+    ("validity.validity_map.tolerance", 0, "0 is less than or equal to the minimum of 0"),
 ]
 
 
@@ -211,6 +217,22 @@ def test_a_key_like_no_other_is_named_with_all_that_are_allowed():
         (
             nested("permanent_contact.fig11.frequency_ratio", {"min": 2.0, "max": 2.0}),
             "permanent_contact.fig11.frequency_ratio.min = 2.0: must be less than max = 2.0",
+        ),
+        (
+            nested("validity.validity_map.restitution", {"min": 0.9, "max": 0.1}),
+            "validity.validity_map.restitution.min = 0.9: must be less than max = 0.1",
+        ),
+        (
+            nested("validity.validity_map.advised", 20000.0),
+            "validity.validity_map.advised = 20000.0: must be within 10.0 and 10000.0, the ends of "
+            "frequency_ratio",
+        ),
+        (
+            nested(
+                "validity.validity_map.curves", [{"n": 2, "restitution": 0.1, "amplitude": 2.6}]
+            ),
+            "validity.validity_map.curves[0].amplitude = 2.6: must be at least 5.14079, the "
+            "saddle-node of the 2-T orbit at r = 0.1 (Eq. 7)",
         ),
         (
             nested("time_histories.fig07.amplitude", 0.25),

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.colors import to_rgb
+from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
 from PIL import Image
 
@@ -116,6 +117,12 @@ LABELS = {
     "fig14": [r"$\varpi_{h,1\%}=82.18$", "tolerance 1 %"],
     "fig15": ["$n=2$, $r=0.65$", "restitution", "$\\varpi=10$"],
     "fig16": [r"$\varpi_{PC,1\%}=9.812$", "printed: 6", r"restitution, $\Lambda_{CR}$"],
+    "validity_map": [
+        *(f"$n={n}$" for n in (1, 2, 3)),
+        r"$\varpi=100$ is not enough: greatest height",
+        r"$\varpi=1000$ is not enough: greatest height",
+        "curves of the paper",
+    ],
 }
 
 
@@ -128,9 +135,9 @@ def test_labels(name):
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in SCHEMATICS])
 def test_every_axis_has_a_name(name):
     for axes in of_reference(name).axes:
-        assert axes.get_ylabel()
-        # Panels with the same horizontal axis name it once, below.
-        assert axes.get_xlabel() or not drawn_tick_labels(axes.xaxis)[0].get_visible()
+        # Panels with the same axis name it once, below or on the left.
+        for axis in (axes.xaxis, axes.yaxis):
+            assert axis.get_label_text() or not drawn_tick_labels(axis)[0].get_visible()
 
 
 @pytest.mark.parametrize("name", DOMAINS)
@@ -539,3 +546,35 @@ def test_drawing_imports_neither_pyplot_nor_scipy():
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     )
     assert answer.stdout.strip() == "[]"
+
+
+# The validity map
+
+
+def test_the_regions_of_the_validity_map_hold_the_orbits_that_fail():
+    data = reference("validity_map")
+    figure = of_reference("validity_map")
+    for axes, n in zip(figure.axes, data.n, strict=True):
+        filled = [each for each in axes.collections if isinstance(each, QuadContourSet)]
+        regions = [each.get_paths()[0] for each in filled if each.filled]
+        for quantity in data.quantity:
+            error = data.stiff_error.sel(n=n, quantity=quantity)
+            orbits = error.stack(orbit=("restitution", "place"))
+            points = np.stack([orbits.restitution, orbits.place], axis=-1)
+            fails = (orbits > 0.01).values
+            inside = [region.contains_points(points, radius=1e-9) for region in regions]
+            # One of the regions has the orbits that fail by far, and none of those that do not.
+            far = (abs(orbits - 0.01) > 1e-3).values
+            assert not fails.any() or any((each == fails)[far].all() for each in inside)
+
+
+def test_an_orbit_of_the_validity_map_without_an_answer_is_a_cross():
+    data = reference("validity_map").copy(deep=True)
+    data.enough_from[1, 0, 7, 5] = np.nan
+    data.stiff_error[1, 0, 7, 5] = np.nan
+    first, *others = figures.draw("validity_map", data).axes
+    crosses = [line for line in first.lines if line.get_marker() == "x" and len(line.get_xdata())]
+    (cross,) = crosses
+    assert cross.get_xdata() == [data.restitution[7]]
+    assert cross.get_ydata() == [data.place[5]]
+    assert not any(len(line.get_xdata()) for axes in others for line in axes.lines[:-1])

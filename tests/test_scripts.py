@@ -306,3 +306,71 @@ def test_the_needed_tolerance_is_the_least_norm_of_the_defects(n, ratio):
         # What it neglects is smaller by the distance from the saddle-node.
         assert needed == pytest.approx(norm, rel=below)
     assert READINGS.needed_tolerance(n, ratio, zeta, node, node[0] + 1e-3) == 0
+
+
+# Where a frequency ratio is enough
+
+
+MAP = CONFIG["validity"]["validity_map"]
+
+
+def few(**changed):
+    """Parameters of the validity map with few orbits."""
+    small = {"restitution": {"min": 0.05, "max": 0.95, "samples": 7}, "places": 6}
+    return MAP | small | changed
+
+
+def test_the_curves_of_the_validity_map_are_those_of_the_figures_along_the_frequency_ratio():
+    given = CONFIG["apparent_restitution"]
+    cases = [(name, case) for name in ("fig05", "fig06") for case in given[name]["cases"]]
+    expected = [{"n": given[name]["n"]} | case for name, case in cases]
+    fig10 = given["fig10"]
+    shared = {"n": fig10["n"], "restitution": fig10["restitution"]}
+    expected += [shared | {"amplitude": amplitude} for amplitude in fig10["amplitude"]]
+    assert [curve for curve in expected if curve not in MAP["curves"]] == []
+    assert [curve for curve in MAP["curves"] if curve not in expected] == []
+
+
+def test_the_shares_of_the_validity_map_are_those_of_its_errors():
+    data = module("validity").validity_map(few(), "displacement")
+    share = module("validity").positive_share
+    # Positive from 0 to 0.25 and from 0.75 on.
+    place = np.array([0.0, 0.5, 1.0])
+    assert share(np.array([1.0, -1.0, 1.0]), place) == pytest.approx(0.5)
+    assert share(np.array([0.0, 0.0, 1.0]), place) == pytest.approx(0.5)
+    assert np.isnan(share(np.array([0.0, np.nan, 1.0]), place))
+    fails = (data.stiff_error > 0.01).any("place")
+    assert ((data.failing_share > 0) == fails).all()
+    # At the advised ratio or above an error exceeds the tolerance if more than it is needed.
+    clear = abs(data.stiff_error - 0.01) > 1e-6
+    assert ((data.stiff_error > 0.01) == (data.enough_from > 100)).where(clear, True).all()
+    assert (data.not_reached == 0).all()
+
+
+def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
+    given = few(frequency_ratio={"min": 10.0, "max": 1000.0, "samples": 21})
+    data = module("validity").validity_map(given, "displacement")
+    absent = data.enough_from.isnull().sum(["restitution", "place"])
+    assert (data.not_reached == absent).all()
+    # The height of the 1-T orbits beside their saddle-nodes, at small r.
+    assert int(data.not_reached.sel(quantity="max_height", n=1)) > 0
+    assert float(data.enough_from.sel(n=3).max()) < 1000
+
+
+def test_the_doubled_orbits_are_those_beyond_the_period_doubling_of_the_contact():
+    given = few(n=[2], restitution={"min": 0.2, "max": 0.8, "samples": 2})
+    data = module("validity").validity_map(given, "displacement")
+    for r in data.restitution.values:
+        zeta = independent.restitution_to_damping(r)
+        half = np.pi / 100 / np.sqrt(1 - zeta**2)
+
+        def turn(duration, zeta=zeta):
+            return independent.test_functions(2, 100.0, zeta, "displacement", duration)[1]
+
+        durations = independent.roots(turn, half * np.linspace(0.97, 1.03, 601))
+        orbits = [independent.orbit(2, 100.0, zeta, "displacement", each) for each in durations]
+        (doubling,) = (y[0] for y in orbits if 0 < y[1] < np.pi / 2 and y[2] < 0)
+        x = 2 * np.pi * (1 - r) / (1 + r)
+        last = np.hypot(x, 2 * (1 + r**2) / (1 + r) ** 2)
+        share = float(data.doubled_share.sel(n=2, restitution=r))
+        assert share == pytest.approx((last - doubling) / (last - x), abs=1e-8)

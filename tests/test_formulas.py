@@ -251,7 +251,7 @@ def time_origin(p):
 
 def periodic_time(p):
     """τ₂ = τ_i + 2πn."""
-    end = p.family.release(p.y)
+    end = p.family.contact_end(p.y)
     return [p.family.period, end.duration + end.flight], [2 * np.pi * p.n] * 2
 
 
@@ -273,7 +273,7 @@ def contact_begins_with_the_impact(p):
 def contact_ends_at_the_table(p):
     """z_c(τ_b) = Λ sin(τ_b + φ)."""
     table = p.y[0] * np.sin(p.duration + p.y[1])
-    end = p.family.release(p.y)
+    end = p.family.contact_end(p.y)
     return [end.table_height + end.gap, end.table_height], [p.contact_height(p.duration), table]
 
 
@@ -314,7 +314,7 @@ def relative_equation(p):
     def acceleration(w, w_rate, displacement, velocity):
         return -1 + w - 2 * p.zeta * p.ratio * velocity - p.ratio**2 * displacement
 
-    return p.family.release(p.y).gap_velocity - p.start[2], gained(p, acceleration)
+    return p.family.contact_end(p.y).gap_velocity - p.start[2], gained(p, acceleration)
 
 
 def steady_motion(p, sine, cosine):

@@ -65,7 +65,7 @@ def test_an_orbit_and_all_that_is_said_of_it(seed):
     found = family.observables(y)
     returns = abs(cycle.time - 2 * np.pi * one.n) < 1e-6
     assert found["admissible"] == returns == (family.clearance(y) > 0)
-    end = family.release(y)
+    end = family.contact_end(y)
     assert end.velocity == pytest.approx(family.bounce_velocity(y))
     if cycle.contact.duration != pytest.approx(angle / one.ratio, rel=1e-6):
         return

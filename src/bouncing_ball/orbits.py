@@ -17,7 +17,7 @@ from bouncing_ball.spring_damper import Contact
 
 
 @dataclass(frozen=True)
-class Release:
+class ContactEnd:
     """The end of a contact: its duration and that of the flight, height and velocity of the table,
     the relative motion δ, δ′ and δ″ before it, and the velocity z′_b of the ball (Eq. 24).
     """
@@ -56,14 +56,14 @@ class Family:
         x = amplitude * np.cos(phase)
         return x, amplitude * np.sin(phase), velocity - x
 
-    def release(self, y: NDArray) -> Release:
+    def contact_end(self, y: NDArray) -> ContactEnd:
         """The end of the contact."""
         x, lift, u = self.start(y)
         duration = y[3] / self.contact.frequency_ratio
         cosine = np.cos(duration)
         sine = np.sin(duration)
         gap, gap_velocity, gap_acceleration = self.contact.motion(duration, u, x, lift)
-        return Release(
+        return ContactEnd(
             duration=duration,
             flight=self.period - duration,
             table_height=x * sine + lift * cosine,
@@ -82,7 +82,7 @@ class Family:
         also where the flight vanishes and the orbit becomes permanent contact.
         """
         x, lift, _ = self.start(y)
-        end = self.release(y)
+        end = self.contact_end(y)
         lag = self.contact.lag
         flight = end.flight
         # (w_b - w_i)/L, where the phases of the table differ by -L up to whole turns.
@@ -110,7 +110,7 @@ class Family:
     def jacobian(self, y: NDArray) -> NDArray:
         """Derivatives of the defects by the four numbers of an orbit, shape (3, 4, ...)."""
         x, lift, _ = self.start(y)
-        end = self.release(y)
+        end = self.contact_end(y)
         lag = self.contact.lag
         ratio = self.contact.frequency_ratio
         flight = end.flight
@@ -172,7 +172,7 @@ class Family:
         the condition of landing.
         """
         x, lift, u = self.start(y)
-        end = self.release(y)
+        end = self.contact_end(y)
         lag = self.contact.lag
         by_gap, by_gap_velocity = self.linearised_contact(y)
         columns = []
@@ -215,7 +215,7 @@ class Family:
         period, and whether it is in contact (Eqs. 12-15).
         """
         x, lift, u = self.start(y)
-        end = self.release(y)
+        end = self.contact_end(y)
         touching = s <= end.duration
         gap, gap_velocity, _ = self.contact.motion(np.minimum(s, end.duration), u, x, lift)
         since = s - end.duration
@@ -231,18 +231,18 @@ class Family:
 
     def bounce_velocity(self, y: NDArray) -> NDArray:
         """Velocity z′_b of the ball at the end of the contact (Eq. 24)."""
-        return self.release(y).velocity
+        return self.contact_end(y).velocity
 
     def apparent_restitution(self, y: NDArray) -> NDArray:
         """The apparent restitution coefficient r_a = -δ′_b/δ′_i (Eq. 17)."""
         _, _, u = self.start(y)
-        return -self.release(y).gap_velocity / u
+        return -self.contact_end(y).gap_velocity / u
 
     def summit(self, y: NDArray) -> NDArray:
         """Greatest height of the flight, which is at one of its ends if the ball falls, or rises,
         throughout.
         """
-        end = self.release(y)
+        end = self.contact_end(y)
         rise = np.clip(end.velocity, 0, end.flight)
         return end.table_height + end.gap + end.velocity * rise - rise**2 / 2
 
@@ -280,7 +280,7 @@ class Family:
         negative and δ + κδ′ must rise. The smallest of these numbers is returned.
         """
         x, lift, u = self.start(y)
-        end = self.release(y)
+        end = self.contact_end(y)
         lag = self.contact.lag
 
         def in_contact(part):

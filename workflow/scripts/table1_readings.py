@@ -31,7 +31,7 @@ def high_bounce_doubling(family: Family, y: np.ndarray) -> np.ndarray:
     Eq. 25, so that L changes by -L/z′_i times the change of z′_b.
     """
     x, lift, _ = family.start(y)
-    end = family.release(y)
+    end = family.contact_end(y)
     by_gap, by_rate = family.linearised_contact(y)
     rows = []
     for phase, change in ((1, (-lift, x, lift)), (0, (0 * x, 0 * x, 1 + 0 * x))):

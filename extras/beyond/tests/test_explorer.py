@@ -18,8 +18,8 @@ from studies.explorer import BOUND, page
 
 BEYOND = Path(__file__).resolve().parents[1]
 SCENES = json.loads((BEYOND / "workflow/explorer/scenes.json").read_text(encoding="utf-8"))
-BROWSERS = [shutil.which(name) for name in ("chromium", "chromium-browser", "google-chrome")]
-BROWSER = next(filter(None, BROWSERS), None)
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
 
 SCREENS = {"desk": (1280, 900), "telephone": (390, 844)}
 """Width and height in CSS pixels."""
@@ -84,7 +84,7 @@ def made():
 def seen(made, tmp_path_factory):
     """What one run of the browser shows, by the screen and the address."""
     if BROWSER is None:
-        pytest.skip("no browser")
+        pytest.skip(f"no browser: {', '.join(BROWSERS)}")
     folder = tmp_path_factory.mktemp("explorer")
     (folder / "right.html").write_text(made, encoding="utf-8")
     wrong = made.replace('"max_height", "trace"', '"trace", "max_height"', 1)

@@ -269,6 +269,37 @@ def test_a_limit_that_is_missing_has_a_reason():
     assert "vanishing flight at amplitude = 1.0917875" in str(strongly_damped)
 
 
+@pytest.mark.parametrize(
+    ("ratio", "zeta", "n", "amplitude"),
+    [
+        (13.091781257915382, 0.969992782352811, 1, 3.62704266),
+        (6.658720312501095, 1.3152452408927156, 3, 9.36625404),
+    ],
+)
+def test_the_doubling_of_strongly_damped_contacts_is_that_of_an_integrated_ball(
+    ratio, zeta, n, amplitude
+):
+    """Newton's method alone finds other solutions first, on which the ball never leaves."""
+    ball = SpringDamper(ratio, damping_ratio=zeta)
+    doubling = limits(ball, n=n).period_doubling
+    assert doubling.amplitude == pytest.approx(amplitude, abs=1e-8)
+    assert doubling.admissible
+    step = 1e-4
+    shifts = np.array([(step, 0.0), (0.0, step)])
+    ends = [[around(doubling, side * shift)[0] for side in (1, -1)] for shift in shifts]
+    matrix = np.array([(above - below) / (2 * step) for above, below in ends]).T
+    assert np.linalg.eigvals(matrix).min() == pytest.approx(-1, abs=1e-6)
+
+
+def test_a_branch_of_long_and_stiff_contacts_is_followed_in_few_steps():
+    """T = ϖD grows to hundreds, and counts relatively."""
+    start = orbit(SpringDamper(80.0, damping_ratio=1.2), amplitude=4.0)
+    branch = follow(start, to=(0.5, 20.0))
+    assert branch.end == "amplitude = 20 is reached"
+    assert branch.values[0] == pytest.approx(1.0003, abs=1e-4)
+    assert len(branch) < 200
+
+
 def test_a_doubled_branch_ends_where_it_is_told_to():
     doubling = first_doubling(Rigid(0.5), 1.4)
     for beyond in (1e-8, 1e-5, 1e-2):
@@ -564,6 +595,10 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
         (lambda: follow(start, to=2.0, points=0), "points = 0: must be a whole number from 2"),
         (lambda: cascade([doubling], to=[1.8, 1.9]), "to: has 2 values for 1 orbits"),
         (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
+        (
+            lambda: follow(orbit(SpringDamper(9.0, 0.5), amplitude=1.3), along="damping_ratio"),
+            "along = 'damping_ratio': the ball is given by frequency_ratio and restitution; start",
+        ),
     ):
         with pytest.raises(ValueError, match=text) as raised:
             call()

@@ -199,6 +199,13 @@ def test_the_list_of_orbits_with_one_impact_is_complete(ball, amplitude, n):
     assert distance.min(axis=0).max() < 1e-6
 
 
+@pytest.mark.parametrize(("impacts", "periods"), [(1, 1), (2, 1), (3, 1)])
+@pytest.mark.parametrize("ball", [Rigid(0.5), SpringDamper(20.0, 0.5)])
+def test_where_there_are_no_orbits_the_list_is_empty(ball, impacts, periods):
+    """Below the saddle-node at Λ = π/3, the ball comes to rest on the table."""
+    assert orbits(ball, impacts=impacts, periods=periods, amplitude=0.5) == []
+
+
 def test_orbits_with_several_impacts_are_found_by_their_number():
     found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
     heights = [(round(each.max_height, 3), each.stable) for each in found]

@@ -53,6 +53,11 @@ TURN = 0.3
 BEFORE_END = 1e-3
 """The share of a step to an end of a branch that is left to the end in a point before it."""
 
+SHARES = (0.5, 0.9, 0.2, 2.0, 4.0)
+AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
+"""Where `limits` looks for an orbit: in shares of the range between the saddle-node and the period
+doubling of instants, and then at multiples of nπ, the saddle-node of instants with r = 0."""
+
 NEAREST = 1e-9
 """Relative distance from a period doubling below which doubled orbits are not told apart.
 
@@ -433,7 +438,7 @@ def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]
             end = ": ".join(filter(None, [end, KINDS[last.orbit.kind].end]))
         elif end in KINDS:
             # Newton's method does not find it, but it is between the last two points.
-            near = z[np.flatnonzero(crossings.row == i)[-1], -1]
+            near = orbits[-1, -1]
             end = f"{end} near {name} = {near:.4g}: {KINDS[end].end}"
             orbits = orbits[:-1]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
@@ -964,23 +969,39 @@ def _limit(special, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """An orbit with one impact for each row, if possible between the limits of instants."""
+    """An orbit with one impact for each row, if possible between the limits of instants.
+
+    It is stable, and a ball follows it, wherever such an orbit is found at one of the amplitudes.
+    Newton's method may lead to another branch instead, such as one on which the ball never leaves;
+    then all orbits are searched for.
+    """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
     fold = np.pi * n * (1 - r) / (1 + r)
+    amplitudes = [np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2) for share in SHARES]
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
-    for share in (0.5, 0.9, 0.2, 2.0, 4.0):
-        left = [i for i, each in enumerate(found) if isinstance(each, OrbitNotFound)]
-        if not left:
-            break
+    steady = np.zeros(len(n), bool)
+
+    def keep(row, orbits):
+        followed = [each for each in orbits if each.admissible and each.stable]
+        steady[row] = bool(followed)
+        if orbits and (followed or isinstance(found[row], OrbitNotFound)):
+            found[row] = (followed or orbits)[0]
+
+    for amplitude in amplitudes:
+        left = np.flatnonzero(~steady)
+        if not left.size:
+            return found
         rows = equations.rows(left)
-        amplitude = np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2)[left]
-        z, good = near_instants(rows, amplitude, 1)
-        for i, row in enumerate(z):
-            found[left[i]] = PeriodicOrbit(single(rows, i), row) if good[i] else found[left[i]]
-        others = [i for i in range(len(left)) if not good[i]]
-        searched = shortest_contacts(rows.rows(others), amplitude[others], 1)
-        for i, orbits in zip(others, searched, strict=True):
-            found[left[i]] = orbits[0] if orbits else found[left[i]]
+        z, good = near_instants(rows, amplitude[left], 1)
+        for i, row in enumerate(left):
+            keep(row, [PeriodicOrbit(single(rows, i), z[i])] if good[i] else [])
+    for amplitude in [*amplitudes, *(times * np.pi * n for times in AROUND)]:
+        left = np.flatnonzero(~steady)
+        if not left.size:
+            return found
+        searched = shortest_contacts(equations.rows(left), amplitude[left], 1)
+        for row, orbits in zip(left, searched, strict=True):
+            keep(row, orbits)
     return found

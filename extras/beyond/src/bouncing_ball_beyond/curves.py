@@ -272,8 +272,8 @@ def special_curve(
     along : tuple of two names or paths
         As for `follow`.
     ranges : mapping of names to (low, high), optional
-        Where the curve ends; without one at the limits of the parameter, for which a large value is
-        ten times that of the start, and at least 10.
+        Where the curve ends; by default at a tenth and at ten times the value of the start, or at
+        10 if that is more, within the limits of the parameter.
     points : int
         The largest number of orbits in each direction.
 
@@ -364,7 +364,7 @@ def _limits(equations, z, special, ranges) -> NDArray:
     ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
         least, greatest = path.limits(special.ball, special.amplitude)
-        usual = least, min(greatest, max(10.0, 10 * value))
+        usual = max(least, value / 10), min(greatest, max(10.0, 10 * value))
         low, high = wanted.pop(path.name, usual)
         if not max(low, least) <= value <= min(high, greatest):
             raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")

@@ -23,6 +23,9 @@ FAR = 10.0
 ROUNDING = 4 * np.finfo(float).eps
 """Rounding errors of the equations, relative to their largest terms."""
 
+VANISHED = 1e-12
+"""A flight that is no longer than this is none: its times are some thousand roundings."""
+
 DENSE = 16
 """Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
 
@@ -68,7 +71,7 @@ class Flights(NamedTuple):
         phases = np.stack([level, np.pi - level], axis=-1)
         first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
         times = first[..., np.newaxis] + 2 * np.pi * np.arange(turns)
-        times = times.reshape(*self.leaves.shape, -1)
+        times = times.reshape(*self.leaves.shape, 2 * turns)
         return np.minimum(times, self.flight[..., np.newaxis])
 
 

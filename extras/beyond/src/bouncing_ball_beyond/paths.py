@@ -183,6 +183,11 @@ def path_of(along: str | Path, ball: Ball) -> Path:
     if not isinstance(along, str):
         return along
     allowed = ["amplitude", "frequency", *ball.parameters]
+    if along in vars(ball) and along not in allowed:
+        raise ValueError(
+            f"along = {along!r}: the ball is given by {' and '.join(ball.parameters)}; start from"
+            f" the orbit of a ball that is given by its {along}"
+        )
     if along not in allowed:
         raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)} or a path")
     return Frequency() if along == "frequency" else Parameter(along)

@@ -19,7 +19,7 @@ from bouncing_ball_beyond.balls import (
     checked,
     whole_number,
 )
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, product_of
+from bouncing_ball_beyond.equations import VANISHED, Linear, OrbitEquations, newton, product_of
 
 TOGETHER = 16
 """Rows whose orbits are searched for at a time, with 3072 impacts each."""
@@ -410,7 +410,7 @@ def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> t
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = _first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
-    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
+    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
     return z, good
 
 

@@ -5,6 +5,7 @@ The answer compares the restitution model with the contact, exactly and by the e
 Units are read by pint. A plain number is in SI units.
 """
 
+import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -57,6 +58,8 @@ def in_si(name: str, value: float | str | None, unit: str) -> float:
 def _quantity(text: str, unit: str) -> pint.Quantity:
     if "," in text:
         raise ValueError("a comma may be a decimal point or separate thousands")
+    # Data sheets write kg/m3, g/cm3 and m/s2.
+    text = re.sub(r"\b([a-zµ]?m|s)([23])\b", r"\1**\2", text)
     quantity: pint.Quantity = UNITS.Quantity(text)
     if quantity.units == UNITS.dimensionless:
         quantity = quantity.m * UNITS.Unit(unit)

@@ -7,11 +7,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, dense, newton, solved_or_nan
+from bouncing_ball_beyond.equations import (
+    Linear,
+    OrbitEquations,
+    dense,
+    newton,
+    solved_or_nan,
+)
 
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
 contacts that last for many periods, and seldom back."""
+
+
+LASTING = 4 * np.pi
+"""The T from which on its changes count relatively: two free oscillations."""
 
 
 class Kind(NamedTuple):
@@ -79,8 +89,14 @@ def kind_named(name: str) -> str:
 
 
 def scales(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Units of the unknowns in which steps are measured, shape (rows, N)."""
+    """Units of the unknowns in which steps are measured, shape (rows, N).
+
+    Changes of T count relatively where a contact lasts for many free oscillations.
+    """
     units = np.full(z.shape, np.sqrt(equations.impacts))
+    if equations.ball.lasts:
+        lasts = np.s_[:, 2 : equations.size : 3]
+        units[lasts] *= np.maximum(np.abs(z[lasts]) / LASTING, 1.0)
     units[:, equations.size :] = np.maximum(np.abs(z[:, equations.size :]), 1e-2)
     return units
 

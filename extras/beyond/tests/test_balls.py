@@ -12,9 +12,10 @@ from bouncing_ball_beyond.balls import (
     Rigid,
     SpringDamper,
     damping_of,
-    in_contact,
 )
 from bouncing_ball_beyond.one_ball import PATIENCE
+from bouncing_ball_beyond.oscillator import motion
+from bouncing_ball_beyond.tables import SINE
 
 RELEASES = ["displacement", "force"]
 # Errors of the integrator, whose tolerance is 1e-13, over some tens of steps.
@@ -164,6 +165,11 @@ def sixty_digits(s, tau, gap, u, amplitude, gravity, ratio, zeta):
     position = envelope * (c * cos + d * sin) + rest + end.imag
     falling = (omega * d - decay * c) * cos - (omega * c + decay * d) * sin
     return [mpmath.re(position), mpmath.re(envelope * falling) + end.real]
+
+
+def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
+    """δ and δ′ of the linear contact on the sine."""
+    return motion(s, gap, u, SINE, SINE.waves(tau, amplitude), gravity, ratio, zeta)
 
 
 DELICATE = [

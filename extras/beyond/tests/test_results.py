@@ -223,7 +223,8 @@ def test_a_wide_range_has_a_logarithmic_axis():
 
 def test_a_legend_has_the_colours_of_curves_and_a_curve_to_zero_is_not_logarithmic(rigid):
     kinds = "period doubling", "saddle-node"
-    curves = [special_curve(rigid.first(kind)) for kind in kinds]
+    ranges = {"amplitude": (1e-12, 10.0), "restitution": (0.0, 1.0)}
+    curves = [special_curve(rigid.first(kind), ranges=ranges) for kind in kinds]
     assert min(curve.z[:, -2].min() for curve in curves) < 1e-9
     figure = plot(*curves)
     axes = figure.axes[0]

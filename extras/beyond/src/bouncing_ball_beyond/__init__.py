@@ -54,6 +54,7 @@ _MODULES = {
     "orbit": "periodic",
     "orbit_near": "periodic",
     "orbits": "periodic",
+    "Table": "tables",
     "ParameterPath": "paths",
     "SpecialCurve": "curves",
     "special_curve": "curves",

@@ -1,10 +1,10 @@
 """What an impact does: a restitution coefficient, a spring with a damper, or an instant.
 
-The table is at Λ sin τ, and δ is the gap between ball and table. An impact starts at the time τ
-with the closing speed u = -δ′. After the duration D it leaves the ball at a gap δ with the relative
-speed w = δ′. All of this is analytic in all arguments and parameters, so that a complex step
-gives derivatives with all digits: if x has the imaginary part H = 1e-30, then f(x) has the
-imaginary part H f′(x).
+The table is at ΛW(τ), where W is sin τ if no other waveform is given, and δ is the gap between ball
+and table. An impact starts at the time τ with the closing speed u = -δ′. After the duration D it
+leaves the ball at a gap δ with the relative speed w = δ′. All of this is analytic in all arguments
+and parameters, so that a complex step gives derivatives with all digits: if x has the imaginary
+part H = 1e-30, then f(x) has the imaginary part H f′(x).
 """
 
 from collections.abc import Callable
@@ -13,8 +13,9 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond import one_ball
+from bouncing_ball_beyond import one_ball, oscillator
 from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
+from bouncing_ball_beyond.tables import SINE
 
 H = 1e-30
 """The imaginary part of a complex step."""
@@ -22,21 +23,6 @@ H = 1e-30
 FEW = 40
 """Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
 scalar ones."""
-
-UNDERDAMPED = 0.99
-"""Contacts with a larger ζ have no closed form here."""
-
-DELICATE = 0.25
-"""Nor have those whose |ϖ² - 1 + 2iζϖ| is below this, where terms of the closed form cancel."""
-
-flights = one_ball.flight_by(np)
-"""The motion in flight, for arrays."""
-
-contacts = one_ball.contact_by(np)
-"""The motion in contact, for arrays."""
-
-bounds = one_ball.bounds_by(np)
-"""The bounds of the search for a release, for arrays."""
 
 
 class Impact(NamedTuple):
@@ -58,7 +44,7 @@ class Signature(NamedTuple):
     ``restitution`` and ``duration`` are r and D of a free impact, without a load. ``centroid`` is
     t_c, the time from its start to the centroid of the force. ``loss`` is σ, the derivative of the
     impulse with respect to a constant load, at a fixed closing speed at the centroid. Seen from
-    outside, an impact under the load a = 1 - Λ sin τ is an instant, t_c after its start, at
+    outside, an impact under the load a = 1 + w″ is an instant, t_c after its start, at
     which the ball gets the relative speed r v + σ a.
     """
 
@@ -72,6 +58,13 @@ class Ball:
     """What all balls have. A ball that is only compared by its signature needs no `contact`."""
 
     lasts: ClassVar[bool] = False
+    """Whether contacts have a duration."""
+
+    sinks: ClassVar[bool] = False
+    """Whether impacts are instants below the level of the table, which stand for contacts."""
+
+    simple: ClassVar[bool] = False
+    """Whether its impacts are those of a restitution coefficient that is a number."""
 
     @property
     def parameters(self):
@@ -120,14 +113,26 @@ class Ball:
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
+    def left(self, u):
+        """How long a contact would last after the instant that stands for it; 0 for others."""
+        return 0.0 * u
+
+    def has_closed_form(self, table=SINE):
+        """Whether releases of its contacts are found by the closed form of a linear contact."""
+        return False
+
+    def looped(self, table):
+        """r, ϖ and ζ, with which :func:`.one_ball.impacts` follows it; None if it does not."""
+        return None
+
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None, table=SINE):
         """T of impacts: 0 for impacts without a duration.
 
         Contacts that last longer than a number of periods of the table may be left out, as NaN.
         """
         return 0.0 * (tau + u + amplitude)
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0) -> Impact:
+    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
@@ -135,10 +140,30 @@ class Ball:
         """What free impacts of the closing speed u are, as seen from outside."""
         raise NotImplementedError
 
-    def first_impact(self, tau, u, amplitude, gravity=1.0):
+    def first_impact(self, tau, u, amplitude, gravity=1.0, table=SINE):
         """T of the first release, and the impact up to it."""
-        T = self.first_release(tau, u, amplitude, gravity)
-        return T, self.contact(tau, u, T, amplitude, gravity)
+        T = self.first_release(tau, u, amplitude, gravity, table=table)
+        return T, self.contact(tau, u, T, amplitude, gravity, table)
+
+    def leaves(self, tau, u, amplitude, table=SINE):
+        """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
+        T, (duration, gap, speed, _) = self.first_impact(tau, u, amplitude, table=table)
+        if np.any(self.kappa):
+            # The release is a zero of δ + κδ′, but for rounding.
+            gap = -self.kappa * speed
+        return T, np.where(np.isnan(T), np.inf, duration), gap, speed
+
+    def at_ratio(self, n=1):
+        """The function from ϖ, or from a number in its place, to the ball.
+
+        Raises
+        ------
+        ValueError
+            If impacts have no duration.
+        """
+        raise ValueError(
+            f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw or a function to one"
+        )
 
 
 def brief(value):
@@ -237,10 +262,19 @@ class Rigid(Ball):
             )
         return {}
 
+    @property
+    def simple(self):
+        """Whether r is a number."""
+        return not callable(self.restitution)
+
+    def looped(self, table):
+        """r alone."""
+        return (self.restitution, 0.0, 0.0) if self.simple and table.compiled else None
+
     def _restitution(self, u):
         return self.restitution(u) if callable(self.restitution) else self.restitution
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0):
+    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
         """The impact at the time τ with the speed u."""
         nothing = 0.0 * (tau + u + amplitude)
         return Impact(nothing, nothing, self._restitution(u) * u + nothing, None)
@@ -255,126 +289,6 @@ def damping_of(restitution):
     """ζ = -ln r/√(π² + ln² r), with which free contacts that end at δ = 0 have r (Eq. 16)."""
     log = np.log(restitution)
     return -log / np.sqrt(np.pi**2 + log * log)
-
-
-def table_at(phase, amplitude):
-    """Λ cos τ and Λ sin τ, the velocity and the height of the table, by one tangent."""
-    half = np.tan(phase / 2)
-    sine = 2 * half / (1 + half * half)
-    return amplitude * (1 - half * sine), amplitude * sine
-
-
-def sin_cos(x):
-    """Sine and cosine, which numpy finds faster for many real numbers by the tangent of x/2."""
-    if np.iscomplexobj(x) or np.size(x) < 200:
-        return np.sin(x), np.cos(x)
-    half = np.tan(x / 2)
-    sin = 2 * half / (1 + half * half)
-    return sin, 1 - half * sin
-
-
-def in_contact(s, tau, gap, u, amplitude, gravity, ratio, zeta):
-    """δ and δ′ a time s after an impact has started at the time τ, from δ = gap and δ′ = -u.
-
-    They solve δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin(τ + s), Eq. 11.
-    """
-    near = s * s * ((ratio - 1) * (ratio - 1) + zeta * zeta)
-    critical = s * s * ratio * ratio * (1 - zeta * zeta)
-    delicate = (np.abs(near) < 1) | (np.abs(critical) < 1)
-    given = s, tau, gap, u, amplitude, gravity, ratio, zeta
-    if not np.any(delicate):
-        return _closed_form(*given)
-    if np.all(delicate):
-        return _doubled(*given)
-    given = np.broadcast_arrays(*given)
-    delicate = np.broadcast_to(delicate, given[0].shape)
-    with np.errstate(all="ignore"):  # of the closed form where it is not used
-        position, rate = (np.asarray(each) for each in _closed_form(*given))
-    position[delicate], rate[delicate] = _doubled(*(each[delicate] for each in given))
-    return position[()], rate[()]
-
-
-def _closed_form(s, tau, gap, u, amplitude, gravity, ratio, zeta):
-    """Eqs. 12 and 13: a decaying oscillation about a steady one, a sin(τ + s) + b cos(τ + s)."""
-    stiffness = ratio * ratio
-    decay = zeta * ratio
-    scale = amplitude / ((stiffness - 1) * (stiffness - 1) + 4 * decay * decay)
-    a = scale * (stiffness - 1)
-    b = -2 * scale * decay
-    rest = -gravity / stiffness
-    sin_start, cos_start = sin_cos(tau)
-    sin_end, cos_end = sin_cos(tau + s)
-    c = gap - rest - a * sin_start - b * cos_start
-    d = -u - a * cos_start + b * sin_start + decay * c
-    cosine, sine = _decaying(s, ratio, zeta)
-    position = c * cosine + d * sine
-    rate = (d - decay * c) * cosine - (stiffness * (1 - zeta * zeta) * c + decay * d) * sine
-    return position + rest + a * sin_end + b * cos_end, rate + a * cos_end - b * sin_end
-
-
-def _decaying(s, ratio, zeta):
-    """e^{-ζϖs} cos ωs and e^{-ζϖs} sin(ωs)/ω with ω = ϖ√(1 - ζ²), which is imaginary for ζ > 1."""
-    over = np.real(zeta) > 1
-    square = (1 - zeta) * (1 + zeta)
-    omega = ratio * np.sqrt(np.where(over, 0.75, square))
-    envelope = np.exp(-np.where(over, 0.5, zeta) * ratio * s)
-    sin, cos = sin_cos(omega * s)
-    cosine = envelope * cos
-    sine = envelope * sin / omega
-    if not np.any(over):
-        return cosine, sine
-    root = np.sqrt(np.where(over, -square, 0.75))
-    slow = np.exp(-ratio * s / (zeta + root))
-    fast = np.exp(-ratio * s * (zeta + root))
-    cosine = np.where(over, (slow + fast) / 2, cosine)
-    return cosine, np.where(over, (slow - fast) / (2 * ratio * root), sine)
-
-
-def _doubled(s, tau, gap, u, amplitude, gravity, ratio, zeta):
-    """δ and δ′ by :func:`_by_doubling`."""
-    x = amplitude * np.cos(tau)
-    y = amplitude * np.sin(tau)
-    return _by_doubling(s, gap, u, x, y, gravity, ratio, zeta)[:2]
-
-
-def _by_doubling(s, gap, u, x, y, gravity, ratio, zeta):
-    """As :func:`.one_ball.contact_by`, by a Taylor series over s/2^m and m doublings.
-
-    Nothing is divided by, so that values and derivatives keep all digits where terms of the closed
-    form cancel: near the resonance ϖ = 1, ζ = 0, near ζ = 1, and in short contacts. The responses
-    are g to an impulse, G to a constant force, S to sin s and C to cos s, of a ball at rest::
-
-        g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = C,    C′ = g - S
-    """
-    loss = 2 * zeta * ratio
-    stiffness = ratio * ratio
-
-    def rates(g, rate, load, sine, cosine):
-        return np.array([rate, -loss * rate - stiffness * g, g, cosine, g - sine])
-
-    size = np.max(np.abs(s) * (1 + ratio.real * (1 + 2 * zeta.real)))
-    doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
-    part = (s + 0 * loss) / 2.0**doublings
-    nothing = 0 * part
-    term = np.array([nothing, 1 + nothing, nothing, nothing, nothing])
-    responses = term.copy()
-    for k in range(1, 21):
-        term = part / k * rates(*term)
-        responses += term
-    g, rate, load, sine, cosine = responses
-    for _ in range(doublings):
-        held = rate + loss * g
-        a = held + np.cos(part)
-        b = g + np.sin(part)
-        load = (1 + held) * load + g * g
-        sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
-        g, rate = g * (held + rate), rate * rate - stiffness * g * g
-        part = 2 * part
-    position = gap * (rate + loss * g) - u * g - gravity * load + y * cosine + x * sine
-    speed = -gap * stiffness * g - u * rate - gravity * g + y * (g - sine) + x * cosine
-    sin = np.sin(s)
-    cos = np.cos(s)
-    return position, speed, y * cos + x * sin, x * cos - y * sin
 
 
 def _arc_over_root(zeta):
@@ -468,12 +382,13 @@ class SpringDamper(Ball):
         """ϖ is proportional to 1/Ω."""
         return {"frequency_ratio": -1.0}
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0):
+    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
         """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""
         ratio = self.frequency_ratio
         duration = T / ratio
-        given = tau, self.start(u), u, amplitude, gravity, ratio, self.zeta
-        gap, speed = in_contact(duration, *given)
+        waves = table.waves(tau, amplitude)
+        given = self.start(u), u, table, waves, gravity, ratio, self.zeta
+        gap, speed = oscillator.motion(duration, *given)
         return Impact(duration + 0 * gap, gap, speed, ratio * (gap + self.kappa * speed))
 
     def free(self, u):
@@ -493,7 +408,28 @@ class SpringDamper(Ball):
         loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
         return Signature(r, duration, r * through / (1 + r), loss)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None):
+    def has_closed_form(self, table=SINE):
+        """Whether ζ is below :data:`.oscillator.UNDERDAMPED`, and ϖ away from the resonances."""
+        near = oscillator.resonates(self.frequency_ratio, self.zeta, table.orders)
+        return bool(np.all((self.zeta <= oscillator.UNDERDAMPED) & ~near))
+
+    def looped(self, table):
+        """ϖ and ζ of contacts with a closed form."""
+        if table.compiled and self.has_closed_form():
+            return 0.0, self.frequency_ratio, self.zeta
+        return None
+
+    def leaves(self, tau, u, amplitude, table=SINE):
+        """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
+        duration, speed = releases(self, tau, u, amplitude, table)
+        T = np.where(duration < np.inf, duration * self.frequency_ratio, np.nan)
+        return T, duration, -self.kappa * speed, speed
+
+    def at_ratio(self, n=1):
+        """The function from ϖ to the ball."""
+        return lambda ratio: self.at(frequency_ratio=ratio)
+
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None, table=SINE):
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
         It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.
@@ -508,23 +444,9 @@ class SpringDamper(Ball):
         every = np.broadcast_arrays(tau, u, amplitude, *parameters.values())
         flat = [each.ravel() for each in every]
         ball = self.at(**dict(zip(parameters, flat[3:], strict=True)))
-        duration, _ = releases(ball, *flat[:3])
+        duration, _ = releases(ball, *flat[:3], table)
         duration = duration.reshape(every[0].shape)
         return np.where(duration < np.inf, self.frequency_ratio * duration, np.nan)
-
-
-def has_closed_form(ball):
-    """Whether :func:`.one_ball.impacts` follows the contacts of a ball."""
-    if not isinstance(ball, SpringDamper):
-        return False
-    return bool(np.all((ball.zeta <= UNDERDAMPED) & ~_resonates(ball.frequency_ratio, ball.zeta)))
-
-
-def _resonates(ratio, zeta):
-    """Whether |ϖ² - 1 + 2iζϖ| is small."""
-    detuning = ratio * ratio - 1
-    loss = 2 * zeta * ratio
-    return detuning * detuning + loss * loss < DELICATE**2
 
 
 def root_of_parabola(f, slope, bend):
@@ -549,29 +471,30 @@ def safe_steps(t, f, slope, second, bend, jerk):
 
 
 @np.errstate(all="ignore")  # a contact without a load may vanish in time
-def releases(ball, phase, u, amplitude):
+def releases(ball, phase, u, amplitude, table=SINE):
     """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
-    releases: :func:`.one_ball.release` for arrays of one shape, (n,), and for all ϖ and ζ.
+    releases: :func:`.one_ball.release` for arrays of one shape, (n,), for all ϖ, ζ and tables.
     """
     u = np.where(u == 0, SLOWEST, u)
-    given = [ball.start(u), u, *table_at(phase, amplitude), amplitude]
-    rows = np.array([0 * u, *given])
-    given = np.broadcast_arrays(*given, ball.frequency_ratio, ball.zeta, ball.kappa)
-    closed = has_closed_form(ball)
-    of_time = contacts if closed else _by_doubling
-    fewest = FEW if closed else 1
+    waves = table.waves(phase, amplitude)
+    given = [ball.start(u), u, *waves]
+    rows = np.array(np.broadcast_arrays(0 * u, *given))
+    closed = ball.has_closed_form(table)
+    of_time = oscillator.closed_motion if closed else oscillator.doubled_motion
+    fewest = FEW if closed and table.compiled else 1
+    given = np.broadcast_arrays(*given, amplitude, ball.frequency_ratio, ball.zeta, ball.kappa)
     duration = np.full(u.shape, np.inf)
     speed = np.full(u.shape, np.nan)
     left = np.arange(u.size)
     while left.size >= fewest:
-        s, gap, u, x, y, amplitude = rows
+        s, gap, u, *waves = rows
         ratio = ball.frequency_ratio
         zeta = ball.zeta
         kappa = ball.kappa
-        resonant = 0.0 if closed else 1.0 * _resonates(ratio, zeta)
-        motion = of_time(s, gap, u, x, y, 1.0, ratio, zeta)
-        f, slope, second, third, bend, jerk, lasts = bounds(
-            motion, amplitude, ratio, zeta, kappa, resonant
+        resonant = 0.0 if closed else 1.0 * oscillator.resonates(ratio, zeta, table.orders)
+        motion = of_time(s, gap, u, table, waves, 1.0, ratio, zeta)
+        f, slope, second, third, bend, jerk, lasts = oscillator.bounds(
+            motion, table, waves, ratio, zeta, kappa, resonant
         )
         above = np.maximum(f, 0.0)
         step, last = safe_steps(s, above, slope, -second - kappa * third, bend, jerk)
@@ -582,7 +505,7 @@ def releases(ball, phase, u, amplitude):
         if done.any():
             released = left[last]
             duration[released] = rows[0, last]
-            speed[released] = (motion[1] + step * (second + step * third / 2))[last]
+            speed[released] = (motion.speed + step * (second + step * third / 2))[last]
             (going,) = (~done).nonzero()
             left = left[going]
             rows = rows.take(going, axis=1)
@@ -598,7 +521,7 @@ class Corrected(Ball):
 
     The flight is continued into the contact. An impact of the closing speed v takes place at the
     gap -v t_c(v), and leaves the ball there with the relative speed w = r(v) v + σ(v) a, where
-    a = g - Λ sin τ is the load.
+    a = g + w″ is the load.
 
     Parameters
     ----------
@@ -613,6 +536,8 @@ class Corrected(Ball):
     """
 
     of: Ball
+
+    sinks: ClassVar[bool] = True
 
     def __post_init__(self):
         if not isinstance(self.of, Ball):
@@ -640,10 +565,15 @@ class Corrected(Ball):
         """The gap -u t_c(u) of the instant."""
         return -u * self.of.signature(u).centroid
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0):
+    def left(self, u):
+        """D - t_c."""
+        signature = self.of.signature(u)
+        return signature.duration - signature.centroid
+
+    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
         """The instant at the time τ with the speed u."""
         r, _, centroid, loss = self.of.signature(u)
-        speed = r * u + loss * (gravity - amplitude * np.sin(tau))
+        speed = r * u + loss * (gravity + amplitude * table(tau, 2))
         return Impact(0 * speed, 0 * speed - u * centroid, speed, None)
 
     def signature(self, u):

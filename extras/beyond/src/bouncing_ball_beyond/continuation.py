@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Ball, brief, whole_number
 from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
 from bouncing_ball_beyond.forms import one_impact_more
-from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.paths import Path, path_of, place_on
 from bouncing_ball_beyond.periodic import (
     OrbitNotFound,
     PeriodicOrbit,
@@ -37,6 +37,7 @@ from bouncing_ball_beyond.special_orbits import (
     located,
     scales,
 )
+from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 FIRST_STEP = 0.1
 LONGEST_STEP = 0.4
@@ -654,11 +655,12 @@ def _follow_all(orbits, along, to, points, until) -> list:
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
-        path = each.equations.along[-1] if along is None else path_of(along, each.ball)
+        path = each.equations.along[-1] if along is None else path_of(along, each.ball, each.table)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
         task = _task(each, path, goal, until[[i]])
         same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
-        key = each.kind, path, each.impacts, same_ball
+        same_table = each.table.at(**dict.fromkeys(each.table.parameters, 0.0))
+        key = each.kind, path, each.impacts, same_ball, same_table
         same = next((rows for other, rows in groups if other == key), None)
         if same is None:
             groups.append((key, same := []))
@@ -694,8 +696,9 @@ def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     ValueError
         If a goal is out of its range, or the orbit not on the path.
     """
-    equations = OrbitEquations(orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude, (path,))
-    value = float(path.place(orbit.ball, orbit.amplitude))
+    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
+    equations = OrbitEquations(*given, (path,), orbit.table)
+    value = float(place_on(path, *given[::3], orbit.table))
     z = np.append(orbit.z[: equations.size], value)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
     if to is None:
@@ -713,16 +716,24 @@ def _stacked(tasks: list[_Task]) -> _Task:
     """Tasks of single orbits as rows of one."""
     if len(tasks) == 1:
         return tasks[0]
-    balls = [each.equations.ball for each in tasks]
-    values = {name: np.array([b.parameters[name] for b in balls]) for name in balls[0].parameters}
     equations = replace(
         tasks[0].equations,
-        ball=balls[0].at(**values) if values else balls[0],
+        ball=_in_rows([each.equations.ball for each in tasks]),
+        table=_in_rows([each.equations.table for each in tasks]),
         periods=np.array([each.equations.periods for each in tasks]),
         amplitude=np.array([each.equations.amplitude for each in tasks]),
     )
     columns = zip(*(each[1:] for each in tasks), strict=True)
     return _Task(equations, *(np.concatenate(rows) for rows in columns))
+
+
+def _in_rows(several: list):
+    """One ball, or one table, with the parameters of several as arrays."""
+    first = several[0]
+    values = {
+        name: np.array([each.parameters[name] for each in several]) for name in first.parameters
+    }
+    return first.at(**values) if values else first
 
 
 def _from_special(task: _Task, way: int, kind, points) -> list:
@@ -922,7 +933,7 @@ class Limits(NamedTuple):
         return "Limits: {}; {}".format(*places)
 
 
-def limits(ball: Ball, *, n=1):
+def limits(ball: Ball, *, n=1, table: Table = SINE):
     """The saddle-node and the period doubling of the n-T orbits of a ball.
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
@@ -934,6 +945,9 @@ def limits(ball: Ball, *, n=1):
     ball : Ball
         Its parameters are numbers or arrays.
     n : array_like of int
+    table : Table
+        The waveform of the table, by default a sine. On other tables these are the orbits on both
+        sides of the phase at which the table rises fastest.
 
     Returns
     -------
@@ -946,8 +960,9 @@ def limits(ball: Ball, *, n=1):
     >>> round(limits(Rigid(0.5)).saddle_node.amplitude, 6)
     1.047198
     """
+    check_table(table)
     row, (periods,), shape = rows_of(ball, n=n)
-    between = _between_limits(OrbitEquations(row, 1, periods))
+    between = _between_limits(OrbitEquations(row, 1, periods, table=table))
     both = np.repeat(["saddle-node", "period doubling"], len(between))
     to = [1e-6] * len(between) + [None] * len(between)
     branches = _follow_all(between * 2, "amplitude", to, 500, both)
@@ -971,34 +986,41 @@ def _limit(special, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
 def _between_limits(equations: OrbitEquations) -> list:
     """An orbit with one impact for each row, if possible between the limits of instants.
 
-    It is stable, and a ball follows it, wherever such an orbit is found at one of the amplitudes.
-    Newton's method may lead to another branch instead, such as one on which the ball never leaves;
-    then all orbits are searched for.
+    A ball follows it, wherever such an orbit is found at one of the amplitudes. Newton's method may
+    lead to another branch instead, such as one on which the ball never leaves; then it is the one
+    with the shortest contact among all orbits.
     """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
+    table = equations.table
     fold = np.pi * n * (1 - r) / (1 + r)
-    amplitudes = [np.hypot(fold, 2 * share * (1 + r * r) / (1 + r) ** 2) for share in SHARES]
+    rise = 2 * (1 + r * r) / (1 + r) ** 2
+    amplitudes = []
+    for share in SHARES:
+        # Instants at ΛW′ = fold and -ΛW″ = share · rise.
+        phase = table.phase_of_angle(np.arctan2(share * rise, fold))
+        size = np.hypot(table(phase, 1), table(phase, 2))
+        amplitudes.append(np.hypot(fold, share * rise) / size)
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
-    steady = np.zeros(len(n), bool)
+    followed = np.zeros(len(n), bool)
 
     def keep(row, orbits):
-        followed = [each for each in orbits if each.admissible and each.stable]
-        steady[row] = bool(followed)
-        if orbits and (followed or isinstance(found[row], OrbitNotFound)):
-            found[row] = (followed or orbits)[0]
+        followed[row] = bool(orbits) and orbits[0].admissible
+        if orbits and (followed[row] or isinstance(found[row], OrbitNotFound)):
+            found[row] = orbits[0]
 
     for amplitude in amplitudes:
-        left = np.flatnonzero(~steady)
+        left = np.flatnonzero(~followed)
         if not left.size:
             return found
         rows = equations.rows(left)
         z, good = near_instants(rows, amplitude[left], 1)
         for i, row in enumerate(left):
             keep(row, [PeriodicOrbit(single(rows, i), z[i])] if good[i] else [])
-    for amplitude in [*amplitudes, *(times * np.pi * n for times in AROUND)]:
-        left = np.flatnonzero(~steady)
+    around = [times * np.pi * n / table.slope for times in AROUND]
+    for amplitude in [*amplitudes, *around]:
+        left = np.flatnonzero(~followed)
         if not left.size:
             return found
         searched = shortest_contacts(equations.rows(left), amplitude[left], 1)

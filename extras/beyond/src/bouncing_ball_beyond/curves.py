@@ -47,7 +47,7 @@ from bouncing_ball_beyond.forms import (
     null_vectors,
     one_impact_less,
 )
-from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.paths import Path, path_of, place_on
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, value_and_gradient
 
@@ -335,13 +335,13 @@ def _start(special: Any, along) -> tuple[_System, NDArray]:
             f"kind = {special.kind!r}: a curve goes through a special orbit of a branch:"
             f" {', '.join(sorted(allowed))}"
         )
-    paths = tuple(path_of(each, special.ball) for each in along)
+    paths = tuple(path_of(each, special.ball, special.table) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    equations = OrbitEquations(
-        special.ball, special.impacts, special.periods, special.amplitude, paths
-    )
-    values = [float(path.place(special.ball, special.amplitude)) for path in paths]
+    given = special.ball, special.impacts, special.periods, special.amplitude
+    equations = OrbitEquations(*given, paths, special.table)
+    here = special.ball, special.amplitude
+    values = [float(place_on(path, *here, special.table)) for path in paths]
     z = np.append(special.z[: equations.size], values)
     if special.kind == "grazing of an impact":
         others, row = one_impact_less(equations, z)

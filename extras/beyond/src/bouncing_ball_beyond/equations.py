@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, Impact
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
+from bouncing_ball_beyond.tables import SINE, Table
 
 FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
@@ -47,7 +48,7 @@ class Flights(NamedTuple):
     """The flights after contacts, each field of the shape (rows, k).
 
     ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, ``flight`` is
-    the time to the next impact, and ``amplitude`` is Λ.
+    the time to the next impact, ``amplitude`` is Λ, and ``table`` the waveform.
     """
 
     leaves: NDArray
@@ -55,24 +56,25 @@ class Flights(NamedTuple):
     speed: NDArray
     flight: NDArray
     amplitude: NDArray
+    table: Table
 
     def at(self, t) -> tuple[NDArray, NDArray]:
         """δ and δ′ at times t since the release, shape (rows, k, times)."""
-        leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self)
-        return flight(t, leaves, gap, speed, amplitude)
+        leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self[:5])
+        table = self.table.rows(np.s_[..., np.newaxis])
+        return flight(t, leaves, gap, speed, amplitude, table)
 
     def bends(self) -> NDArray:
-        """Times in the flights at which δ′ is least or greatest, because Λ sin τ = 1 there.
+        """Times in the flights at which δ′ is least or greatest, because -w″ = 1 there.
 
         Shape (rows, k, times), with the end of a flight in place of times after it.
         """
-        level = np.arcsin(np.minimum(1, 1 / self.amplitude))
+        phases = self.table.levels(self.amplitude)
         turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
-        phases = np.stack([level, np.pi - level], axis=-1)
         first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
         times = first[..., np.newaxis] + 2 * np.pi * np.arange(turns)
-        times = times.reshape(*self.leaves.shape, 2 * turns)
-        return np.minimum(times, self.flight[..., np.newaxis])
+        times = times.reshape(*self.leaves.shape, phases.shape[-1] * turns)
+        return np.fmin(times, self.flight[..., np.newaxis])
 
 
 def _some(values, which):
@@ -96,6 +98,8 @@ class OrbitEquations:
         Λ, where it is not what changes.
     along : tuple of Path
         What may change. Its values are the last entries of z.
+    table : Table
+        The waveform of the table; its parameters are numbers, or arrays of the shape (rows,).
     """
 
     ball: Ball
@@ -103,6 +107,7 @@ class OrbitEquations:
     periods: int | NDArray
     amplitude: float | NDArray = np.nan
     along: tuple[Path, ...] = (AMPLITUDE,)
+    table: Table = SINE
 
     @cached_property
     def unknowns(self) -> int:
@@ -126,6 +131,7 @@ class OrbitEquations:
             ball=self.ball.rows(which),
             periods=_some(self.periods, which),
             amplitude=_some(self.amplitude, which),
+            table=self.table.rows(which),
         )
 
     @cached_property
@@ -140,6 +146,13 @@ class OrbitEquations:
         for j, path in enumerate(self.along):
             ball, amplitude = path.apply(ball, amplitude, values[..., j, np.newaxis])
         return ball, amplitude
+
+    def table_at(self, values) -> Table:
+        """The table, beside impacts, at values of what changes."""
+        table = self.table.rows(np.s_[:, np.newaxis])
+        for j, path in enumerate(self.along if table.parameters else ()):
+            table = path.shape(table, values[..., j, np.newaxis])
+        return table
 
     def split(self, z) -> tuple[NDArray, Ball, NDArray]:
         """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
@@ -176,25 +189,26 @@ class OrbitEquations:
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
-        legs, flights = self._legs(y, *self.at(z[:, self.size :] + of_parameters))
+        values = z[:, self.size :] + of_parameters
+        legs, flights = self._legs(y, *self.at(values), self.table_at(values))
         return Linear(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
         x, ball, amplitude = self.split(z)
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
-        return self._legs(y, ball, amplitude)[0]
+        return self._legs(y, ball, amplitude, self.table_at(z[:, self.size :]))[0]
 
-    def _legs(self, y, ball, amplitude) -> tuple[NDArray, NDArray]:
+    def _legs(self, y, ball, amplitude, table) -> tuple[NDArray, NDArray]:
         """Legs between impacts and the next ones, and their times of flight.
 
         y has the q unknowns of the former, then τ and u of the latter.
         """
         q = self.unknowns
-        impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude)
+        impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude, table=table)
         leaves = y[..., 0] + impact.duration
         flights = y[..., q] - leaves
-        gap, rate = flight(flights, leaves, impact.gap, impact.speed, amplitude)
+        gap, rate = flight(flights, leaves, impact.gap, impact.speed, amplitude, table)
         legs = np.empty((*y.shape[:-1], q), y.dtype)
         if self.ball.lasts:
             legs[..., 0] = impact.release
@@ -242,11 +256,12 @@ class OrbitEquations:
     def ends(self, z) -> Flights:
         """The ends of the contacts and the flights after them."""
         x, ball, amplitude = self.split(z)
-        impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude)
+        table = self.table_at(z[:, self.size :])
+        impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude, table=table)
         leaves = x[..., 0] + impact.duration
         time = self.following(x)[..., 0] - leaves
         amplitude = np.broadcast_to(amplitude, leaves.shape)
-        return Flights(leaves, impact.gap, impact.speed, time, amplitude)
+        return Flights(leaves, impact.gap, impact.speed, time, amplitude, table)
 
     def clearance(self, z, flights: Flights | None = None) -> NDArray:
         """How far balls are above the table where flights turn back from it: the least of all."""
@@ -254,7 +269,11 @@ class OrbitEquations:
         # Between these times δ′ is monotonic, so that short dips after a slow start are found, too.
         bends = flights.bends()
         return turns_back(
-            lambda t: flights.at(t)[1], lambda t: flights.at(t)[0], flights.flight, among=bends
+            lambda t: flights.at(t)[1],
+            lambda t: flights.at(t)[0],
+            flights.flight,
+            among=bends,
+            waves=self.table.orders[-1],
         ).min(axis=-1)
 
     def contact_clearance(self, z) -> NDArray:
@@ -277,21 +296,24 @@ class OrbitEquations:
 
         In a compliant contact the table may lift the ball higher than it flies.
         """
-        leaves, gap, speed, time, amplitude = self.ends(z)
-        bounce = speed + amplitude * np.cos(leaves)
+        leaves, gap, speed, time, amplitude, table = self.ends(z)
+        bounce = speed + amplitude * table(leaves, 1)
         rise = np.clip(bounce, 0, time)
-        height = gap + amplitude * np.sin(leaves) + (bounce - rise / 2) * rise
+        height = gap + amplitude * table(leaves) + (bounce - rise / 2) * rise
         if not self.ball.lasts:
             return height.max(axis=-1)
         x, _, _ = self.split(z)
         during = self._during(z)
 
-        def table(t):
-            return x[..., 0, np.newaxis] + during(t).duration
+        table = table.rows(np.s_[..., np.newaxis])
+
+        def moved(t, order):
+            phase = x[..., 0, np.newaxis] + during(t).duration
+            return amplitude[..., np.newaxis] * table(phase, order)
 
         lifted = turns_back(
-            lambda t: -during(t).speed - amplitude[..., np.newaxis] * np.cos(table(t)),
-            lambda t: -during(t).gap - amplitude[..., np.newaxis] * np.sin(table(t)),
+            lambda t: -during(t).speed - moved(t, 1),
+            lambda t: -during(t).gap - moved(t, 0),
             x[..., 2],
         )
         return np.maximum(height, -lifted).max(axis=-1)
@@ -300,8 +322,10 @@ class OrbitEquations:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""
         x, ball, amplitude = self.split(z)
         beside = ball.rows(np.s_[..., np.newaxis])
+        table = self.table_at(z[:, self.size :]).rows(np.s_[..., np.newaxis])
         given = x[..., 0, np.newaxis], x[..., 1, np.newaxis]
-        return lambda t: beside.contact(*given, t, np.asarray(amplitude)[..., np.newaxis])
+        amplitude = np.asarray(amplitude)[..., np.newaxis]
+        return lambda t: beside.contact(*given, t, amplitude, table=table)
 
     def least_speed(self, z) -> NDArray:
         """The closing speed next to zero, negative if an odd number of impacts have u < 0."""
@@ -353,7 +377,7 @@ class OrbitEquations:
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
         release = self.least_release(self.linear(z), z)
         # A ball without speed leaves the table if this falls faster than the ball: δ″ > 0.
-        falls = (ends.amplitude * np.sin(ends.leaves) > 1).all(axis=-1)
+        falls = (ends.amplitude * ends.table(ends.leaves, 2) < -1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         clear = (self.clearance(z, ends) > 0) & (self.contact_clearance(z) > 0)
@@ -370,15 +394,14 @@ def _derivative(function, t):
     return slopes[1] + 1j * H * (slopes[2] - slopes[0]) / (2 * step)
 
 
-def flight(s, leaves, gap, speed, amplitude):
+def flight(s, leaves, gap, speed, amplitude, table=SINE):
     """Gap δ and its derivative δ′ a time s after a ball left at the time `leaves` with δ′ = speed.
 
-    Λ sin τ is the table and 1 is gravity, so that δ″ = -1 + Λ sin τ.
+    The table is at w = ΛW(τ) and 1 is gravity, so that δ″ = -1 - w″.
     """
-    ends = leaves + s
-    rate = speed + amplitude * np.cos(leaves)
-    table = amplitude * (np.sin(leaves) - np.sin(ends))
-    return gap + (rate - s / 2) * s + table, rate - s - amplitude * np.cos(ends)
+    height, gained = table.rise(leaves, s)
+    bounce = speed + amplitude * table(leaves, 1)
+    return gap + (bounce - s / 2) * s - amplitude * height, speed - s - amplitude * gained
 
 
 def _longest(times) -> float:
@@ -386,7 +409,7 @@ def _longest(times) -> float:
     return np.fmax.reduce(times, axis=None, initial=0.0)
 
 
-def turns_back(slope, value, ends, *, first: bool = False, among=None) -> NDArray:
+def turns_back(slope, value, ends, *, first: bool = False, among=None, waves: int = 1) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
     Minima are found if the slope changes its sign between two of 32 samples in a time of 2π, or of
@@ -402,13 +425,15 @@ def turns_back(slope, value, ends, *, first: bool = False, among=None) -> NDArra
         Whether the value is that of the first minimum and not of the lowest.
     among : ndarray, shape (..., m), optional
         Further times at which the slope is sampled.
+    waves : int
+        How many times more samples a table of so many waves in a period needs.
 
     Returns
     -------
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    samples = int(np.clip(32 * _longest(ends) / (2 * np.pi), 32, 2000)) + 1
+    samples = int(np.clip(32 * waves * _longest(ends) / (2 * np.pi), 32, 2000)) + 1
     times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
     if among is not None:
         times = np.sort(np.concatenate([times, among], axis=-1), axis=-1)

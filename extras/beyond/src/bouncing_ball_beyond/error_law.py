@@ -14,6 +14,7 @@ place of C, turned by -s, and delayed by t_c, where s = σ/(1 + b) and b = d(rv)
     Y₁ = √(Λ² - (C - s)²),    cos ψ₁ = (C - s)/Λ.
 
 This holds from the saddle-node, where the height is wrong by √(2Cs)/H, to the period doubling.
+On another table, C - s is the w′ of the instant, and W takes the place of the sine in all formulas.
 The proof is in appendix.md, and docs/error-law.md says how good the law is.
 """
 
@@ -24,19 +25,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.balls import (
-    Ball,
-    Corrected,
-    H,
-    SpringDamper,
-    brief,
-    checked,
-    whole_number,
-)
+from bouncing_ball_beyond.balls import Ball, H, SpringDamper, brief, checked, whole_number
 from bouncing_ball_beyond.equations import OrbitEquations, newton
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
 from bouncing_ball_beyond.special_orbits import special_near
+from bouncing_ball_beyond.tables import SINE, Table
 
 QUANTITIES = (
     "max_height",
@@ -132,32 +126,28 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     )
 
 
-def _ordinate(amplitude: ArrayLike, x: NDArray) -> NDArray:
-    """Y ≥ 0 of the point with X = x at the distance Λ from the origin, NaN if there is none."""
-    amplitude = np.asarray(amplitude, float)
-    with np.errstate(invalid="ignore"):
-        return np.sqrt((amplitude - x) * (amplitude + x))
-
-
-def restitution_values(impact: FreeImpact, amplitude: ArrayLike) -> dict:
+def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
     """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1).
 
     The restitution coefficient is the function r(v) of the impact, on whose slope the period
     doubling depends. NaN below the saddle-node Λ = C.
     """
-    lift = _ordinate(amplitude, impact.line)
-    anywhere = 0 * (impact.line + np.asarray(amplitude))
+    amplitude = np.asarray(amplitude, float)
+    phase, lift, _, _ = table.instant(impact.line, amplitude)
+    anywhere = 0 * (impact.line + amplitude)
     return {
         "max_height": lift + impact.half**2 / 2,
         "bounce_velocity": impact.half + 0 * lift,
-        "phase": np.arctan2(lift, impact.line),
+        "phase": phase,
         "apparent_restitution": impact.restitution + 0 * lift,
-        "saddle_node": impact.line + anywhere,
-        "period_doubling": np.hypot(impact.line, impact.doubling) + anywhere,
+        "saddle_node": impact.line / table.slope + anywhere,
+        "period_doubling": table.amplitude_at(impact.line, impact.doubling)[0] + anywhere,
     }
 
 
-def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+def law_errors(
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+) -> dict:
     """The error law: relative errors of the restitution model in the six quantities.
 
     Parameters
@@ -166,6 +156,9 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
         A ball, or its :func:`free_impact` for this n.
     amplitude
         Λ, a number or an array that broadcasts with the parameters of the ball.
+    table
+        The waveform, by default a sine. Of other tables the orbits are those after the phase at
+        which the table rises fastest, and the error of a phase is relative to it as it is counted.
 
     Returns
     -------
@@ -182,33 +175,38 @@ def law_errors(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -
     -0.01
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    reference = restitution_values(impact, amplitude)
+    amplitude = np.asarray(amplitude, float)
+    reference = restitution_values(impact, amplitude, table)
     # NaN below the saddle-node.
     r = reference["apparent_restitution"]
     delay = impact.centroid
     shift = impact.shift
-    nearer = impact.line - shift
-    lift = _ordinate(amplitude, impact.line)
-    turned = _ordinate(amplitude, nearer)
-    across, along = _doubling_shift(impact)
+    phase, lift, _, jolt = table.instant(impact.line, amplitude)
+    later, turned, push, _ = table.instant(impact.line - shift, amplitude)
+    _, _, doubling, _ = _doubling_shift(impact, table)
     with np.errstate(invalid="ignore", divide="ignore"):
-        turn = np.arccos(nearer / amplitude) - np.arccos(impact.line / amplitude)
+        turn = later - phase
         risen = turned - lift - shift * impact.line - impact.speed * delay
         loaded = impact.load - impact.duration + (1 + r) * delay - (impact.slope - r) * shift
-        load = 1 - turned + shift * impact.line
-        doubling = impact.line * across + impact.doubling * along
+        load = 1 - push + shift * jolt
         return {
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / reference["phase"],
             "apparent_restitution": loaded * load / (r * impact.speed),
-            "saddle_node": np.divide(-shift, reference["saddle_node"]),
-            "period_doubling": doubling / reference["period_doubling"] ** 2,
+            "saddle_node": np.divide(-shift, impact.line) + 0 * reference["saddle_node"],
+            "period_doubling": doubling + 0 * reference["period_doubling"],
         }
 
 
-def _doubling_shift(impact: FreeImpact) -> tuple[NDArray, NDArray]:
-    """The shift (δX, δY) of the period doubling from (C, Y_D), of first order."""
+def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
+    """The shifts of the period doubling, of first order: those of w′ from C and of -w″ from Y_D,
+    the relative one of Λ, and that of the phase of the instant.
+
+    With J = -w‴ there, δΛ/Λ = (Y_D δY + J δX)/(Y_D² + CJ).
+    """
+    amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
+    jolt = -amplitude * table(phase, 3)
     b = impact.slope
     half = impact.half
     rise = impact.doubling - 1
@@ -217,24 +215,31 @@ def _doubling_shift(impact: FreeImpact) -> tuple[NDArray, NDArray]:
     along = (
         (1 - b) * across
         + 2 * impact.centroid_slope * rise
-        - half * impact.load * impact.line
+        - half * impact.load * jolt
         + steeper * (half * (1 - rise) - impact.speed)
     )
-    return across, along / (half * (1 + b))
+    along = along / (half * (1 + b))
+    share = impact.doubling * along + jolt * across
+    share = share / (impact.doubling**2 + impact.line * jolt)
+    return across, along, share, (share * impact.line - across) / impact.doubling
 
 
-def law_coefficients(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+def law_coefficients(
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+) -> dict:
     """The coefficients K of the errors Kγ, far above the saddle-node, for a contact stretched by γ.
 
     The K of K/ϖ are those of the contact with ϖ = 1. At the saddle-node the coefficients of the
     height and of the phase are infinite, because their errors are of the order √γ there.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude)
+    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
     return {name: np.imag(error) / H for name, error in errors.items()}
 
 
-def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1) -> dict:
+def law_remainders(
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+) -> dict:
     """Estimates of what the error law leaves of the six errors, at most.
 
     They are Sη with η = D max(1, Λ) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli of the
@@ -242,16 +247,17 @@ def law_remainders(impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 
     and not proved (docs/error-law.md).
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    reference = restitution_values(impact, amplitude)
+    amplitude = np.asarray(amplitude, float)
+    reference = restitution_values(impact, amplitude, table)
     delay = impact.centroid
     shift = np.abs(impact.shift)
-    weight = 1 + np.abs(1 - _ordinate(amplitude, impact.line))
+    weight = 1 + np.abs(1 - table.instant(impact.line, amplitude)[2])
     loaded = impact.duration * weight / (impact.restitution * impact.speed)
-    small = impact.duration * np.maximum(1, amplitude) + loaded
+    small = impact.duration * np.maximum(1, amplitude * table.bounds[2]) + loaded
     with np.errstate(invalid="ignore", divide="ignore"):
-        later = shift * weight / _ordinate(amplitude, impact.line - shift)
+        later = shift * weight / table.instant(impact.line - shift, amplitude)[2]
         risen = impact.line * later + impact.speed * delay
-        node = shift / reference["saddle_node"]
+        node = shift / impact.line
         scales = {
             "max_height": risen / reference["max_height"],
             "bounce_velocity": (impact.duration - delay) / reference["bounce_velocity"],
@@ -269,6 +275,7 @@ def law_thresholds(
     amplitude: ArrayLike,
     n: int = 1,
     tolerance: float = 0.01,
+    table: Table = SINE,
 ) -> dict:
     """The ϖ from which on the restitution model is within a tolerance, by the error law.
 
@@ -300,8 +307,12 @@ def law_thresholds(
     """
     amplitude = np.asarray(amplitude, float)
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
-    coefficients = law_coefficients(impact, amplitude=amplitude)
+    coefficients = law_coefficients(impact, amplitude=amplitude, table=table)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
+    if not table.compiled:
+        for name in ("max_height", "phase"):
+            found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
+        return found
     # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
     # that of the phase where ψ₁ does: at these values of C - s.
     deeper = impact.shift * impact.line + impact.speed * impact.centroid
@@ -313,6 +324,30 @@ def law_thresholds(
     for name, turn in turns.items():
         found[name] = 1 / _longest(impact, amplitude, tolerance, name, turn)
     return found
+
+
+def _first_stretch(impact, amplitude, tolerance, name, table) -> NDArray:
+    """The stretch γ at which an error on any table first leaves the tolerance, by 200 samples."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        end = (impact.line + np.copysign(amplitude * table.slope, impact.shift)) / impact.shift
+    end = np.fmin(end * (1 - 1e-9), 4 * np.pi / impact.duration)
+    shares = np.linspace(0, 1, 201)[1:].reshape(-1, *(1 for _ in np.shape(end)))
+
+    def excess(stretch):
+        errors = law_errors(impact.stretched(stretch), amplitude=amplitude, table=table)
+        return np.abs(errors[name]) - tolerance
+
+    beyond = ~(excess(shares * end) <= 0)
+    first = np.where(beyond.any(axis=0), beyond.argmax(axis=0), len(shares) - 1)
+    bracket = first / 200 * end, (first + 1) / 200 * end
+    # A bracket whose end has no orbit is left as it is.
+    inside = (excess(bracket[0]) <= 0) & (excess(bracket[1]) > 0)
+    low, high = (np.where(inside, each, end) for each in bracket)
+    for _ in range(60):
+        middle = (low + high) / 2
+        within = excess(middle) <= 0
+        low, high = np.where(within, middle, low), np.where(within, high, middle)
+    return high
 
 
 def _longest(impact, amplitude, tolerance, name, turn) -> NDArray:
@@ -344,16 +379,8 @@ def ball_at_ratio(
 ) -> Callable:
     """The function from ϖ, or from the number in its place, to the ball."""
     checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
-    if isinstance(contacts, SpringDamper):
-        return lambda ratio: contacts.at(frequency_ratio=ratio)
-    if isinstance(contacts, ForceLaw):
-        impact = free_impact(contacts, n)
-        share = np.pi * impact.restitution / ((1 + impact.restitution) * impact.centroid)
-        # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
-        powers = {name: length + time for name, (_, length, time) in contacts.known_units.items()}
-        return lambda ratio: contacts.at(
-            **{name: contacts.values[name] * (share / ratio) ** powers[name] for name in powers}
-        )
+    if isinstance(contacts, Ball):
+        return contacts.at_ratio(n)
     if not callable(contacts):
         raise ValueError(
             f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw or a function to one"
@@ -367,6 +394,7 @@ def contact_values(
     amplitude: ArrayLike,
     n: ArrayLike = 1,
     quantities: Sequence[str] = QUANTITIES,
+    table: Table = SINE,
 ) -> dict:
     """Quantities of the n-T orbit of a ball and of its bifurcations, exactly.
 
@@ -378,6 +406,8 @@ def contact_values(
         Λ, a number or an array.
     quantities
         Names from :data:`QUANTITIES`.
+    table
+        The waveform, by default a sine; of other tables as in :func:`law_errors`.
 
     Returns
     -------
@@ -398,12 +428,12 @@ def contact_values(
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
         if name in found:
-            found[name] = _bifurcation(row, periods, name)
+            found[name] = _bifurcation(row, periods, name, table)
     of_orbits = [name for name in quantities if name not in ("saddle_node", "period_doubling")]
     # Some thousands of orbits at once keep the memory small.
     blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
     for block in blocks if of_orbits else []:
-        equations = OrbitEquations(row, 1, periods).rows(block)
+        equations = OrbitEquations(row, 1, periods, table=table).rows(block)
         z = rows_of_orbits(equations, amplitudes[block])
         good = np.isfinite(z[:, 0])
         if good.any():
@@ -419,7 +449,7 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     They are solved from the instants of the corrected model, and are not searched for elsewhere.
     """
     periods = np.broadcast_to(equations.periods, amplitude.shape)
-    guess = guess_of_instants(equations.ball, periods, amplitude)
+    guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
     solution = newton(equations, guess)
     good = solution.found & (equations.turn(solution.linear) < 1)
     # On compliant contacts Newton's method may run to a solution that is no orbit.
@@ -428,25 +458,36 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     return np.where(good[:, np.newaxis], solution.z, np.nan)
 
 
-def _bifurcation(row: Ball, periods: NDArray, name: str) -> NDArray:
+def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
     """The amplitudes of a bifurcation, by rows, from a guess by the error law."""
     impact = free_impact(row, periods)
     if name == "saddle_node":
         kind = "saddle-node"
         x = impact.line - impact.shift
         y = -impact.shift * impact.line
+        amplitude = np.hypot(x, y)
+        phase = np.arctan2(y, x)
+        if not table.compiled:
+            amplitude = x / table.slope
+            phase = table.steepest - impact.shift
+            y = impact.shift * amplitude * table(table.steepest, 3)
     else:
         kind = "period doubling"
-        across, along = _doubling_shift(impact)
+        across, along, share, turn = _doubling_shift(impact, table)
         x = impact.line + across
         y = impact.doubling + along
+        amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
+        amplitude = amplitude * (1 + share)
+        phase = phase + turn
+        if table.compiled:
+            amplitude, phase = table.amplitude_at(x, y)
     # The impacts of a corrected ball are at the centroids, and all others start before them.
-    delay = 0.0 if isinstance(row, Corrected) else impact.centroid
-    guess = [np.arctan2(y, x) - delay, impact.half + x - (1 - y) * delay]
+    delay = 0.0 if row.sinks else impact.centroid
+    guess = [phase - delay, impact.half + x - (1 - y) * delay]
     if row.lasts:
         guess.append(row.free(guess[1]))
-    rows = np.stack(np.broadcast_arrays(*guess, np.hypot(x, y)), axis=-1)
-    z, good = special_near(OrbitEquations(row, 1, periods), kind, rows)
+    rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
+    z, good = special_near(OrbitEquations(row, 1, periods, table=table), kind, rows)
     return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
 
 
@@ -458,20 +499,21 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     amplitude = amplitudes[:, 0]
     ends = equations.ends(z)
     leaves = ends.leaves[:, 0]
-    velocity = ends.speed[:, 0] + amplitude * np.cos(leaves)
-    if isinstance(ball, Corrected):
+    table = equations.table
+    velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
+    if ball.sinks:
         signature = equations.ball.signature(speed)
-        approach = amplitude * np.cos(touch) - speed + signature.centroid
+        approach = amplitude * table(touch, 1) - speed + signature.centroid
         after = signature.duration - signature.centroid
         touch = touch - signature.centroid
         leaves = leaves + after
         velocity = velocity - after
-        speed = amplitude * np.cos(touch) - approach
+        speed = amplitude * table(touch, 1) - approach
     return {
         "max_height": equations.max_height(z),
         "bounce_velocity": velocity,
         "phase": touch,
-        "apparent_restitution": (velocity - amplitude * np.cos(leaves)) / speed,
+        "apparent_restitution": (velocity - amplitude * table(leaves, 1)) / speed,
     }
 
 
@@ -482,12 +524,13 @@ def exact_errors(
     n: int = 1,
     simple: Callable[[Ball], Ball] | FreeImpact | None = None,
     quantities: Sequence[str] = QUANTITIES,
+    table: Table = SINE,
 ) -> dict:
     """Relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
 
     Parameters
     ----------
-    ball, amplitude, n, quantities
+    ball, amplitude, n, quantities, table
         As in :func:`contact_values`.
     simple
         A function from a ball to the ball in its place, such as ``Corrected``. By default this is
@@ -509,11 +552,12 @@ def exact_errors(
     >>> [round(float(error["max_height"]), 6) for error in errors]
     [-0.041148, -0.000121]
     """
-    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=quantities)
+    given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
+    exact = contact_values(ball, **given)
     if simple is None or isinstance(simple, FreeImpact):
-        reference = restitution_values(simple or free_impact(ball, n), amplitude)
+        reference = restitution_values(simple or free_impact(ball, n), amplitude, table)
     else:
-        reference = contact_values(simple(ball), amplitude=amplitude, n=n, quantities=quantities)
+        reference = contact_values(simple(ball), **given)
     with np.errstate(invalid="ignore", divide="ignore"):
         return {name: exact[name] / reference[name] - 1 for name in quantities}
 
@@ -541,6 +585,7 @@ def error_thresholds(
     low: float = 1.0,
     high: float = 1e6,
     samples: int = 49,
+    table: Table = SINE,
 ) -> dict:
     """The ϖ from which on a simple model is within a tolerance, exactly.
 
@@ -548,7 +593,7 @@ def error_thresholds(
     ----------
     contacts
         A ball or a function from an array x to the ball, as in :func:`law_thresholds`.
-    amplitude, n, simple, quantities
+    amplitude, n, simple, quantities, table
         As in :func:`exact_errors`.
     tolerance
         Largest modulus of the relative error.
@@ -574,8 +619,8 @@ def error_thresholds(
         raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
     whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)
-    known: dict = {"amplitude": amplitude, "n": n, "simple": simple}
-    if simple is None and isinstance(contacts, SpringDamper | ForceLaw):
+    known: dict = {"amplitude": amplitude, "n": n, "simple": simple, "table": table}
+    if simple is None and isinstance(contacts, Ball):
         # All stretched contacts have the same restitution coefficient.
         known["simple"] = free_impact(path(1.0), n)
     shape = rows_of(path(high), amplitude=amplitude)[2]

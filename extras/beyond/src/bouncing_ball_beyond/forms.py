@@ -25,7 +25,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Corrected
 from bouncing_ball_beyond.equations import OrbitEquations, dense, flight, newton
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
 from bouncing_ball_beyond.special_orbits import doubled_of
@@ -234,10 +233,12 @@ def touch(equations: OrbitEquations, z: NDArray) -> Touch:
     OrbitNotFound
         If no flight turns back from the table.
     """
-    amplitude = float(np.ravel(equations.split(z[np.newaxis])[2])[0])
-    leaves, gap, speed, last, _ = (each[0] for each in equations.ends(z[np.newaxis]))
+    ends = equations.ends(z[np.newaxis])
+    leaves, gap, speed, last, amplitudes = (each[0] for each in ends[:5])
+    amplitude = float(amplitudes[0])
+    table = ends.table.rows(0).rows(0)
     times = np.linspace(0, last, SAMPLES)
-    heights = flight(times, leaves, gap, speed, amplitude)[0]
+    heights = flight(times, leaves, gap, speed, amplitude, table)[0]
     least = (heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])
     if not least.any():
         raise OrbitNotFound("no flight of the orbit turns back from the table")
@@ -245,8 +246,8 @@ def touch(equations: OrbitEquations, z: NDArray) -> Touch:
     sample, leg = np.unravel_index(lowest.argmin(), lowest.shape)
     time = times[sample + 1, leg]
     for _ in range(8):
-        height, rate = flight(time, leaves[leg], gap[leg], speed[leg], amplitude)
-        acceleration = amplitude * np.sin(leaves[leg] + time) - 1
+        height, rate = flight(time, leaves[leg], gap[leg], speed[leg], amplitude, table)
+        acceleration = -amplitude * table(leaves[leg] + time, 2) - 1
         time = time - rate / acceleration
     return Touch(int(leg), float(leaves[leg] + time), float(acceleration), float(height))
 
@@ -259,7 +260,7 @@ def _grazing(equations: OrbitEquations, z: NDArray) -> Touch:
     OrbitNotFound
         If none does.
     """
-    if isinstance(equations.ball, Corrected):
+    if equations.ball.sinks:
         raise OrbitNotFound(
             "an impact of the corrected model takes effect below the table: at a grazing flight"
             " there are no orbits with one impact more"
@@ -310,7 +311,9 @@ def one_impact_more(
         free = float(np.ravel(ball.signature(SLOW).duration)[0])
         u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
         start = at.time - u / at.acceleration
-        added = np.array([start, u, np.ravel(ball.first_release(start, u, amplitude))[0]])
+        table = equations.table_at(z[np.newaxis, equations.size :])
+        T = ball.first_release(start, u, amplitude, table=table)
+        added = np.array([start, u, np.ravel(T)[0]])
     place = (at.leg + 1) * equations.unknowns
     more = replace(equations, impacts=equations.impacts + 1)
     guess = np.insert(z, place, added)
@@ -393,9 +396,8 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     """
     # On a curve two parameters change, of which the first one counts.
     path = orbit.equations.along[0]
-    equations = OrbitEquations(
-        orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude, along=(path,)
-    )
+    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
+    equations = OrbitEquations(*given, along=(path,), table=orbit.table)
     z = orbit.z[: equations.length]
     at = _grazing(equations, z)
     _, _, direction = one_impact_more(equations, z)

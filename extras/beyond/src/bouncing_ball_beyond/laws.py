@@ -1,6 +1,6 @@
 """Contacts of any force law: the ball whose contact has the force f(p, p′) per mass.
 
-During a contact the penetration p = -δ obeys p″ = 1 - Λ sin τ - f. The contact ends where p = 0, or
+During a contact the penetration p = -δ obeys p″ = 1 + w″ - f. The contact ends where p = 0, or
 where the force vanishes, so that it never pulls at the ball. The laws that have names are in
 :mod:`.named_laws`; how the motion is found is in :mod:`.root_time`.
 """
@@ -23,6 +23,7 @@ from bouncing_ball_beyond.root_time import (
     load_of,
     values_by_row,
 )
+from bouncing_ball_beyond.tables import SINE
 
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 """Names that parameters must not have."""
@@ -74,7 +75,7 @@ class ForceLaw(Ball):
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
         "start_speed" if the force also gets, by this name, the speed at the start of the contact;
-        "load" if it gets the load a = 1 - Λ sin τ.
+        "load" if it gets the load a = 1 + w″.
     units : mapping
         The powers of mass, length and time in the unit of each parameter. They are needed where
         parameters change with the frequency of the table or with the stiffness of the contact.
@@ -173,6 +174,19 @@ class ForceLaw(Ball):
         powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
 
+    def at_ratio(self, n=1):
+        """The function from a number in the place of ϖ to the law with another stiffness."""
+        # The error law needs this module.
+        from bouncing_ball_beyond.error_law import free_impact
+
+        impact = free_impact(self, n)
+        share = np.pi * impact.restitution / ((1 + impact.restitution) * impact.centroid)
+        # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
+        powers = {name: length + time for name, (_, length, time) in self.known_units.items()}
+        return lambda ratio: self.at(
+            **{name: self.values[name] * (share / ratio) ** powers[name] for name in powers}
+        )
+
     def in_si(self, mass, length, time):
         """The parameters in SI units: ``mass`` in kg, the units of length in m and of time in s."""
         return {
@@ -180,17 +194,17 @@ class ForceLaw(Ball):
             for name, (of_mass, of_length, of_time) in self.known_units.items()
         }
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0):
+    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
         """The state of the contact at the root time T, with its release function."""
-        return self._followed(tau, u, amplitude, gravity, T)[1]
+        return self._followed(tau, u, amplitude, gravity, T, table=table)[1]
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=PERIODS):
+    def first_release(self, tau, u, amplitude, gravity=1.0, periods=PERIODS, table=SINE):
         """T of the first releases; NaN for balls that stay in contact for so many periods."""
-        return self._followed(tau, u, amplitude, gravity, longest=periods)[0]
+        return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)[0]
 
-    def first_impact(self, tau, u, amplitude, gravity=1.0):
+    def first_impact(self, tau, u, amplitude, gravity=1.0, table=SINE):
         """T of the first releases, and the impacts."""
-        return self._followed(tau, u, amplitude, gravity)
+        return self._followed(tau, u, amplitude, gravity, table=table)
 
     def free(self, u):
         """T of free impacts, without a table and gravity."""
@@ -292,11 +306,13 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(self, tau, u, amplitude, gravity, T=None, longest=PERIODS):
+    def _followed(self, tau, u, amplitude, gravity, T=None, longest=PERIODS, table=SINE):
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
+        values |= table.parameters
         rows = values_by_row(values if T is None else values | {"T": T})
         given = rows.given
+        given["table"] = table
         none = np.zeros((rows.size, rows.directions))
         kinks = (
             lambda q, v, t, given, kink=kink: kink(q**self.root, v, **self.own(given))
@@ -325,6 +341,7 @@ class ForceLaw(Ball):
         limits = given.get("T"), rows.steps.get("T", none)
         ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, longest)
         s, q, v, t = rows.joined(*ends)
+        values["table"] = table
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 
 

@@ -19,15 +19,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond.balls import (
-    H,
-    check_ball,
-    checked,
-    contacts,
-    has_closed_form,
-    table_at,
-    whole_number,
-)
+from bouncing_ball_beyond import oscillator
+from bouncing_ball_beyond.balls import H, check_ball, checked, whole_number
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
@@ -41,6 +34,7 @@ from bouncing_ball_beyond.simulation import (
     follow,
     grid_of,
 )
+from bouncing_ball_beyond.tables import SINE, check_table
 
 NEAR = 1e-7
 """The distance, an angle and a speed over 1 + Λ, within which a ball has returned: far above
@@ -78,7 +72,7 @@ NEIGHBOURS = 32
 """Balls beside a chaotic one that show whether its chaos is a transient."""
 
 LIFT_OFF = 1e-12
-"""The height Λ sin τ = 1 of the table at a lift-off, up to rounding."""
+"""Of -w″ = 1 at a lift-off, and of its phase: rounding."""
 
 PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
     "periodic",
@@ -111,9 +105,10 @@ def tangent_maps(balls, record, lifts):
         Zero where a ball leaves by the lift-off after a rest, because it forgets its past there.
     """
     ball = balls.ball
+    table = balls.table
     amplitude = balls.amplitude
     _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
-    if has_closed_form(ball):
+    if ball.has_closed_form(table):
         slopes = slopes_of_oscillator(balls, tau, u, duration, w)
     else:
         slopes = slopes_of_contact(balls, tau, u, T)
@@ -122,8 +117,8 @@ def tangent_maps(balls, record, lifts):
     later, dgap, dw = slopes
     later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]
     leaves = tau + duration
-    x, y = table_at(leaves, amplitude)
-    x_end, y_end = table_at(leaves + time, amplitude)
+    x, y, _ = table.pulls(table.waves(leaves, amplitude))
+    x_end, y_end, _ = table.pulls(table.waves(leaves + time, amplitude))
     rate = w + x - time - x_end
     start = ball.start(-rate + 1j * H).imag / H
     dgap = dgap + time * dw + (x - x_end - y * time) * later
@@ -138,7 +133,8 @@ def slopes_of_contact(balls, tau, u, T):
     ball = balls.ball
     unknowns = 3 if ball.lasts else 2
     steps = 1j * H * np.eye(3)[:, :unknowns, np.newaxis, np.newaxis]
-    impact = ball.contact(tau + steps[0], u + steps[1], T + steps[2], balls.amplitude)
+    given = tau + steps[0], u + steps[1], T + steps[2], balls.amplitude
+    impact = ball.contact(*given, table=balls.table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
     if not ball.lasts:
         return slopes
@@ -153,13 +149,17 @@ def slopes_of_oscillator(balls, tau, u, duration, w):
     ratio = ball.frequency_ratio
     zeta = ball.zeta
     kappa = ball.kappa
-    x, y = table_at(tau, balls.amplitude)
+    table = balls.table
     start = np.where(u < 0, kappa, 0.0)
-    by_tau = contacts(duration, 0.0, 0.0, -y, x, 0.0, ratio, zeta)
-    by_u = contacts(duration, start, 1.0, 0.0, 0.0, 0.0, ratio, zeta)
+    waves = table.turned(table.waves(tau, balls.amplitude))
+    # The response to the shifted table, and that to the start alone, on a table at rest.
+    by_tau = oscillator.closed_motion(duration, 0.0, 0.0, table, waves, 0.0, ratio, zeta)
+    by_u = oscillator.closed_motion(
+        duration, start, 1.0, table, [0.0] * len(waves), 0.0, ratio, zeta
+    )
     gap = np.array([by_tau[0], by_u[0]])
     rate = np.array([by_tau[1], by_u[1]])
-    push = table_at(tau + duration, balls.amplitude)[1] - 1
+    push = -balls.amplitude * table(tau + duration, 2) - 1
     second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
     later = -(gap + kappa * rate) / (w + kappa * second)
     return np.array([later, gap + w * later, rate + second * later])
@@ -171,8 +171,8 @@ def lift_offs(balls, record):
     if balls.ball.lasts:
         return np.zeros(tau.shape, bool)
     rests = (duration > 0) & (w == 0)
-    height = balls.amplitude * np.sin(np.where(rests, tau + duration, 0.0))
-    return rests & (height < 1 + LIFT_OFF)
+    push = -balls.amplitude * balls.table(np.where(rests, tau + duration, 0.0), 2)
+    return rests & (push < 1 + LIFT_OFF)
 
 
 def product(maps):
@@ -431,10 +431,15 @@ def _store_locked(found, track, record, after, lifts, lap, seen):
     n = len(lifts)
     last = n - 1 - lifts[::-1].argmax(axis=0)
     at = TURN * record[:, 0] + record[:, 1] + record[:, 4]
-    earlier = lifts & (np.arange(n)[:, np.newaxis] < last)
+    # A table may have several phases at which balls leave it: a motion repeats at one of them.
+    with np.errstate(invalid="ignore"):
+        phase = np.where(lifts, record[:, 1] + record[:, 4], np.nan)
+        same = apart(phase - phase[last, row], 0.0) < NEAR
+    earlier = lifts & same & (np.arange(n)[:, np.newaxis] < last)
     before = n - 1 - earlier[::-1].argmax(axis=0)
     twice = earlier.any(axis=0)
-    number = np.where(twice, seen + before, track["lifted"])
+    before_all = apart(track["lifted_at"] - phase[last, row], 0.0) < NEAR
+    number = np.where(twice, seen + before, np.where(before_all, track["lifted"], -1))
     time = np.where(twice, at[before, row], track["lifted_at"])
     lifted = lifts.any(axis=0)
     track["lifted"] = np.where(lifted, seen + last, track["lifted"])
@@ -544,12 +549,21 @@ OF_MOTIONS = DESCRIPTIONS | {
 """Long name, symbol and unit of the variables of datasets of motions."""
 
 
-def motion_of(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000):
+def motion_of(
+    ball,
+    *,
+    amplitude,
+    phase=0.0,
+    velocity=None,
+    relative_velocity=None,
+    impacts=2000,
+    table=SINE,
+):
     """The motion on which a ball ends, after a first impact as in :func:`.simulate`.
 
     Parameters
     ----------
-    ball, amplitude, phase, velocity, relative_velocity
+    ball, amplitude, phase, velocity, relative_velocity, table
         As in :func:`.simulate`; arrays span a grid.
     impacts : int
         Number of impacts after which the search for a repetition ends, up to the next multiple of
@@ -578,14 +592,14 @@ def motion_of(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=No
     >>> found.kind.values.tolist(), found.impacts.values.tolist()
     (['permanent contact', 'periodic', 'periodic'], [0, 1, 2])
     """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
-    return dataset_of(grid, balls.amplitude, ends_of(balls, impacts))
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
+    return dataset_of(grid, balls.amplitude, table, ends_of(balls, impacts))
 
 
-def dataset_of(grid, amplitude, ends):
+def dataset_of(grid, amplitude, table, ends):
     """The dataset of motions over a grid."""
     found = ends.copy()
-    found["end_velocity"] = amplitude * np.cos(ends["end_phase"]) - found.pop("end_speed")
+    found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
     words = zip(ends["kind"], ends["followed"], ends["reason"], strict=True)
     found["in_words"] = np.array([in_words(*each) for each in words])
     found |= {name: ends[name].astype(str) for name in ("kind", "reason")}
@@ -608,7 +622,16 @@ def in_words(kind, followed, reason):
     return f"{kind}, found within {followed} impacts{unknown}"
 
 
-def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000):
+def lyapunov(
+    ball,
+    *,
+    amplitude,
+    phase=0.0,
+    velocity=None,
+    relative_velocity=None,
+    impacts=2000,
+    table=SINE,
+):
     """The Lyapunov exponents of the motion on which a ball ends, as in :func:`motion_of`.
 
     Where the motion looks chaotic, 32 balls that start beside its end are followed for as many
@@ -617,7 +640,7 @@ def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
 
     Parameters
     ----------
-    ball, amplitude, phase, velocity, relative_velocity, impacts
+    ball, amplitude, phase, velocity, relative_velocity, impacts, table
         As in :func:`motion_of`.
 
     Returns
@@ -637,7 +660,7 @@ def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
     >>> round(float(np.exp(found.lyapunov_exponent)), 6)
     0.85
     """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
     ends = ends_of(balls, impacts)
     (chaotic,) = (ends["kind"] == CHAOTIC).nonzero()
     beside = np.repeat(chaotic, NEIGHBOURS)
@@ -654,14 +677,15 @@ def lyapunov(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
         lyapunov_exponent=np.nan,
         lyapunov_error=np.nan,
     )
-    return dataset_of(grid, balls.amplitude, ends)
+    return dataset_of(grid, balls.amplitude, table, ends)
 
 
-def fastest(ball, amplitude):
-    """A speed above which every impact slows the ball: (1 + r) max(Λ, 1)/(1 - r), for 1 - r ≥ 0.05.
+def fastest(ball, amplitude, table=SINE):
+    """A speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r), for 1 - r ≥ 0.05.
 
-    An impact changes the absolute speed v of a ball to r v + (1 + r) Λ at most, which is less than
-    v above this. r is that of a free impact of the speed 2π, or 0 if there is none.
+    V is the greatest speed of the table, Λ for a sine. An impact changes the absolute speed v of a
+    ball to r v + (1 + r) V at most, which is less than v above this. r is that of a free impact of
+    the speed 2π, or 0 if there is none.
 
     Examples
     --------
@@ -670,10 +694,10 @@ def fastest(ball, amplitude):
     6.0
     """
     r = np.nan_to_num(ball.signature(TURN).restitution)
-    return (1 + r) * np.maximum(amplitude, 1.0) / np.maximum(1 - r, 0.05)
+    return (1 + r) * np.maximum(amplitude * table.bounds[1], 1.0) / np.maximum(1 - r, 0.05)
 
 
-def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2000):
+def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2000, table=SINE):
     """The motions on which balls end that start from a grid of first impacts, and their shares.
 
     Parameters
@@ -687,6 +711,8 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     relative_velocity_max : float, optional
         The largest closing speed; by default (1 + r) max(Λ, 1)/(1 - r), above which every impact
         slows the ball, for 1 - r ≥ 0.05.
+    table : Table
+        The waveform of the table, by default a sine.
     impacts : int
         As in :func:`motion_of`. A ball is no longer followed once its motion is known.
 
@@ -716,17 +742,20 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     (['locked', 'periodic'], 1.0)
     """
     check_ball(ball)
-    table = axis("amplitude", amplitude)
-    if table.ndim or any(np.ndim(value) for value in ball.parameters.values()):
+    check_table(table)
+    given = axis("amplitude", amplitude)
+    if given.ndim or any(np.ndim(value) for value in ball.parameters.values()):
         raise ValueError("amplitude, ball: basins are those of a single ball on one table")
-    amplitude = float(table)
+    amplitude = float(given)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
-    fast = fastest(ball, amplitude) if relative_velocity_max is None else relative_velocity_max
+    fast = (
+        fastest(ball, amplitude, table) if relative_velocity_max is None else relative_velocity_max
+    )
     checked("relative_velocity_max", fast, 0, np.inf, low_allowed=False)
     grid, ball, (amplitude, u, tau) = grid_of(
         ball, amplitude=amplitude, speed=fast * middle, phase=TURN * middle - np.pi
     )
-    ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u), impacts)
+    ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u, table), impacts)
     names = ["kind", "impacts", "periods"]
     keys = np.rec.fromarrays(
         [ends["kind"].astype(str), ends["impacts"], ends["periods"]], names=names
@@ -743,7 +772,7 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
 
 
-def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
+def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000, table=SINE):
     """The motions on which balls end along Λ or a parameter of the ball, from several starts.
 
     Parameters
@@ -757,7 +786,7 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         followed in both directions.
     samples : int
         Number of impacts that are recorded of each motion.
-    impacts : int
+    impacts, table
         As in :func:`motion_of`.
 
     Returns
@@ -773,14 +802,15 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
     >>> found.impacts.isel(start=2).values.tolist()
     [1, 2]
     """
+    check_table(table)
     grid, ball, (amplitude,) = grid_of(ball, amplitude=amplitude)
     if grid.ndim != 1:
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
     value, start = np.mgrid[: grid.size, : whole_number("starts", starts)].reshape(2, -1)
     phase = TURN * (EVEN[0] * (start + 1) % 1)
     several = ball.rows(value)
-    speed = fastest(several, amplitude[value]) * (EVEN[1] * (start + 1) % 1)
-    balls = Balls(several, amplitude[value], 0 * phase, phase, speed)
+    speed = fastest(several, amplitude[value], table) * (EVEN[1] * (start + 1) % 1)
+    balls = Balls(several, amplitude[value], 0 * phase, phase, speed, table)
     passes = [ends_of(balls, impacts)]
     for step in (1, -1):
         beside = np.clip(value + step, 0, grid.size - 1) * starts + start
@@ -795,26 +825,32 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000):
         for name in passes[0]
     }
     value = np.repeat(np.arange(grid.size), len(passes) * starts)
-    balls = Balls(
-        ball.rows(value), amplitude[value], 0.0 * value, ends["end_phase"], ends["end_speed"]
-    )
+    state = ends["end_phase"], ends["end_speed"]
+    balls = Balls(ball.rows(value), amplitude[value], 0.0 * value, *state, table)
     (moving,) = np.isfinite(balls.phase).nonzero()
     recorded = np.full((2, value.size, samples), np.nan)
     recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)
     recorded = dict(zip(("impact_phase", "impact_speed"), recorded, strict=True))
     grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
     recorded = dataset(grid, recorded, OF_MOTIONS, impact=np.arange(samples))
-    return dataset_of(grid, balls.amplitude, ends).merge(recorded)
+    return dataset_of(grid, balls.amplitude, table, ends).merge(recorded)
 
 
 def orbit_of_motion(
-    ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=2000
+    ball,
+    *,
+    amplitude,
+    phase=0.0,
+    velocity=None,
+    relative_velocity=None,
+    impacts=2000,
+    table=SINE,
 ):
     """The periodic orbit on which a ball ends, confirmed by Newton's method.
 
     Parameters
     ----------
-    ball, amplitude, phase, velocity, relative_velocity, impacts
+    ball, amplitude, phase, velocity, relative_velocity, impacts, table
         As in :func:`motion_of`, all of them numbers.
 
     Returns
@@ -835,7 +871,7 @@ def orbit_of_motion(
     >>> orbit.impacts, orbit.periods
     (2, 2)
     """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
     if grid.ndim:
         raise ValueError("the orbit of a motion is that of a single ball from one start")
     ends = ends_of(balls, impacts)
@@ -846,8 +882,10 @@ def orbit_of_motion(
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
     if ends["kind"][0] == LOCKED and not ball.lasts:
         raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
-    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), ends["end_phase"], ends["end_speed"])
+    state = ends["end_phase"], ends["end_speed"]
+    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)
     turns, tau, u, T = follow(on_orbit, k)[0][:, :4, 0].T
     columns = [TURN * turns + tau, u, T] if ball.lasts else [TURN * turns + tau, u]
     z = np.append(np.stack(columns, axis=1).ravel(), balls.amplitude)
-    return solved(OrbitEquations(ball, k, m), z, "the orbit on which the ball ends")
+    equations = OrbitEquations(ball, k, m, table=table)
+    return solved(equations, z, "the orbit on which the ball ends")

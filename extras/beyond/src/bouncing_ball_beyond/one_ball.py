@@ -11,8 +11,8 @@ slows them down and does not mislead them.
 
 The functions are plain Python. Where numba is installed, :func:`compile_loops` compiles them, which
 gives the same numbers. They are in one file because numba's cache notices only changes of the file
-of the function that is called. Many balls are followed side by side in
-:mod:`bouncing_ball_beyond.simulation`, by the same formulas on arrays.
+of the function that is called. The table is a sine. Many balls, and those on other tables, are
+followed side by side in :mod:`bouncing_ball_beyond.simulation`, by the same formulas on arrays.
 """
 
 import math
@@ -72,26 +72,18 @@ def safe_step(t, f, slope, second, bend, jerk):
     return step, step <= ROUNDING * t
 
 
-def flight_by(functions):
-    """The motion in flight, by the functions of numbers, ``math``, or of arrays, ``numpy``."""
+def flight(t, gap, w, x, y):
+    """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and
+    Λ sin τ = y.
 
-    def flight(t, gap, w, x, y):
-        """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and
-        Λ sin τ = y.
-
-        Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
-        """
-        half = functions.tan(t / 2)
-        sine = 2 * half / (1 + half * half)
-        versine = half * sine
-        position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
-        rate = (w - t) + (y * sine + x * versine)
-        return position, rate, (y - 1) + (x * sine - y * versine)
-
-    return flight
-
-
-flight = flight_by(math)
+    Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
+    """
+    half = math.tan(t / 2)
+    sine = 2 * half / (1 + half * half)
+    versine = half * sine
+    position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
+    rate = (w - t) + (y * sine + x * versine)
+    return position, rate, (y - 1) + (x * sine - y * versine)
 
 
 def rise(gap, w, x, y, amplitude, kappa):
@@ -171,95 +163,74 @@ def landing(start, gap, w, x, y, amplitude):
     return math.nan, math.nan
 
 
-def contact_by(functions):
-    """The motion in contact, by the functions of numbers, ``math``, or of arrays, ``numpy``."""
+def contact(s, gap, u, x, y, gravity, ratio, zeta):
+    """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
+    and the height of the table and its velocity (Eqs. 12 and 13).
 
-    def contact(s, gap, u, x, y, gravity, ratio, zeta):
-        """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
-        and the height of the table and its velocity (Eqs. 12 and 13).
+    The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with
+    k = g′ + 2ζϖg, and h = Q + iP to e^{is}::
 
-        The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with
-        k = g′ + 2ζϖg, and h = Q + iP to e^{is}::
+        h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
 
-            h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
-
-        Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
-        Numbers are real: complex steps lose theirs where a tangent has a pole.
-        """
-        loss = 2 * zeta * ratio
-        stiffness = ratio * ratio
-        detuning = (ratio - 1) * (ratio + 1)
-        omega = ratio * functions.sqrt((1 - zeta) * (1 + zeta))
-        half = functions.tan(s / 2)
-        sine = 2 * half / (1 + half * half)
-        cosine = 1 - half * sine
-        swing = functions.tan(omega * s / 2)
-        swung = 2 * swing / (1 + swing * swing)
-        lost = -functions.expm1(-zeta * ratio * s)
-        decay = 1 - lost
-        g = decay * swung / omega
-        slope = decay * (1 - swing * swung) - zeta * ratio * g
-        lost += decay * swing * swung - zeta * ratio * g
-        real = lost - half * sine
-        imaginary = sine - g
-        scale = detuning * detuning + loss * loss
-        in_phase = (real * detuning + imaginary * loss) / scale
-        quadrature = (imaginary * detuning - real * loss) / scale
-        held = gap * (1 - lost) - u * g - gravity * lost / stiffness
-        position = held + y * in_phase + x * quadrature
-        free_rate = -u * slope - (gravity + gap * stiffness) * g
-        rate = free_rate + y * (g - quadrature) + x * in_phase
-        return position, rate, y * cosine + x * sine, x * cosine - y * sine
-
-    return contact
+    Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
+    Numbers are real: complex steps lose theirs where a tangent has a pole.
+    """
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+    detuning = (ratio - 1) * (ratio + 1)
+    omega = ratio * math.sqrt((1 - zeta) * (1 + zeta))
+    half = math.tan(s / 2)
+    sine = 2 * half / (1 + half * half)
+    cosine = 1 - half * sine
+    swing = math.tan(omega * s / 2)
+    swung = 2 * swing / (1 + swing * swing)
+    lost = -math.expm1(-zeta * ratio * s)
+    decay = 1 - lost
+    g = decay * swung / omega
+    slope = decay * (1 - swing * swung) - zeta * ratio * g
+    lost += decay * swing * swung - zeta * ratio * g
+    real = lost - half * sine
+    imaginary = sine - g
+    scale = detuning * detuning + loss * loss
+    in_phase = (real * detuning + imaginary * loss) / scale
+    quadrature = (imaginary * detuning - real * loss) / scale
+    held = gap * (1 - lost) - u * g - gravity * lost / stiffness
+    position = held + y * in_phase + x * quadrature
+    free_rate = -u * slope - (gravity + gap * stiffness) * g
+    rate = free_rate + y * (g - quadrature) + x * in_phase
+    return position, rate, y * cosine + x * sine, x * cosine - y * sine
 
 
-contact = contact_by(math)
+def bounds(motion, amplitude, ratio, zeta, kappa):
+    r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
+    what :func:`contact` returns.
 
+    What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² =
+    F′² + ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
 
-def bounds_by(functions):
-    """The bounds of the search for a release, by the functions of numbers or of arrays."""
-
-    def bounds(motion, amplitude, ratio, zeta, kappa, resonant):
-        r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
-        what :func:`contact` returns.
-
-        What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² =
-        F′² + ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
-
-            \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
-
-        Next to the resonance, where ``resonant`` is 1 and not 0, F is all of f besides 1/ϖ², and
-        forced by l = Λ√(1 + κ²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ.
-        """
-        position, rate, push, shove = motion
-        loss = 2 * zeta * ratio
-        stiffness = ratio * ratio
-        detuning = (ratio - 1) * (ratio + 1)
-        share = (1 - resonant) / (detuning * detuning + loss * loss + resonant)
-        forcing = amplitude * functions.sqrt(1 + kappa * kappa)
-        forced = forcing * (functions.sqrt(share) + resonant * (1 + loss))
-        # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
-        a = (detuning + kappa * loss) * share
-        b = (kappa * detuning - loss) * share
-        second = push - 1 - loss * rate - stiffness * position
-        third = shove - loss * second - stiffness * rate
-        f = -position - kappa * rate
-        slope = -rate - kappa * second
-        free = f + a * push + b * shove - 1 / stiffness
-        free_rate = slope + a * shove - b * push
-        energy = functions.sqrt(free_rate * free_rate + stiffness * free * free)
-        energy = energy + 2 * resonant * forcing / ratio
-        growth = 1 + 4 * zeta * zeta
-        bend = ratio * functions.sqrt(growth) * energy
-        jerk = ratio * functions.sqrt(1 + growth) * bend + forced
-        lasts = energy / ratio + forced <= (1 - resonant) / stiffness
-        return f, slope, second, third, bend + forced, jerk, lasts
-
-    return bounds
-
-
-bounds = bounds_by(math)
+        \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
+    """
+    position, rate, push, shove = motion
+    loss = 2 * zeta * ratio
+    stiffness = ratio * ratio
+    detuning = (ratio - 1) * (ratio + 1)
+    share = 1 / (detuning * detuning + loss * loss)
+    forced = amplitude * math.sqrt((1 + kappa * kappa) * share)
+    # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
+    a = (detuning + kappa * loss) * share
+    b = (kappa * detuning - loss) * share
+    second = push - 1 - loss * rate - stiffness * position
+    third = shove - loss * second - stiffness * rate
+    f = -position - kappa * rate
+    slope = -rate - kappa * second
+    free = f + a * push + b * shove - 1 / stiffness
+    free_rate = slope + a * shove - b * push
+    energy = math.sqrt(free_rate * free_rate + stiffness * free * free)
+    growth = 1 + 4 * zeta * zeta
+    bend = ratio * math.sqrt(growth) * energy
+    jerk = ratio * math.sqrt(1 + growth) * bend + forced
+    lasts = energy / ratio + forced <= 1 / stiffness
+    return f, slope, second, third, bend + forced, jerk, lasts
 
 
 def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
@@ -271,9 +242,7 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
     s = 0.0
     while s < PATIENCE:
         motion = contact(s, gap, u, x, y, 1.0, ratio, zeta)
-        f, slope, second, third, bend, jerk, lasts = bounds(
-            motion, amplitude, ratio, zeta, kappa, 0.0
-        )
+        f, slope, second, third, bend, jerk, lasts = bounds(motion, amplitude, ratio, zeta, kappa)
         if lasts:
             break
         step, last = safe_step(s, max(f, 0.0), slope, -second - kappa * third, bend, jerk)

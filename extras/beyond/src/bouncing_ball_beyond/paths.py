@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bouncing_ball_beyond.balls import Ball, H
+from bouncing_ball_beyond.tables import SINE, Table
 
 LIMITS = {
     "amplitude": (1e-12, 1e8),
@@ -20,9 +21,13 @@ LIMITS = {
 """The least and the greatest value of parameters; of all others, they are 0 and infinite."""
 
 
+OF_TABLES = ("harmonic_", "phase_")
+"""How the names of the parameters of tables begin."""
+
+
 @dataclass(frozen=True)
 class Parameter:
-    """One parameter: "amplitude" is Λ, all others are those of the ball."""
+    """One parameter: "amplitude" is Λ, all others are those of the ball or of the table."""
 
     name: str
 
@@ -30,15 +35,22 @@ class Parameter:
         """The ball and the amplitude with the value of this parameter."""
         if self.name == "amplitude":
             return ball, value
+        if self.name.startswith(OF_TABLES):
+            return ball, amplitude
         return ball.at(**{self.name: value}), amplitude
 
-    def place(self, ball: Ball, amplitude):
+    def shape(self, table, value):
+        """The table with the value of this parameter, if it is one of the table's."""
+        return table.at(**{self.name: value}) if self.name in table.parameters else table
+
+    def place(self, ball: Ball, amplitude, table=SINE):
         """The value of this parameter."""
-        return amplitude if self.name == "amplitude" else ball.parameters[self.name]
+        return {"amplitude": amplitude, **ball.parameters, **table.parameters}[self.name]
 
     def limits(self, ball: Ball, amplitude):
         """The least and the greatest value."""
-        return LIMITS.get(self.name, (0.0, np.inf))
+        least = -np.inf if self.name.startswith(OF_TABLES) else 0.0
+        return LIMITS.get(self.name, (least, np.inf))
 
 
 @dataclass(frozen=True)
@@ -58,7 +70,11 @@ class Frequency:
         powers = ball.frequency_powers.items()
         return ball.at(**{name: old[name] * times**power for name, power in powers}), value**2
 
-    def place(self, ball: Ball, amplitude):
+    def shape(self, table, value):
+        """The table, whose waveform remains as it is."""
+        return table
+
+    def place(self, ball: Ball, amplitude, table=SINE):
         """√Λ."""
         return np.sqrt(amplitude)
 
@@ -124,9 +140,15 @@ class ParameterPath:
         """The ball and the amplitude at a value of the variable."""
         values = {name: function(value) for name, function in self.functions.items()}
         amplitude = values.pop("amplitude", amplitude)
+        values = {name: x for name, x in values.items() if not name.startswith(OF_TABLES)}
         return (ball.at(**values) if values else ball), amplitude
 
-    def place(self, ball: Ball, amplitude):
+    def shape(self, table, value):
+        """The table at a value of the variable."""
+        names = self.functions.keys() & table.parameters.keys()
+        return table.at(**{name: self.functions[name](value) for name in names}) if names else table
+
+    def place(self, ball: Ball, amplitude, table=SINE):
         """The value of the variable, by the first function.
 
         Raises
@@ -137,7 +159,7 @@ class ParameterPath:
         # Only paths of one's own need this module, which takes long to import.
         from scipy.optimize import brentq
 
-        here = {**ball.parameters, "amplitude": amplitude}
+        here = {**ball.parameters, **table.parameters, "amplitude": amplitude}
         name, function = next(iter(self.functions.items()))
         ends = np.sort([function(self.low), function(self.high)])
         if not ends[0] <= here[name] <= ends[1]:
@@ -165,16 +187,16 @@ Path = Parameter | Frequency | ParameterPath
 AMPLITUDE = Parameter("amplitude")
 
 
-def path_of(along: str | Path, ball: Ball) -> Path:
+def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
     """The path that is meant by a name, or a path itself.
 
     Raises
     ------
     ValueError
-        If the ball has no such parameter.
+        If neither the ball nor the table has such a parameter.
     """
     if isinstance(along, ParameterPath):
-        allowed = ["amplitude", *ball.parameters]
+        allowed = ["amplitude", *ball.parameters, *table.parameters]
         for name in along.functions:
             if name not in allowed:
                 raise ValueError(
@@ -182,7 +204,7 @@ def path_of(along: str | Path, ball: Ball) -> Path:
                 )
     if not isinstance(along, str):
         return along
-    allowed = ["amplitude", "frequency", *ball.parameters]
+    allowed = ["amplitude", "frequency", *ball.parameters, *table.parameters]
     if along in vars(ball) and along not in allowed:
         raise ValueError(
             f"along = {along!r}: the ball is given by {' and '.join(ball.parameters)}; start from"
@@ -191,6 +213,11 @@ def path_of(along: str | Path, ball: Ball) -> Path:
     if along not in allowed:
         raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)} or a path")
     return Frequency() if along == "frequency" else Parameter(along)
+
+
+def place_on(path: Path, ball: Ball, amplitude, table: Table):
+    """The value of what changes on a path; only the parameters of a table need the table."""
+    return path.place(ball, amplitude, table) if table.parameters else path.place(ball, amplitude)
 
 
 def _check_analytic(name, function, samples):

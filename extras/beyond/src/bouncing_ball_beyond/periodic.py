@@ -11,8 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import (
     Ball,
-    Corrected,
-    Rigid,
     brief,
     broadcast_named,
     check_ball,
@@ -20,6 +18,7 @@ from bouncing_ball_beyond.balls import (
     whole_number,
 )
 from bouncing_ball_beyond.equations import VANISHED, Linear, OrbitEquations, newton, product_of
+from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 TOGETHER = 16
 """Rows whose orbits are searched for at a time, with 3072 impacts each."""
@@ -82,12 +81,14 @@ class PeriodicOrbit:
         return int(self.equations.periods)
 
     @cached_property
-    def _changed(self) -> tuple[Ball, float]:
+    def _changed(self) -> tuple[Ball, float, Table]:
         ball = self.equations.ball
         amplitude = self.equations.amplitude
+        table = self.equations.table
         for path, value in zip(self.equations.along, self.z[self.equations.size :], strict=True):
             ball, amplitude = path.apply(ball, amplitude, value)
-        return ball, float(amplitude)
+            table = path.shape(table, float(value)) if table.parameters else table
+        return ball, float(amplitude), table
 
     @property
     def ball(self) -> Ball:
@@ -100,9 +101,14 @@ class PeriodicOrbit:
         return self._changed[1]
 
     @property
+    def table(self) -> Table:
+        """The waveform of the table."""
+        return self._changed[2]
+
+    @property
     def parameters(self) -> dict[str, float]:
-        """Λ, the parameters of the ball, and the variables of the paths of the orbit."""
-        values = {"amplitude": self.amplitude, **self.ball.parameters}
+        """Λ, the parameters of ball and table, and the variables of the paths of the orbit."""
+        values = {"amplitude": self.amplitude, **self.ball.parameters, **self.table.parameters}
         names = [path.name for path in self.equations.along]
         values |= dict(zip(names, self.z[self.equations.size :], strict=True))
         return {name: float(value) for name, value in values.items()}
@@ -114,7 +120,7 @@ class PeriodicOrbit:
     @cached_property
     def _ends(self):
         ends = self.equations.ends(self.z[np.newaxis])
-        return type(ends)(*(each[0] for each in ends))
+        return type(ends)(*(each[0] for each in ends[:5]), self.table)
 
     @cached_property
     def _linear(self) -> Linear:
@@ -166,13 +172,14 @@ class PeriodicOrbit:
 
     @property
     def impact_velocity(self):
-        """Velocity of the ball as an impact starts."""
-        return self._each(self.amplitude * np.cos(self.times) - self.speeds)
+        """Absolute velocity of the ball as an impact starts, in units of g/Ω."""
+        return self._each(self.amplitude * self.table(self.times, 1) - self.speeds)
 
     @property
     def bounce_velocity(self):
         """Velocity of the ball as the contact ends."""
-        return self._each(self.amplitude * np.cos(self._ends.leaves) + self._ends.speed)
+        velocity = self.amplitude * self.table(self._ends.leaves, 1)
+        return self._each(velocity + self._ends.speed)
 
     @property
     def apparent_restitution(self):
@@ -287,11 +294,14 @@ def _first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
     return z
 
 
-def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
+def guess_of_instants(
+    ball: Ball, periods, amplitude, side: int = 1, table: Table = SINE
+) -> NDArray:
     """Rows z near n-T orbits, from impacts as instants of free impacts (the corrected model).
 
     At the centroid of its force, which is at the phase ψ, an impact has the speed u with
-    (1 + r(u)) u + σ (1 - Λ sin ψ) = 2πn and Λ cos ψ = u - πn. Below the saddle-node, ψ is 0.
+    (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node, ψ is the phase at
+    which the table rises fastest.
 
     Parameters
     ----------
@@ -300,9 +310,11 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
     periods, amplitude : ndarray, shape (rows,)
     side : {1, -1}
         The side of the saddle-node: 1 for the orbits that are stable next to it.
+    table : Table
+        With numbers as its parameters.
     """
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
-    psi = np.full(amplitude.shape, side * np.pi / 3)
+    psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
     step, before = np.zeros((2, *amplitude.shape))
     at = np.inf
     with np.errstate(all="ignore"):
@@ -312,18 +324,18 @@ def guess_of_instants(ball: Ball, periods, amplitude, side: int = 1) -> NDArray:
                 at = u
                 r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)
-            load = np.where(known, loss * (1 - amplitude * np.sin(psi)), 0.0)
+            load = np.where(known, loss * (1 + amplitude * table(psi, 2)), 0.0)
             excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
             # The secant method, with a slope of -2 at first, and limited as the phase nears 0.
             slope = np.where(step == 0, -2.0, np.clip((excess - before) / step, -8.0, -1.0))
             step = -excess / slope
             before = excess
             u = u + step
-            psi = side * np.arccos(np.clip((u - np.pi * periods) / amplitude, -1, 1))
+            psi = table.phase_of_slope((u - np.pi * periods) / amplitude, side)
             if np.all(np.abs(step) < 1e-7 * u):
                 break
     # The impacts of a corrected ball are at the centroids themselves.
-    touch = psi if isinstance(ball, Corrected) else psi - np.where(known, centroid, 0.0)
+    touch = psi if ball.sinks else psi - np.where(known, centroid, 0.0)
     columns = [touch, u, amplitude]
     if ball.lasts:
         free = ball.free(u)
@@ -343,7 +355,14 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
     return row, arrays[len(names) :], shape
 
 
-def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "stable"):
+def orbit(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: ArrayLike = 1,
+    side: str = "stable",
+    table: Table = SINE,
+):
     """The n-T orbit of a ball at the amplitude Λ of the table.
 
     Parameters
@@ -354,7 +373,11 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     n : array_like of int
         The number of periods of the table between two impacts.
     side : {"stable", "unstable"}
-        The side of the saddle-node on which the orbit is.
+        The side of the saddle-node on which the orbit is: impacts after or before the phase at
+        which the table rises fastest. A table that rises several times in a period has more orbits,
+        which `orbits` lists.
+    table : Table
+        The waveform of the table, by default a sine.
 
     Returns
     -------
@@ -375,6 +398,7 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     >>> round(orbit(Rigid(0.5), amplitude=1.2).phase, 6)
     0.510164
     """
+    check_table(table)
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     counts = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
     for count in counts[counts % 1 != 0]:
@@ -382,7 +406,7 @@ def orbit(ball: Ball, *, amplitude: ArrayLike, n: ArrayLike = 1, side: str = "st
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    equations = OrbitEquations(row, 1, periods)
+    equations = OrbitEquations(row, 1, periods, table=table)
     sign = 1 if side == "stable" else -1
     z, good = near_instants(equations, amplitudes.astype(float), sign)
     admissible = good & equations.admissible(z)
@@ -406,7 +430,8 @@ def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> t
     """Orbits with one impact near those of the corrected model, as rows, and which of them are
     found on a side of the saddle-node.
     """
-    guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign)
+    on_table = sign, equations.table
+    guess = guess_of_instants(equations.ball, equations.periods, amplitude, *on_table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = _first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
@@ -424,8 +449,8 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
     from bouncing_ball_beyond.continuation import limits
 
     found: list = [None] * len(amplitude)
-    # With a number r the instants are the impacts, so that there are no others.
-    if not isinstance(equations.ball, Rigid) or callable(equations.ball.restitution):
+    # With a number r and a sine the instants are the impacts, so that there are no others.
+    if not (equations.ball.simple and equations.table.compiled):
         orbits = shortest_contacts(equations, amplitude, sign)
         found = [each[0] if each else None for each in orbits]
     missing = [i for i, each in enumerate(found) if not (each and each.admissible)]
@@ -433,7 +458,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
     # The limits of balls that creep off the table take long to find.
     ending = [i for i in missing if ends[i]]
     rows = equations.rows(ending)
-    lowest = limits(rows.ball, n=rows.periods) if ending else []
+    lowest = limits(rows.ball, n=rows.periods, table=equations.table) if ending else []
     folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
@@ -478,6 +503,7 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
         ball=equations.ball.rows(i),
         periods=int(np.ravel(equations.periods)[i if np.ndim(equations.periods) else 0]),
         amplitude=float(np.ravel(equations.amplitude)[i if np.ndim(equations.amplitude) else 0]),
+        table=equations.table.rows(i),
     )
 
 
@@ -499,13 +525,13 @@ def apart(first: float, second: float) -> tuple[str, str]:
 
 
 def orbits(
-    ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1
+    ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
 ) -> list[PeriodicOrbit]:
     """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
 
-    With one impact, the speeds at which a ball comes back are found at 96 phases, and from there
-    all orbits. With several impacts this is a search: Newton's method closes the motions of 2592
-    first impacts, and orbits may be missed.
+    With one impact, the speeds at which a ball comes back are found at 96 phases, or at as many for
+    each wave of the table, and from there all orbits. With several impacts this is a search:
+    Newton's method closes the motions of 2592 first impacts, and orbits may be missed.
 
     Parameters
     ----------
@@ -513,6 +539,8 @@ def orbits(
     amplitude : float
         Λ.
     impacts, periods : int
+    table : Table
+        The waveform of the table, by default a sine.
 
     Returns
     -------
@@ -528,9 +556,9 @@ def orbits(
     """
     check_ball(ball)
     amplitude = _one_amplitude(amplitude)
-    equations = OrbitEquations(
-        ball, whole_number("impacts", impacts), whole_number("periods", periods)
-    )
+    check_table(table)
+    counts = whole_number("impacts", impacts), whole_number("periods", periods)
+    equations = OrbitEquations(ball, *counts, table=table)
     (z,) = _all_orbits(equations, np.array([amplitude]))
     found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
@@ -592,9 +620,10 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
 
     Orbits lie on the curves of such impacts, which are crossed at 96 phases.
     """
-    longest = 2.2 * np.pi * equations.periods + amplitude
+    table = equations.table
+    longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
     speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]
-    phases = np.linspace(0, 2 * np.pi, 96, endpoint=False)[:, np.newaxis]
+    phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)[:, np.newaxis]
     tau, u = np.broadcast_arrays(phases, speeds)
 
     def impacts(tau, u, row):
@@ -603,7 +632,7 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
         if ball.lasts:
             # Contacts of an orbit are shorter than its period.
             periods = np.broadcast_to(equations.periods, len(amplitude))[row]
-            columns.insert(2, ball.first_release(*columns, periods=periods))
+            columns.insert(2, ball.first_release(*columns, periods=periods, table=table))
         return np.stack(columns, axis=-1)
 
     row = np.repeat(np.arange(len(amplitude)), tau[0].size)
@@ -628,11 +657,11 @@ def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
     k = equations.impacts
     turn = 2 * np.pi
     (amplitude,) = amplitude
-    fastest = 1.1 * np.pi * int(equations.periods) + amplitude
+    fastest = 1.1 * np.pi * int(equations.periods) + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
     none = np.zeros(tau.size)
-    first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel())
+    first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel(), equations.table)
     record, going, after = follow(first, k)
     turns, phase, speed, T, *_ = np.moveaxis(record[..., going], 1, 0)
     times = turn * turns + phase
@@ -683,7 +712,12 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 
 def orbit_near(
-    ball: Ball, *, amplitude: float, phases: ArrayLike, velocities: ArrayLike
+    ball: Ball,
+    *,
+    amplitude: float,
+    phases: ArrayLike,
+    velocities: ArrayLike,
+    table: Table = SINE,
 ) -> PeriodicOrbit:
     """The periodic orbit near a guess: phases and velocities of the ball before its impacts.
 
@@ -696,6 +730,8 @@ def orbit_near(
     amplitude : float
     phases, velocities : array_like, shape (impacts,)
         Velocities are absolute.
+    table : Table
+        The waveform of the table, by default a sine.
 
     Raises
     ------
@@ -707,12 +743,13 @@ def orbit_near(
     phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
     if phases.shape != velocities.shape or phases.ndim != 1:
         raise ValueError("phases, velocities: must have one entry for each impact")
-    u = amplitude * np.cos(phases) - velocities
-    T = ball.first_release(phases, u, amplitude)
+    check_table(table)
+    u = amplitude * table(phases, 1) - velocities
+    T = ball.first_release(phases, u, amplitude, table=table)
     if not np.isfinite(T).all():
         raise OrbitNotFound("an impact of the guess does not end: the ball stays on the table")
-    impact = ball.contact(phases, u, T, amplitude)
-    bounce = impact.speed + amplitude * np.cos(phases + impact.duration)
+    impact = ball.contact(phases, u, T, amplitude, table=table)
+    bounce = impact.speed + amplitude * table(phases + impact.duration, 1)
     lengths = impact.duration + bounce - np.roll(velocities, -1)
     turns = np.round((phases + lengths - np.roll(phases, -1)) / (2 * np.pi))
     times = phases[0] + np.append(0.0, np.cumsum(np.roll(phases, -1) - phases + 2 * np.pi * turns))
@@ -722,4 +759,4 @@ def orbit_near(
     columns = [times[:-1], u, T] if ball.lasts else [times[:-1], u]
     z = np.append(np.stack(columns, axis=-1).ravel(), amplitude)
     what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"
-    return solved(OrbitEquations(ball, len(u), periods), z, what)
+    return solved(OrbitEquations(ball, len(u), periods, table=table), z, what)

@@ -21,9 +21,10 @@ from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
-from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.paths import OF_TABLES, Path, path_of
 from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.special_orbits import scales
+from bouncing_ball_beyond.tables import SINE, Table
 
 OF_IMPACTS = {
     "phase": ("phase of the table as an impact starts", "φ", "rad"),
@@ -100,6 +101,7 @@ def to_dataset(found: Found) -> xr.Dataset:
             "source": "bouncing_ball_beyond",
             "impacts": first.impacts,
             "ball": json.dumps(first.ball, default=encoded),
+            "table": json.dumps(list(first.table.harmonics)),
             "along": json.dumps(along),
             "form": type(found).__name__,
         }
@@ -151,6 +153,8 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
         raise ValueError(
             "the orbits of one dataset have balls of one kind, and change along one path"
         )
+    if len({each.table.at(**dict.fromkeys(each.table.parameters, 0.0)) for each in orbits}) > 1:
+        raise ValueError("the orbits of one dataset are on tables with the same harmonics")
     return orbits
 
 
@@ -234,11 +238,16 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     if not {"ball", "along", "form"} <= data.attrs.keys():
         raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
     ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
+    # Datasets of the first versions have no table: theirs is a sine.
+    table = SINE
+    if any(name.startswith(OF_TABLES) for name in map(str, data.variables)):
+        table = Table(json.loads(data.attrs["table"]))
     missing = ball.parameters.keys() - data.variables
     if missing:
         raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
-    paths = [_path(each, ball, along) for each in json.loads(data.attrs["along"])]
-    orbits = [_orbit_at(data.isel(point=i), ball, paths) for i in range(data.sizes["point"])]
+    paths = [_path(each, ball, along, table) for each in json.loads(data.attrs["along"])]
+    rows = range(data.sizes["point"])
+    orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in rows]
     form = data.attrs["form"]
     if form == "PeriodicOrbit":
         return orbits[0]
@@ -253,26 +262,27 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     return SpecialCurve(*given, common) if form == "SpecialCurve" else FollowedBranch(*given)
 
 
-def _path(name: str, ball: Ball, given: Path | None) -> Path:
+def _path(name: str, ball: Ball, given: Path | None, table: Table) -> Path:
     """The path of a name, or the given one if that is its name."""
     if given is not None and given.name == name:
         return given
     try:
-        return path_of(name, ball)
+        return path_of(name, ball, table)
     except ValueError:
         raise ValueError(
             f"the orbits are on a path {name!r} of their user: give it as along="
         ) from None
 
 
-def _orbit_at(row: xr.Dataset, ball: Ball, paths: list[Path]) -> PeriodicOrbit:
+def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> PeriodicOrbit:
     """The orbit of one row."""
     columns = [row.impact_time.values, -row.relative_impact_velocity.values]
     if ball.lasts:
         columns.append(row.scaled_duration.values)
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})
     given = len(columns[0]), int(row.periods), float(row.amplitude)
-    equations = OrbitEquations(here, *given, tuple(paths))
+    on = table.at(**{name: float(row[name]) for name in table.parameters})
+    equations = OrbitEquations(here, *given, tuple(paths), on)
     values = [float(row[path.name]) for path in paths]
     return PeriodicOrbit(
         equations, np.append(np.stack(columns, axis=-1), values), str(row.kind.values)

@@ -1,6 +1,6 @@
 """The motion of a ball in a contact of any force law, in a time in which it is analytic.
 
-The penetration p = -δ obeys p″ = a - f, with the load a = g - Λ sin(τ + t) and the force f(p, p′)
+The penetration p = -δ obeys p″ = a - f, with the load a = g + w″(τ + t) and the force f(p, p′)
 per mass. Forces such as p^{3/2} are not smooth at p = 0, where a contact begins and ends, but are
 analytic functions of the root q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
 
@@ -151,8 +151,8 @@ class ContactMotion(NamedTuple):
     kinks : tuple of callables
         Functions of (q, v, t, given) whose zeros are kinks of the force.
     given : mapping
-        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity" and what the force
-        needs.
+        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity", the "table" with its
+        parameters, and what the force needs.
     steps : mapping
         Imaginary parts of what is given, arrays of the shape (rows, directions).
     """
@@ -185,8 +185,14 @@ class ContactMotion(NamedTuple):
 
 
 def load_of(t, given):
-    """a = g - Λ sin(τ + t)."""
-    return given["gravity"] - given["amplitude"] * np.sin(given["tau"] + t)
+    """a = g + Λ W″(τ + t)."""
+    return given["gravity"] + given["amplitude"] * waveform(given)(given["tau"] + t, 2)
+
+
+def waveform(given):
+    """The table with the values of its parameters that are given."""
+    table = given["table"]
+    return table.at(**{name: given[name] for name in table.parameters})
 
 
 def rates(motion, state):
@@ -272,7 +278,7 @@ def linearised(motion, nodes, h):
     felt = 1 - motion.force(p, v, a + 1j * H, given).imag / H
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
-    by_t = -lever * felt * given["amplitude"] * np.cos(given["tau"] + t)
+    by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
     slopes = (each[..., np.newaxis] for each in (by_q, by_v, by_t, bend))
     return Linearised(*slopes, h[:, np.newaxis, np.newaxis])
 

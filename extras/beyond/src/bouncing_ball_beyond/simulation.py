@@ -2,8 +2,8 @@
 
 A ball of the restitution model or of a spring and damper is followed by the scalar loops of
 :mod:`.one_ball`, and many balls, as well as those of other contacts, by the same steps on arrays. A
-ball whose bounces end on the table, or that does not rise above it, rests there until Λ sin τ rises
-to 1, or for ever if Λ ≤ 1 (Eq. 9).
+ball whose bounces end on the table, or that does not rise above it, rests there until the table
+falls faster than a ball, -w″ > 1, or for ever if it never does (Eq. 9).
 """
 
 from dataclasses import dataclass, replace
@@ -16,22 +16,16 @@ from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import (
     FEW,
     Ball,
-    Corrected,
     H,
-    Rigid,
-    SpringDamper,
     brief,
     check_ball,
     checked,
-    flights,
-    has_closed_form,
-    releases,
     root_of_parabola,
     safe_steps,
-    table_at,
     whole_number,
 )
 from bouncing_ball_beyond.one_ball import COLUMNS, ROUNDING, STEPS, TURN
+from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 one_ball.compile_loops()
 
@@ -64,7 +58,7 @@ class Balls:
 
     ``turns`` and ``phase`` are the whole turns of the table and its phase there, so that the phase
     of a late impact has all digits, and ``speed`` is u. Parameters of the ball are numbers, or
-    arrays over the row.
+    arrays over the row. All are on one table.
     """
 
     ball: Ball
@@ -72,63 +66,71 @@ class Balls:
     turns: np.ndarray
     phase: np.ndarray
     speed: np.ndarray
+    table: Table = SINE
 
     def take(self, which):
         """Some of the balls, by a mask or their indices."""
-        rows = {name: value[which] for name, value in vars(self).items() if name != "ball"}
-        return Balls(ball=self.ball.rows(which), **rows)
+        arrays = ("amplitude", "turns", "phase", "speed")
+        rows = {name: getattr(self, name)[which] for name in arrays}
+        return replace(self, ball=self.ball.rows(which), **rows)
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def landings(start, gap, w, x, y, amplitude):
-    """:func:`.one_ball.landing` for arrays of one shape."""
-    given = start, gap, w, x, y, amplitude
-    absolute = w + x
-    aloft = np.sqrt(np.maximum(absolute * absolute + 2 * (gap + (y - amplitude)), 0.0))
+def landings(table, start, gap, w, waves, height, amplitude):
+    """:func:`.one_ball.landing` for arrays of one shape, with the table at a height at first."""
+    given = start, gap, w, *waves, amplitude
+    absolute = w + table.pulls(waves)[0]
+    below = gap + (height - amplitude * table.peaks[0])
+    aloft = np.sqrt(np.maximum(absolute * absolute + 2 * below, 0.0))
     rows = np.array([*given, absolute - aloft, absolute + aloft])
-    time = np.empty_like(start)
-    speed = np.empty_like(start)
+    _, _, bend, jerk, *_ = table.bounds
+    fewest = FEW if table.compiled else 1
+    time = np.full_like(start, np.nan)
+    speed = np.full_like(start, np.nan)
     left = np.arange(start.size)
-    while left.size >= FEW:
-        t, gap, w, x, y, amplitude, ascent, descent = rows
+    steps = 0
+    while left.size >= fewest and steps < STEPS:
+        steps += 1
+        t, gap, w, *waves, amplitude, ascent, descent = rows
         t = np.where((ascent <= t) & (t < descent), descent, t)
-        position, rate, second = flights(t, gap, w, x, y)
+        position, rate, second = table.flights(t, gap, w, waves)
         f = np.maximum(position, 0.0)
-        step, last = safe_steps(t, f, rate, second, 1 + amplitude, amplitude)
+        step, last = safe_steps(t, f, rate, second, 1 + bend * amplitude, jerk * amplitude)
         rows[0] = t + step
         if last.any():
-            third = x + w - t - rate
+            third = table.third(t, waves)
             slowed = -rate - step * (second + step * third / 2)
             time[left] = rows[0]
             speed[left] = np.maximum(slowed, 0.0)
             (going,) = (~last).nonzero()
             left = left[going]
             rows = rows.take(going, axis=1)
-    for i in left:
+    for i in left if table.compiled else ():
         time[i], speed[i] = one_ball.landing(*(each[i] for each in given))
     return time, speed
 
 
-def instants(ball, landed, gap, w, x, y, amplitude):
+def instants(ball, table, landed, gap, w, waves, amplitude):
     r"""The times after landings at which the gap is that at which impacts of the ball start, and
     the speeds.
 
-    f = δ - h(u) with the gap h(u) at the start has f″ ≥ -(1 + Λ)(1 + \|h′\|) if h′ is constant, as
-    it is for the instants of a linear contact. For others a step may pass the zero of f, and
+    f = δ - h(u) with the gap h(u) at the start has f″ ≥ -max(1 + w″)(1 + \|h′\|) if h′ is constant,
+    as it is for the instants of a linear contact. For others a step may pass the zero of f, and
     Newton's method goes back to it.
     """
     t = landed.copy()
     speed = np.empty_like(t)
+    strongest = 1 + table.bounds[2] * amplitude
     for _ in range(STEPS):
-        position, rate, second = flights(t, gap, w, x, y)
+        position, rate, second = table.flights(t, gap, w, waves)
         start = ball.start(-rate + 1j * H)
         slope_of_start = start.imag / H
         f = position - start.real
         slope = rate + slope_of_start * second
         lag = np.abs(slope_of_start)
-        bend = (1 + amplitude) * (1 + lag)
+        bend = strongest * (1 + lag)
         step = root_of_parabola(np.maximum(f, 0.0), slope, bend)
-        size = np.abs(gap) + (t + lag) * (np.abs(w) + (1 + amplitude) * (1 + t))
+        size = np.abs(gap) + (t + lag) * (np.abs(w) + strongest * (1 + t))
         passed = f < -16 * ROUNDING * size  # more than rounding
         step = np.where(passed, -f / slope, step)
         speed = -rate
@@ -140,47 +142,31 @@ def instants(ball, landed, gap, w, x, y, amplitude):
 
 def leave(balls):
     """How balls leave the table after their impacts."""
-    ball = balls.ball
-    u = balls.speed
-    if isinstance(ball, SpringDamper):
-        duration, w = releases(ball, balls.phase, u, balls.amplitude)
-        own_time = np.where(duration < np.inf, duration * ball.frequency_ratio, np.nan)
-    else:
-        own_time, (duration, gap, w, _) = ball.first_impact(balls.phase, u, balls.amplitude)
-        duration = np.where(np.isnan(own_time), np.inf, duration)
-    if not ball.lasts:
+    given = balls.phase, balls.speed, balls.amplitude, balls.table
+    own_time, duration, gap, w = balls.ball.leaves(*given)
+    if not balls.ball.lasts:
         return rest(balls, gap, w)
-    if isinstance(ball, SpringDamper) or np.any(ball.kappa):
-        # The release is a zero of δ + κδ′, but for rounding.
-        gap = -ball.kappa * w
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
     return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
 
 
-def left_of_contacts(balls):
-    """How long contacts would last after the instants that stand for them; 0 for other balls."""
-    if not isinstance(balls.ball, Corrected):
-        return np.zeros(balls.speed.shape)
-    signature = balls.ball.signature(balls.speed)
-    return signature.duration - signature.centroid
-
-
 def rest(balls, gap, w):
     """How balls leave after instantaneous impacts, some of them after :func:`.one_ball.rest`."""
+    table = balls.table
     amplitude = balls.amplitude
     phase = balls.phase
-    left = left_of_contacts(balls)
+    left = balls.ball.left(balls.speed)
     restitution = w / np.maximum(balls.speed, TINY)
     # The limit of :func:`.one_ball.settling`, moved so that rounding does not decide here.
-    gravity = 1 - table_at(phase, amplitude)[1]
+    gravity = 1 + amplitude * table(phase, 2)
     limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
-    settles = (gap == 0) & (w * np.maximum(amplitude, 1.0) <= limit)
+    settles = (gap == 0) & (w * np.maximum(amplitude * table.bounds[4], 1.0) <= limit)
     stay = np.full(w.shape, -1.0)
     leaves = phase.copy()
-    some = settles | may_sink(gap, w, amplitude, left)
+    some = settles | may_sink(gap, w, 1 + table.bounds[2] * amplitude, left)
     if some.any():
         given = (each[some].tolist() for each in (gap, w, restitution, phase, amplitude, left))
-        stay[some], leaves[some] = np.transpose([*map(one_ball.rest, *given)])
+        stay[some], leaves[some] = np.transpose([*map(table.rest, *given)])
     rests = stay >= 0
     duration = np.maximum(stay, 0.0)
     leaves = np.where(rests, leaves, phase)
@@ -190,12 +176,11 @@ def rest(balls, gap, w):
     return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
 
 
-def may_sink(gap, w, amplitude, left):
+def may_sink(gap, w, strongest, left):
     """Which balls may not rise after the time ``left``, or not through the level of the table.
 
-    The others do against the strongest relative gravity, 1 + Λ.
+    The others do against the strongest relative gravity, the greatest 1 + w″.
     """
-    strongest = 1 + amplitude
     return (gap < 0) & ((w <= strongest * left) | (w * w + 2 * strongest * gap <= 0))
 
 
@@ -213,35 +198,45 @@ def fly(balls, leaving):
     force does not vanish where δ + κδ′ = 0.
     """
     ball = balls.ball
+    table = balls.table
     amplitude = balls.amplitude
     gap = leaving.gap
     w = leaving.speed
-    x, y = table_at(leaving.phase, amplitude)
-    # A ball without a speed leaves because the table falls away: Y ≥ 1, but for rounding.
+    waves = [np.broadcast_to(each, w.shape) for each in table.waves(leaving.phase, amplitude)]
+    height = waves[1] if table.compiled else amplitude * table(leaving.phase)
+    _, y, x = table.pulls(waves)
+    # A ball without a speed leaves because the table falls away: -w″ ≥ 1, but for rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
-    strongest = 1 + amplitude
+    strongest = 1 + table.bounds[2] * amplitude
     start = (w + np.sqrt(np.maximum(w * w + 2 * strongest * gap, 0.0))) / strongest
-    left_behind = (2 * x + np.sqrt(4 * x * x + 12 * amplitude * np.maximum(y - 1, 0.0))) / amplitude
+    # δ ≥ (-w″ - 1) t²/2 - w‴ t³/6 - A t⁴/24 with the bound A of the fourth derivative.
+    fourth = table.bounds[4] * amplitude
+    left_behind = (2 * x + np.sqrt(4 * x * x + 12 * fourth * np.maximum(y - 1, 0.0))) / fourth
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
     kappa = np.broadcast_to(ball.kappa, w.shape)
-    left = left_of_contacts(balls)
+    left = ball.left(balls.speed)
     resumes = np.zeros(w.shape, bool)
-    # A ball with w ≥ (1 + √2) κ (1 + Λ) has κ (1 + Λ) at the level, and δ + κδ′ rises up to there.
+    # A ball with w ≥ (1 + √2) κ g has κ g at the level, and δ + κδ′ rises up to there, under the
+    # strongest gravity g.
     late = np.maximum(left, (1 + np.sqrt(2)) * kappa)
-    for i in may_sink(gap, w, amplitude, late).nonzero()[0]:
-        given = gap[i], w[i], x[i], y[i], amplitude[i]
+    for i in may_sink(gap, w, strongest, late).nonzero()[0]:
+        given = gap[i], w[i], leaving.phase[i], amplitude[i]
         if kappa[i] > 0:
-            resumes[i], start[i] = one_ball.rise(*given, kappa[i])
+            resumes[i], start[i] = table.resumption(*given, kappa[i])
         else:
-            start[i] = one_ball.emergence(left[i], *given)
+            start[i] = table.emergence(left[i], *given)
     time, speed = np.full((2, *w.shape), np.nan)
-    given = np.array([start, gap, w, x, y, amplitude])
     (lands,) = (~resumes & (start < np.inf)).nonzero()
-    time[lands], speed[lands] = landings(*given[:, lands])
-    if isinstance(ball, Corrected):
-        return instants(ball, time, gap, w, x, y, amplitude)
+    given = [each[lands] for each in waves]
+    if table.compiled:
+        given[1] = y[lands]
+    given = start[lands], gap[lands], w[lands], given, height[lands], amplitude[lands]
+    time[lands], speed[lands] = landings(table, *given)
+    if ball.sinks:
+        return instants(ball, table, time, gap, w, waves, amplitude)
     time[resumes] = start[resumes]
-    speed[resumes] = -flights(*given[:5, resumes])[1]
+    given = start[resumes], gap[resumes], w[resumes], [each[resumes] for each in waves]
+    speed[resumes] = -table.flights(*given)[1]
     return time, speed
 
 
@@ -274,9 +269,8 @@ def step(balls):
 
 def follow_each(balls, impacts):
     """:func:`follow` for balls that have a scalar loop, one after the other."""
-    ball = balls.ball
-    given = (0.0, ball.frequency_ratio, ball.zeta) if ball.lasts else (ball.restitution, 0.0, 0.0)
-    state = balls.turns, balls.phase, balls.speed, balls.amplitude, *given, ball.kappa
+    given = balls.ball.looped(balls.table)
+    state = balls.turns, balls.phase, balls.speed, balls.amplitude, *given, balls.ball.kappa
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     ends = np.empty((4, balls.phase.size))
     for j, numbers in enumerate(zip(*np.broadcast_arrays(*state), strict=True)):
@@ -300,9 +294,7 @@ def follow(balls, impacts):
     after : Balls
         These, before their next impacts.
     """
-    ball = balls.ball
-    constant = isinstance(ball, Rigid) and not callable(ball.restitution)
-    if balls.phase.size < FEW and (constant or has_closed_form(ball)):
+    if balls.phase.size < FEW and balls.ball.looped(balls.table):
         return follow_each(balls, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     left = np.arange(balls.phase.size)
@@ -355,10 +347,11 @@ def grid_of(ball, **values):
     return grid, ball, flat[: len(values)]
 
 
-def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
+def first_impacts(ball, amplitude, phase, velocity, relative_velocity, table=SINE):
     """The grid of first impacts and the balls before them; the arguments are those of
     :func:`simulate`.
     """
+    check_table(table)
     absolute = relative_velocity is None
     if not absolute and velocity is not None:
         raise ValueError("velocity, relative_velocity: at most one of them may be given")
@@ -368,13 +361,13 @@ def first_impacts(ball, amplitude, phase, velocity, relative_velocity):
     grid, ball, (amplitude, phase, value) = grid_of(ball, amplitude=amplitude, phase=phase, **given)
     if (amplitude < 0).any():
         raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
-    speed = amplitude * np.cos(phase) * absolute - value
+    speed = amplitude * table(phase, 1) * absolute - value
     if (speed < 0).any():
         raise ValueError(
             f"{name} = {value[np.argmin(speed)]:g}: the ball rises from the table, by a relative"
             f" velocity of {-speed.min():g}"
         )
-    return grid, Balls(ball, amplitude, *reduced(phase), speed)
+    return grid, Balls(ball, amplitude, *reduced(phase), speed, table)
 
 
 DESCRIPTIONS = {
@@ -431,7 +424,16 @@ def described(found, descriptions):
     return found
 
 
-def simulate(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=None, impacts=100):
+def simulate(
+    ball,
+    *,
+    amplitude,
+    phase=0.0,
+    velocity=None,
+    relative_velocity=None,
+    impacts=100,
+    table=SINE,
+):
     """The impacts of a ball that begins with a given first impact.
 
     Parameters
@@ -449,6 +451,8 @@ def simulate(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
         In its place, the velocity relative to the table, δ′ ≤ 0.
     impacts : int
         Largest number of impacts.
+    table : Table
+        The waveform of the table, by default a sine.
 
     Returns
     -------
@@ -470,11 +474,11 @@ def simulate(ball, *, amplitude, phase=0.0, velocity=None, relative_velocity=Non
     >>> simulate(Rigid(0.5), amplitude=0.0, velocity=-4.0, impacts=3).time.values.tolist()
     [0.0, 4.0, 6.0]
     """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
     record, going, _ = follow(balls, whole_number("impacts", impacts))
     turns, start, u, _, duration, _, w, flight_time = np.moveaxis(record, 1, 0)
-    before = balls.amplitude * np.cos(start)
-    after = balls.amplitude * np.cos(start + np.where(duration < np.inf, duration, np.nan))
+    before = balls.amplitude * table(start, 1)
+    after = balls.amplitude * table(start + np.where(duration < np.inf, duration, np.nan), 1)
     status = np.full(balls.phase.shape, "permanent contact")
     status[going] = "bouncing"
     found = {
@@ -500,12 +504,13 @@ def history(
     relative_velocity=None,
     periods=10.0,
     samples=200,
+    table=SINE,
 ):
     """A ball over time, from a first impact as in :func:`simulate`.
 
     Parameters
     ----------
-    ball, amplitude, phase, velocity, relative_velocity
+    ball, amplitude, phase, velocity, relative_velocity, table
         As in :func:`simulate`.
     periods : float
         Number of periods 2π of the table.
@@ -523,19 +528,19 @@ def history(
     ValueError
         As :func:`simulate`, or if a ball has more than a million impacts in this time.
     """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity)
+    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
     nothing = np.zeros((0, len(COLUMNS), balls.phase.size))
     return over_time(grid, balls, nothing, periods, samples)
 
 
-def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
+def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200, table=SINE):
     """A ball that is dropped at rest above the table, over time.
 
     Parameters
     ----------
     height : float or array
         Height above the middle of the motion of the table, in units of g/Ω².
-    ball, amplitude, phase, periods, samples
+    ball, amplitude, phase, periods, samples, table
         As in :func:`history`; the phase is that of the table when the ball is dropped.
 
     Returns
@@ -558,12 +563,13 @@ def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200):
     grid, ball, (height, amplitude, phase) = grid_of(
         ball, height=height, amplitude=amplitude, phase=phase
     )
-    gap = height - amplitude * np.sin(phase)
+    check_table(table)
+    gap = height - amplitude * table(phase)
     if (gap < 0).any():
         raise ValueError(f"height = {height[np.argmin(gap)]:g}: is below the table")
     nothing = np.zeros(gap.shape)
-    w = -amplitude * np.cos(phase)
-    balls = Balls(ball, amplitude, nothing, phase, nothing)
+    w = -amplitude * table(phase, 1)
+    balls = Balls(ball, amplitude, nothing, phase, nothing, table)
     time, speed = fly(balls, Leaving(nothing, nothing, nothing, phase, gap, w))
     turns, lands = reduced(phase + time)
     fall = np.array([nothing, phase, nothing, nothing, nothing, gap, w, time])
@@ -588,41 +594,45 @@ def over_time(grid, balls, fall, periods, samples):
             if len(record) > MOST_IMPACTS:
                 raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
         record = record[np.isfinite(record[:, 0])]
-        one = balls.ball.rows([j])
-        gap, rate, found["contact"][j] = states_at(record, origin, one, amplitude, times)
-        found["table"][j] = amplitude * np.sin(origin + times)
+        one = balls.take([j])
+        gap, rate, found["contact"][j] = states_at(record, origin, one, times)
+        found["table"][j] = amplitude * balls.table(origin + times)
         found["ball"][j] = gap + found["table"][j]
-        found["ball_velocity"][j] = rate + amplitude * np.cos(origin + times)
+        found["ball_velocity"][j] = rate + amplitude * balls.table(origin + times, 1)
     return dataset(grid, found, DESCRIPTIONS, time=times)
 
 
-def states_at(record, origin, ball, amplitude, times):
-    """δ, δ′ and whether the ball is in contact at times after the phase ``origin`` of the table."""
+def states_at(record, origin, balls, times):
+    """δ, δ′ and whether one ball is in contact at times after the phase ``origin`` of the table."""
+    ball = balls.ball
+    amplitude = float(balls.amplitude[0])
     begin = TURN * record[:, 0] + record[:, 1] - origin
     number = np.searchsorted(begin, times, side="right") - 1
     _, phase, u, own_time, duration, gap, w, _ = record[number].T
     since = times - begin[number]
     contact = since < duration
     leaves = np.where(contact, 0.0, phase + duration)
-    table = table_at(leaves, amplitude)
-    gap, rate, _ = flights(np.where(contact, 0.0, since - duration), gap, w, *table)
+    waves = balls.table.waves(leaves, amplitude)
+    gap, rate, _ = balls.table.flights(np.where(contact, 0.0, since - duration), gap, w, waves)
     gap[contact] = 0.0
     rate[contact] = 0.0
     if ball.lasts and contact.any():
         given = phase[contact], u[contact], since[contact]
-        own_time = own_times(ball, amplitude, own_time[contact], *given)
-        _, gap[contact], rate[contact], _ = ball.contact(*given[:2], own_time, amplitude)
+        own_time = own_times(balls, own_time[contact], *given)
+        on_table = amplitude, 1.0, balls.table
+        _, gap[contact], rate[contact], _ = ball.contact(*given[:2], own_time, *on_table)
     return gap, rate, contact
 
 
-def own_times(ball, amplitude, above, *given):
+def own_times(balls, above, *given):
     """T at times after the starts of contacts, from T above them or NaN, by a bracket.
 
     ``given`` are the phases and speeds at the starts, and the times since then.
     """
 
     def late(T, phase, speed, since):
-        return ball.contact(phase, speed, T, amplitude).duration - since
+        on_table = float(balls.amplitude[0]), 1.0, balls.table
+        return balls.ball.contact(phase, speed, T, *on_table).duration - since
 
     above = np.where(np.isfinite(above), above, 1.0)
     while np.any(late(above, *given) < 0):

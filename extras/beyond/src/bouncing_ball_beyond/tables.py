@@ -1,0 +1,556 @@
+"""The motion of the table: ΛW(τ) with a waveform W of period 2π, a sum of harmonics.
+
+Everything that the other modules know of the waveform is here: W and its derivatives, differences
+of W that lose no digits, how large its derivatives get, where the table falls faster than a ball,
+and where it rises fastest. The sine of the paper is :data:`SINE`. W is analytic in τ and in its
+parameters, the sizes and phases of the harmonics, so that complex steps give all derivatives.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from bouncing_ball_beyond import one_ball
+from bouncing_ball_beyond.one_ball import CHATTER, PATIENCE, STEPS, TURN
+
+SAMPLES = 64
+"""Samples in a period of the highest harmonic: between two of them a derivative of W changes by
+1.2e-3 of the size of the second derivative after it, over k²."""
+
+CYCLE = (np.sin, np.cos)
+"""sin and its derivatives, which repeat with the opposite sign."""
+
+
+def swing(x):
+    """sin x and 1 - cos x, which loses no digits for a small x.
+
+    For many real numbers numpy finds them faster by a tangent, at whose poles complex steps are
+    lost.
+    """
+    if np.iscomplexobj(x) or np.size(x) < 200:
+        sine = np.sin(x / 2)
+        return 2 * sine * np.cos(x / 2), 2 * sine * sine
+    half = np.tan(x / 2)
+    sine = 2 * half / (1 + half * half)
+    return sine, half * sine
+
+
+def checked_harmonic(each):
+    """(k, a, p) with a whole k and finite a, p; ValueError otherwise."""
+    try:
+        k, a, p = each
+        good = int(k) == k >= 1 and bool(np.isfinite([a, p]).all())
+    except (TypeError, ValueError):
+        good = False
+    if not good:
+        raise ValueError(
+            f"harmonics: {each!r}: must be (k, a, p) with a whole number k from 1 and numbers a, p"
+            " of a sin(kτ + p); incommensurate frequencies are not periodic"
+        )
+    return int(k), float(a), float(p)
+
+
+@dataclass(frozen=True, init=False, eq=True)
+class Table:
+    """A periodic waveform W(τ) = Σ a sin(kτ + p).
+
+    Parameters
+    ----------
+    harmonics : iterable of (k, a, p)
+        The order k ≥ 1, the size a and the phase p of each harmonic. The amplitude Λ of a call is
+        the scale: the table is at ΛW(τ), in units of g/Ω². For the sine, Λ is its greatest
+        acceleration over gravity.
+
+    Notes
+    -----
+    Sizes and phases are parameters along which orbits are followed, by the names ``harmonic_k`` and
+    ``phase_k``. A triangle or a sawtooth has jumps in W′, and no second derivative: its truncated
+    series is a table of its own.
+
+    Examples
+    --------
+    >>> skewed = Table([(1, 1.0, 0.0), (2, 0.25, 2.5)])
+    >>> round(float(skewed(0.5, 1)), 6), list(skewed.parameters)
+    (0.409354, ['harmonic_1', 'harmonic_2', 'phase_1', 'phase_2'])
+    """
+
+    orders: tuple
+    sizes: tuple
+    phases: tuple
+
+    compiled = False
+    """Whether the loops of :mod:`.one_ball` follow single balls."""
+
+    def __init__(self, harmonics):
+        harmonics = sorted(checked_harmonic(each) for each in harmonics)
+        orders = tuple(k for k, _, _ in harmonics)
+        if not orders or len(set(orders)) < len(orders) or not any(a for _, a, _ in harmonics):
+            raise ValueError("harmonics: must be some, each order once, and not all of the size 0")
+        values = orders, *zip(*((a, p) for _, a, p in harmonics), strict=True)
+        for name, value in zip(("orders", "sizes", "phases"), values, strict=True):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def of_samples(cls, values, harmonics=None, *, acceleration=False):
+        """The table through equally spaced samples of one period, without their mean.
+
+        Parameters
+        ----------
+        values : array_like, shape (samples,)
+            Heights, or accelerations, in any unit: what counts is their shape.
+        harmonics : int, optional
+            The highest harmonic that is kept, by default all that the samples tell apart.
+        acceleration : bool
+            Whether the values are accelerations, whose harmonics are divided by -k².
+
+        Returns
+        -------
+        Table
+            With a greatest |W″| of 1, so that Λ is the greatest acceleration over gravity.
+
+        Examples
+        --------
+        >>> tau = 2 * np.pi * np.arange(16) / 16
+        >>> table = Table.of_samples(np.sin(tau) + 0.1 * np.cos(3 * tau), harmonics=3)
+        >>> [round(float(size), 3) for size in table.sizes]
+        [0.562, 0.056]
+        """
+        values = np.asarray(values, float)
+        if values.ndim != 1 or len(values) < 3 or not np.isfinite(values).all():
+            raise ValueError("values: must be a row of at least three finite samples of one period")
+        series = np.fft.rfft(values) / len(values)
+        last = min(harmonics or len(values), (len(values) - 1) // 2)
+        k = np.arange(1, last + 1)
+        parts = 2 * series[1 : last + 1] * (-1.0 / k**2 if acceleration else 1.0)
+        sizes = np.abs(parts)
+        if not sizes.any():
+            raise ValueError("values: are all the same: the table would be at rest")
+        kept = sizes * k**2 > 1e-12 * (sizes * k**2).max()
+        waves = zip(k[kept], sizes[kept], np.angle(parts[kept]) + np.pi / 2, strict=True)
+        found = cls(waves)
+        at = found.grid[np.abs(found(found.grid, 2)).argmax()]
+        scale = float(abs(found(_polished(found, at, 3), 2)))
+        return cls((k, a / scale, p) for k, a, p in found.harmonics)
+
+    def __repr__(self):
+        harmonics = zip(self.orders, self.sizes, self.phases, strict=True)
+        return f"Table([{', '.join(f'({k}, {a!r}, {p!r})' for k, a, p in harmonics)}])"
+
+    @property
+    def parameters(self):
+        """Names and values of the sizes and phases of the harmonics."""
+        sizes = {f"harmonic_{k}": a for k, a in zip(self.orders, self.sizes, strict=True)}
+        return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
+
+    def at(self, **values):
+        """The same table with other sizes or phases: numbers or arrays, real or complex."""
+        new = self.parameters | values
+        if len(new) > len(self.parameters):
+            known = ", ".join(self.parameters) or "none"
+            raise ValueError(f"{', '.join(values)}: no parameter of the table, which has {known}")
+        found = object.__new__(type(self))
+        vars(found).update(
+            orders=self.orders,
+            sizes=tuple(new[f"harmonic_{k}"] for k in self.orders),
+            phases=tuple(new[f"phase_{k}"] for k in self.orders),
+        )
+        return found
+
+    def rows(self, which):
+        """The same table with x[which] in place of each parameter x that is an array."""
+        arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
+        return self.at(**arrays) if arrays else self
+
+    @property
+    def harmonics(self):
+        """(k, a, p) of each harmonic."""
+        return zip(self.orders, self.sizes, self.phases, strict=True)
+
+    def __call__(self, tau, order=0):
+        """W or a derivative of it."""
+        sign = -1 if order % 4 > 1 else 1
+        function = CYCLE[order % 2]
+        return sum(sign * k**order * a * function(k * tau + p) for k, a, p in self.harmonics)
+
+    def rise(self, start, time):
+        """W and W′ at a time after a start, less those there, without cancellation."""
+        height = rate = 0.0
+        for k, a, p in self.harmonics:
+            half = k * time / 2
+            middle = k * start + p + half
+            part = 2 * a * np.sin(half)
+            height = height + part * np.cos(middle)
+            rate = rate - k * part * np.sin(middle)
+        return height, rate
+
+    # Motions from a start, as sums of x and y of each harmonic: Λa cos and Λa sin of kτ + p there.
+
+    def waves(self, phase, amplitude):
+        """x and y of each harmonic: [x₁, y₁, x₂, y₂, …]."""
+        found = []
+        for k, a, p in self.harmonics:
+            sine, versine = swing(k * phase + p)
+            scale = amplitude * a
+            found += [scale * (1 - versine), scale * sine]
+        return found
+
+    def each_wave(self, waves):
+        """k, x and y of each harmonic."""
+        return zip(self.orders, waves[::2], waves[1::2], strict=True)
+
+    def pulls(self, waves):
+        """w′, -w″ and -w‴ at the start."""
+        waves = list(self.each_wave(waves))
+        return tuple(
+            sum(part)
+            for part in zip(*((k * x, k * k * y, k**3 * x) for k, x, y in waves), strict=True)
+        )
+
+    def turned(self, waves):
+        """The waves of w′ in place of those of w."""
+        return [each for k, x, y in self.each_wave(waves) for each in (-k * y, k * x)]
+
+    def flights(self, t, gap, w, waves):
+        """δ, δ′ and δ″ a time t after a release; short flights lose no digits."""
+        position = gap + t * (w - t / 2)
+        rate = w - t
+        second = -1.0
+        for k, x, y in self.each_wave(waves):
+            angle = t if k == 1 else k * t
+            sine, versine = swing(angle)
+            position = position + (y * versine + x * (angle - sine))
+            change = y * sine + x * versine
+            bend = y + (x * sine - y * versine)
+            rate = rate + (change if k == 1 else k * change)
+            second = second + (bend if k == 1 else k * k * bend)
+        return position, rate, second
+
+    def third(self, t, waves):
+        """δ‴ a time t after a release."""
+        found = 0.0
+        for k, x, y in self.each_wave(waves):
+            sine, versine = swing(k * t)
+            found = found + k**3 * (x * (1 - versine) - y * sine)
+        return found
+
+    # Sizes
+
+    @cached_property
+    def grid(self):
+        """Phases of a period, 64 in each of the highest harmonic."""
+        return np.linspace(0, TURN, SAMPLES * self.orders[-1] + 1)
+
+    @cached_property
+    def bounds(self):
+        """What |W| and its first five derivatives do not exceed."""
+        rest = (self.grid[1] / 2) ** 2 / 2
+        sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
+        largest = [np.abs(self(self.grid, m)).max() + rest * sums[m + 2] for m in range(6)]
+        return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
+
+    @cached_property
+    def lift(self):
+        """The greatest -W″: above Λ = 1/lift the table falls faster than a ball."""
+        start = self.grid[np.argmin(self(self.grid, 2))]
+        return float(-self(_polished(self, start, 3), 2))
+
+    @cached_property
+    def peaks(self):
+        """The greatest and the least W."""
+        values = self(self.grid)
+        return tuple(
+            float(self(_polished(self, self.grid[i], 1)))
+            for i in (values.argmax(), values.argmin())
+        )
+
+    @cached_property
+    def steepest(self):
+        """The phase at which W′ is largest."""
+        return float(_polished(self, self.grid[np.argmax(self(self.grid, 1))], 2))
+
+    @cached_property
+    def slope(self):
+        """The greatest W′."""
+        return float(self(self.steepest, 1))
+
+    @cached_property
+    def _sides(self):
+        """Times from the steepest phase to where W′ has fallen to its next minimum, and W′ there.
+
+        By samples, after the steepest phase and before it.
+        """
+        found = []
+        for side in (1, -1):
+            time = side * np.linspace(0, TURN, 4 * SAMPLES * self.orders[-1] + 1)
+            falls = side * self(self.steepest + time, 2) <= 0
+            falls[0] = True
+            time = time[: int(np.argmin(falls)) or len(time)]
+            found.append((time, self(self.steepest + time, 1)))
+        return found
+
+    @cached_property
+    def _turns(self):
+        """Times from the steepest phase to where W′ has fallen to zero, and angles of (W′, -W″)."""
+        time = np.linspace(0, TURN, 4 * SAMPLES * self.orders[-1] + 1)
+        rises = self(self.steepest + time, 1) > 0
+        time = time[: int(np.argmin(rises)) + 2]
+        phase = self.steepest + time
+        angles = np.arctan2(-self(phase, 2), self(phase, 1))
+        return time, np.maximum.accumulate(np.maximum(angles, 0))
+
+    def phase_of_slope(self, slope, side=1):
+        """The phase after the steepest one, or before it (-1), at which W′ is a given slope.
+
+        It is the steepest phase for slopes above the greatest one.
+        """
+        time, slopes = self._sides[0 if side > 0 else 1]
+        slope = np.clip(slope, slopes[-1], slopes[0])
+        phase = self.steepest + np.interp(-slope, -slopes, time)
+        for _ in range(4):
+            bend = self(phase, 2)
+            step = np.divide(self(phase, 1) - slope, bend, where=bend != 0, out=np.zeros_like(bend))
+            # Next to the steepest phase the samples are a better guess than Newton's first step.
+            phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
+        return phase
+
+    def phase_of_angle(self, angle):
+        """The phase after the steepest one at which (W′, -W″) has turned by an angle up to π/2."""
+        time, angles = self._turns
+        phase = self.steepest + np.interp(angle, angles, time)
+        x, y = np.cos(angle), np.sin(angle)
+        for _ in range(4):
+            apart = x * self(phase, 2) + y * self(phase, 1)
+            step = apart / (x * self(phase, 3) + y * self(phase, 2))
+            phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
+        return phase
+
+    def instant(self, speed, amplitude):
+        """Where w′ has fallen to a speed: the phase, w, -w″ and -w‴ there, NaN where it does not.
+
+        The speed may be complex.
+        """
+        slope = speed / amplitude
+        phase = self.phase_of_slope(np.real(slope))
+        if np.iscomplexobj(slope):
+            phase = phase + 1j * np.imag(slope) / self(phase, 2)
+        inside = np.abs(self(np.real(phase), 1) - np.real(slope)) < 1e-9
+        phase = np.where(inside, phase, np.nan)
+        return phase, amplitude * self(phase), *(-amplitude * self(phase, m) for m in (2, 3))
+
+    def amplitude_at(self, speed, push):
+        """Λ and the phase at which w′ is a speed and -w″ a push."""
+        phase = self.phase_of_angle(np.arctan2(push, speed))
+        return np.hypot(speed, push) / np.hypot(self(phase, 1), self(phase, 2)), phase
+
+    # Where the table falls as fast as a ball
+
+    def levels(self, amplitude):
+        """Phases at which ΛW″ = -1, in an array beside Λ, NaN where there are fewer."""
+        amplitude = np.asarray(amplitude, float)[..., np.newaxis]
+        table = self.rows(np.s_[..., np.newaxis])
+        values = 1 + amplitude * table(self.grid, 2)
+        crossed = values[..., 1:] * values[..., :-1] < 0
+        most = int(crossed.sum(axis=-1).max(initial=0))
+        if not most:
+            return np.full((*crossed.shape[:-1], 1), np.nan)
+        at = np.argsort(~crossed, axis=-1, kind="stable")[..., :most]
+        phase = self.grid[at] + self.grid[1] / 2
+        for _ in range(4):
+            step = (1 + amplitude * table(phase, 2)) / (amplitude * table(phase, 3))
+            phase = phase - np.clip(step, -self.grid[1], self.grid[1])
+        return np.where(np.take_along_axis(crossed, at, axis=-1), phase, np.nan)
+
+    def lift_offs(self, amplitude):
+        """The phases in [0, 2π) at which a resting ball leaves: where 1 + ΛW″ falls to zero."""
+        return _lift_offs(self, float(amplitude))
+
+    def until_lift_off(self, phase, amplitude):
+        """How long a ball that rests stays on the table, and the phase at which it leaves."""
+        phases = self.lift_offs(amplitude)
+        if not len(phases):
+            return np.inf, phase
+        wait = (phases - phase) % TURN
+        # Rounding must not postpone the lift-off by a turn.
+        wait[wait > TURN - CHATTER**2] = 0.0
+        first = int(wait.argmin())
+        return float(wait[first]), one_ball.reduced(float(phases[first]))[1]
+
+    # Single balls
+
+    def at_release(self, t, gap, w, waves):
+        """δ, δ′, δ″ and δ‴ as numbers."""
+        return (*(float(x) for x in self.flights(t, gap, w, waves)), float(self.third(t, waves)))
+
+    def resumption(self, gap, w, phase, amplitude, kappa):
+        """As :func:`.one_ball.rise`: whether a contact resumes below the level, and the time."""
+        waves = self.waves(phase, amplitude)
+        a2, a3, a4 = (amplitude * bound for bound in self.bounds[2:5])
+        t = 0.0
+        for _ in range(STEPS):
+            position, rate, second, third = self.at_release(t, gap, w, waves)
+            if position >= 0:
+                return False, t
+            f = max(position + kappa * rate, 0.0)
+            known = f, rate + kappa * second, second + kappa * third
+            step, last = one_ball.safe_step(t, *known, 1 + a2 + kappa * a3, a3 + kappa * a4)
+            t += step
+            if last:
+                return True, t
+        return True, np.nan
+
+    def emergence(self, start, gap, w, phase, amplitude):
+        """As :func:`.one_ball.emergence`: when a ball rises through the level, or never."""
+        waves = self.waves(phase, amplitude)
+        a2, a3 = (amplitude * bound for bound in self.bounds[2:4])
+        t = start
+        while t < PATIENCE:
+            position, rate, second, _ = self.at_release(t, gap, w, waves)
+            if rate <= 0:
+                return np.inf
+            if position >= 0:
+                return t
+            step, last = one_ball.safe_step(t, -position, -rate, -second, 1 + a2, a3)
+            t += step
+            if last:
+                return t
+        return np.inf
+
+    def rest(self, gap, w, restitution, phase, amplitude, left):
+        """As :func:`.one_ball.rest`: how long a ball rests, and the phase at which it leaves."""
+        if gap == 0:
+            _, y, x = (float(each) for each in self.pulls(self.waves(phase, amplitude)))
+            settled = one_ball.settling(w, restitution, x, y, amplitude * self.bounds[4])
+        elif self.emergence(left, gap, w, phase, amplitude) < np.inf:
+            settled = -1.0
+        else:
+            settled = left
+        end = phase + settled
+        if settled < 0 or 1 + amplitude * self(end, 2) < 0:
+            return settled, end
+        wait, leaves = self.until_lift_off(end, amplitude)
+        return settled + wait, leaves
+
+
+def _polished(table, phase, order):
+    """The zero of a derivative of W beside a sample, by Newton's method."""
+    for _ in range(6):
+        slope = table(phase, order + 1)
+        phase = phase - np.clip(table(phase, order) / slope if slope else 0.0, -0.1, 0.1)
+    return phase
+
+
+@lru_cache(maxsize=64)
+def _lift_offs(table, amplitude):
+    if amplitude * table.lift <= 1:
+        return np.empty(0)
+    phases = table.levels(amplitude)
+    phases = phases[np.isfinite(phases)]
+    falling = table(phases, 3) < 0
+    if not falling.any():
+        # The samples step over a short fall of the table.
+        return np.array([_polished(table, table.grid[np.argmin(table(table.grid, 2))], 3) % TURN])
+    return np.sort(phases[falling] % TURN)
+
+
+class Sine(Table):
+    """W = sin τ, the table of the paper, whose formulas are closed."""
+
+    compiled = True
+
+    def __init__(self):
+        super().__init__([(1, 1.0, 0.0)])
+
+    parameters = {}  # noqa: RUF012
+    bounds = (1.0,) * 6
+    lift = slope = 1.0
+    peaks = (1.0, -1.0)
+    steepest = 0.0
+
+    def __repr__(self):
+        return "Sine()"
+
+    def at(self, **values):
+        """The sine, which has no parameters."""
+        return super().at(**values) if values else self
+
+    def rows(self, which):
+        """The sine, which has no parameters."""
+        return self
+
+    def __call__(self, tau, order=0):
+        """sin τ or a derivative of it."""
+        value = CYCLE[order % 2](tau)
+        return -value if order % 4 > 1 else value
+
+    def rise(self, start, time):
+        """sin and cos at a time after a start, less those there."""
+        half = time / 2
+        middle = start + half
+        part = 2 * np.sin(half)
+        return part * np.cos(middle), -part * np.sin(middle)
+
+    def waves(self, phase, amplitude):
+        """Λ cos τ and Λ sin τ."""
+        sine, versine = swing(phase)
+        return [amplitude * (1 - versine), amplitude * sine]
+
+    def pulls(self, waves):
+        """w′, -w″ and -w‴ at the start."""
+        return waves[0], waves[1], waves[0]
+
+    def phase_of_slope(self, slope, side=1):
+        """± arccos of the slope."""
+        return side * np.arccos(np.clip(slope, -1, 1))
+
+    def phase_of_angle(self, angle):
+        """The angle itself."""
+        return angle
+
+    def instant(self, speed, amplitude):
+        """The point at the distance Λ from the origin whose abscissa is the speed."""
+        with np.errstate(invalid="ignore"):
+            height = np.sqrt((amplitude - speed) * (amplitude + speed))
+            if np.iscomplexobj(speed):
+                phase = np.arccos(speed / amplitude)
+            else:
+                phase = np.arctan2(height, speed)
+        return phase, height, height, speed
+
+    def amplitude_at(self, speed, push):
+        """The distance of a point from the origin, and its angle."""
+        return np.hypot(speed, push), np.arctan2(push, speed)
+
+    def levels(self, amplitude):
+        """The two phases at which Λ sin τ = 1, and π/2 for both if there are none."""
+        level = np.arcsin(np.minimum(1, 1 / np.asarray(amplitude, float)))
+        return np.stack([level, np.pi - level], axis=-1)
+
+    def until_lift_off(self, phase, amplitude):
+        """As of a table, by an arcsine."""
+        leaves = float(np.arcsin(1 / max(amplitude, 1.0)))
+        return one_ball.until_lift_off(phase, amplitude), leaves
+
+    def resumption(self, gap, w, phase, amplitude, kappa):
+        """By the loops of :mod:`.one_ball`."""
+        x, y = (float(each) for each in self.waves(phase, amplitude))
+        return one_ball.rise(gap, w, x, y, amplitude, kappa)
+
+    def emergence(self, start, gap, w, phase, amplitude):
+        """By the loops of :mod:`.one_ball`."""
+        x, y = (float(each) for each in self.waves(phase, amplitude))
+        return one_ball.emergence(start, gap, w, x, y, amplitude)
+
+    def rest(self, gap, w, restitution, phase, amplitude, left):
+        """By the loops of :mod:`.one_ball`."""
+        return one_ball.rest(gap, w, restitution, phase, amplitude, left)
+
+
+SINE = Sine()
+"""The table of the paper, and the default everywhere."""
+
+
+def check_table(table):
+    """Raise ValueError with one line for what is no table."""
+    if not isinstance(table, Table):
+        raise ValueError(f"table = {table!r:.60}: must be a Table, such as Table([(1, 1.0, 0.0)])")

@@ -1,0 +1,328 @@
+"""Tables of other waveforms against differences, the sine, and an integration of their motions."""
+
+import numpy as np
+import pytest
+from integrated import around, leg
+from scipy.integrate import solve_ivp
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.tables import SINE, Table
+
+TABLES = {
+    "three harmonics": Table([(1, 1.0, 0.0), (2, 0.17, 0.8), (3, 0.05, -1.1)]),
+    "skewed": Table([(1, 1.0, 0.0), (2, 0.25, 2.5)]),
+    "two maxima": Table([(1, 1.0, 0.0), (3, 0.4, 0.7)]),
+}
+AS_SINE = Table([(1, 1.0, 0.0)])
+"""A sine that is not the default, whose motions are found by the general functions."""
+
+BALLS = {
+    "restitution": bb.Rigid(0.8),
+    "contact": bb.SpringDamper(15.0, 0.8),
+    "force release": bb.SpringDamper(15.0, 0.8, release="force"),
+    "overdamped": bb.SpringDamper(9.0, damping_ratio=1.1),
+    "resonant": bb.SpringDamper(2.0, damping_ratio=0.02),
+}
+
+
+# The waveform
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_derivatives_differences_and_bounds(name):
+    table = TABLES[name]
+    tau = np.linspace(-4, 9, 2001)
+    for order in range(5):
+        by_step = table(tau + 1j * H, order).imag / H
+        np.testing.assert_allclose(table(tau, order + 1), by_step, atol=1e-13)
+        assert np.abs(table(tau, order)).max() <= table.bounds[order]
+    for time in (1e-9, 1e-3, 2.0):
+        height, rate = table.rise(tau, time)
+        # Short differences are those of the Taylor series.
+        expected = time * table(tau, 1) + time**2 / 2 * table(tau, 2)
+        if time < 1:
+            rest = table.bounds[3] * time**3 / 6 + 2e-15 * table.bounds[1] * time
+            np.testing.assert_allclose(height, expected, 0, rest)
+        # Of the harmonics k, W(τ + t) has the rounding errors of kτ.
+        rounding = 2e-15 * table.bounds[1], 2e-15 * table.bounds[2]
+        np.testing.assert_allclose(height, table(tau + time) - table(tau), 0, rounding[0] * 9)
+        np.testing.assert_allclose(rate, table(tau + time, 1) - table(tau, 1), 0, rounding[1] * 9)
+    assert table.slope >= table(tau, 1).max()
+    assert table.peaks[0] >= table(tau).max() and table.peaks[1] <= table(tau).min()
+    assert table.lift >= -table(tau, 2).min()
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_where_a_table_falls_as_fast_as_a_ball(name):
+    table = TABLES[name]
+    amplitude = np.array([0.5, 1.0, 1.7])
+    found = table.levels(amplitude)
+    tau = np.linspace(0, 2 * np.pi, 100001)
+    for phases, scale in zip(found, amplitude, strict=True):
+        phases = phases[np.isfinite(phases)]
+        assert np.abs(1 + scale * table(phases, 2)).max(initial=0) < 1e-12
+        changes = np.diff(np.sign(1 + scale * table(tau, 2))) != 0
+        assert len(phases) == np.count_nonzero(changes)
+    lies = tau[np.argmax(table(tau, 2))]
+    wait, leaves = table.until_lift_off(lies, 2.5)
+    assert np.all(1 + 2.5 * table(np.linspace(lies, lies + wait - 1e-6, 1000), 2) > 0)
+    assert 1 + 2.5 * table(leaves, 2) == pytest.approx(0, abs=1e-12)
+    assert table(leaves, 3) < 0
+
+
+def test_samples_give_the_table_and_those_of_an_acceleration_too():
+    table = TABLES["three harmonics"]
+    tau = 2 * np.pi * np.arange(40) / 40
+    greatest = np.abs(table(np.linspace(0, 2 * np.pi, 1_000_001), 2)).max()
+    for found in (
+        Table.of_samples(3 * table(tau) + 7),
+        Table.of_samples(5 * table(tau, 2) - 1, acceleration=True),
+    ):
+        np.testing.assert_allclose(greatest * found(tau, 1), table(tau, 1), atol=1e-11)
+        assert np.abs(found(np.linspace(0, 7, 100_001), 2)).max() == pytest.approx(1, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("harmonics", "text"),
+    [
+        ([], "harmonics: must be some"),
+        ([(1, 0.0, 0.0)], "harmonics: must be some"),
+        ([(1, 1.0, 0.0), (1, 0.5, 0.1)], "each order once"),
+        ([(1.5, 1.0, 0.0)], "incommensurate"),
+        ([(0, 1.0, 0.0)], "a whole number k from 1"),
+        ([(1, np.nan, 0.0)], "a whole number k from 1"),
+        ([1], "must be"),
+    ],
+)
+def test_what_is_no_table_is_one_line(harmonics, text):
+    with pytest.raises(ValueError, match=text) as raised:
+        Table(harmonics)
+    assert "\n" not in str(raised.value)
+    with pytest.raises(ValueError, match="table = 'sine': must be a Table"):
+        bb.orbit(bb.Rigid(0.5), amplitude=1.0, table="sine")
+
+
+# Motions
+
+
+@pytest.mark.parametrize("ball", BALLS)
+def test_a_sum_of_one_harmonic_is_the_sine(ball):
+    given = {"amplitude": 1.4, "phase": [0.3, -2.0, 2.4], "velocity": -5.0, "impacts": 12}
+    sine = bb.simulate(BALLS[ball], **given)
+    general = bb.simulate(BALLS[ball], **given, table=AS_SINE)
+    for name in ("time", "relative_impact_velocity", "contact_duration"):
+        np.testing.assert_allclose(sine[name], general[name], rtol=1e-9, atol=1e-10)
+
+
+@pytest.mark.parametrize("ball", ["restitution", "contact", "force release", "overdamped"])
+@pytest.mark.parametrize("name", TABLES)
+def test_a_simulated_ball_is_an_integrated_one(name, ball):
+    """Impact by impact, each from the simulated one before it."""
+    table = TABLES[name]
+    found = bb.simulate(
+        BALLS[ball], amplitude=0.9, phase=0.4, velocity=-4.0, impacts=8, table=table
+    )
+    phase = found.impact_phase.values
+    u = -found.relative_impact_velocity.values
+    times = found.time.values
+    bounces = np.flatnonzero(np.isfinite(u[1:]) & (found.relative_bounce_velocity.values[:-1] > 0))
+    assert len(bounces) > 2
+    for i in bounces:
+        lands, closing, _ = leg(BALLS[ball], 0.9, phase[i], u[i], tuple(table.harmonics))
+        assert lands - phase[i] == pytest.approx(times[i + 1] - times[i], abs=2e-10)
+        assert closing == pytest.approx(u[i + 1], abs=2e-10)
+
+
+def test_no_touch_is_missed():
+    """Random short flights of three tables: no sample before a landing is below the table."""
+    rng = np.random.default_rng(92)
+    for table in TABLES.values():
+        given = {"amplitude": 3.0, "phase": rng.uniform(-3, 3, 60), "impacts": 6, "table": table}
+        found = bb.simulate(bb.Rigid(0.3), relative_velocity=-0.4, **given)
+        start, flight, w = (
+            found[name].values.ravel()
+            for name in ("impact_phase", "flight_time", "relative_bounce_velocity")
+        )
+        good = np.isfinite(flight) & (w > 1e-3)
+        start, flight, w = (each[good, np.newaxis] for each in (start, flight, w))
+        t = flight * np.linspace(1e-3, 1 - 1e-3, 400)
+        height, _ = table.rise(start, t)
+        gap = (w + 3.0 * table(start, 1) - t / 2) * t - 3.0 * height
+        assert len(gap) > 100
+        assert gap.min() > -1e-12
+
+
+def test_a_history_is_that_of_an_integrated_ball():
+    """Without damping, so that the force has no jumps over which an integration steps."""
+    table = TABLES["two maxima"]
+    ball = bb.SpringDamper(12.0, damping_ratio=0.0)
+    found = bb.history(ball, amplitude=0.6, phase=0.2, velocity=-3.0, periods=2, table=table)
+    start = float(found.ball[0]), float(found.ball_velocity[0])
+
+    def motion(t, y):
+        gap = y[0] - 0.6 * table(0.2 + t)
+        return [y[1], -1 + (-144.0 * gap if gap < 0 else 0.0)]
+
+    times = found.time.values
+    tolerances = {"rtol": 1e-10, "atol": 1e-11, "max_step": 1e-3}
+    known = solve_ivp(motion, (0, times[-1]), start, "DOP853", t_eval=times, **tolerances)
+    np.testing.assert_allclose(found.ball, known.y[0], atol=1e-5)
+    assert found.contact.values.any()
+
+
+# Orbits
+
+
+@pytest.mark.parametrize("ball", BALLS)
+@pytest.mark.parametrize("name", TABLES)
+def test_all_orbits_are_those_of_an_integrated_ball(name, ball):
+    found = bb.orbits(BALLS[ball], amplitude=0.7, table=TABLES[name])
+    assert found or ball in ("overdamped", "resonant")
+    for each in found:
+        end, highest = around(each)
+        assert end == pytest.approx([each.times[0], each.speeds[0]], abs=1e-9)
+        assert highest == pytest.approx(each.max_height, abs=1e-7)
+        step = 1e-5
+        moved = [[around(each, side * shift)[0] for side in (1, -1)] for shift in step * np.eye(2)]
+        matrix = np.array([(up - down) / (2 * step) for up, down in moved]).T
+        size = 1 + np.abs(matrix).max()
+        assert np.trace(matrix) == pytest.approx(sum(each.multipliers).real, abs=1e-5 * size)
+
+
+def test_a_table_with_two_maxima_has_more_than_two_orbits():
+    table = TABLES["two maxima"]
+    found = bb.orbits(bb.Rigid(0.9), amplitude=0.7, table=table)
+    C = np.pi * 0.1 / 1.9
+    tau = np.linspace(0, 2 * np.pi, 100001)
+    crossings = np.count_nonzero(np.diff(np.sign(0.7 * table(tau, 1) - C)) != 0)
+    assert crossings > 2
+    slopes = [0.7 * table(each.phase, 1) for each in found]
+    assert slopes == pytest.approx(len(found) * [C], abs=1e-12)
+    assert 2 < len(found) <= crossings
+
+
+@pytest.mark.parametrize(
+    ("ball", "table", "doubling"),
+    [
+        (bb.Rigid(0.9), Table([(1, 1.0, 0.0), (3, 0.05, -1.1)]), 0.8581675),
+        (bb.SpringDamper(100.0, 0.9), Table([(1, 1.0, 0.0), (3, 0.05, -1.1)]), 0.8589495),
+        (bb.Rigid(0.9), TABLES["three harmonics"], 0.6463308),
+        (bb.SpringDamper(100.0, 0.9), TABLES["three harmonics"], 0.6467971),
+    ],
+)
+def test_limits_are_those_of_another_code(ball, table, doubling):
+    """Numbers of a code from scratch, which follows single orbits."""
+    found = bb.limits(ball, table=table)
+    assert found.period_doubling.amplitude == pytest.approx(doubling, abs=1e-7)
+    assert found.period_doubling.multipliers.real.min() == pytest.approx(-1, abs=1e-9)
+    fold = found.saddle_node
+    if not ball.lasts:
+        assert fold.amplitude == pytest.approx(np.pi * 0.1 / 1.9 / table.slope, abs=1e-12)
+    near = bb.orbit(ball, amplitude=1.01 * fold.amplitude, table=table)
+    assert near.stable and near.admissible
+
+
+def test_the_doubling_of_the_restitution_model_is_its_closed_form():
+    """1 + tr + det = 0 where -ΛW″ = 2(1 + r²)/(1 + r)², at ΛW′ = C."""
+    for r in (0.5, 0.8):
+        table = TABLES["skewed"]
+        found = bb.limits(bb.Rigid(r), table=table).period_doubling
+        rise = 2 * (1 + r * r) / (1 + r) ** 2
+        assert -found.amplitude * table(found.phase, 2) == pytest.approx(rise, abs=1e-10)
+
+
+def test_along_a_harmonic_and_its_phase_orbits_go_from_the_sine_to_other_tables():
+    ball = bb.SpringDamper(20.0, 0.7)
+    start = bb.orbit(ball, amplitude=0.9, table=Table([(1, 1.0, 0.0), (2, 0.0, 0.8)]))
+    assert start.distance(bb.orbit(ball, amplitude=0.9)) < 1e-12
+    branch = bb.follow(start, along="harmonic_2", to=0.2)
+    assert branch.end == "harmonic_2 = 0.2 is reached"
+    there = bb.orbit(ball, amplitude=0.9, table=Table([(1, 1.0, 0.0), (2, 0.2, 0.8)]))
+    assert branch.orbits[-1].distance(there) < 1e-11
+    turned = bb.follow(branch.orbits[-1], along="phase_2", to=2.5)
+    there = bb.orbit(ball, amplitude=0.9, table=Table([(1, 1.0, 0.0), (2, 0.2, 2.5)]))
+    assert turned.orbits[-1].distance(there) < 1e-10
+    # A phase of a whole turn changes nothing.
+    back = bb.follow(turned.orbits[-1], along="phase_2", to=2.5 + 2 * np.pi)
+    assert back.orbits[-1].distance(there) < 1e-10
+
+
+def test_a_curve_of_doublings_along_a_harmonic_is_made_of_limits():
+    table = Table([(1, 1.0, 0.0), (2, 0.1, 0.8)])
+    doubling = bb.limits(bb.Rigid(0.7), table=table).period_doubling
+    ranges = {"amplitude": (0.3, 2.0), "harmonic_2": (-0.1, 0.2)}
+    curve = bb.special_curve(doubling, along=("amplitude", "harmonic_2"), ranges=ranges)
+    for each in curve.orbits[:: max(1, len(curve) // 4)]:
+        found = bb.limits(each.ball, table=each.table).period_doubling
+        assert found.amplitude == pytest.approx(each.amplitude, abs=1e-9)
+
+
+def test_cascades_and_laws_on_a_table():
+    table = TABLES["three harmonics"]
+    doubling = bb.limits(bb.Rigid(0.5), table=table).period_doubling
+    branches = bb.cascade(doubling, to=1.3 * doubling.amplitude, impacts=8)
+    assert [each.impacts for each in branches] == [2, 4, 8]
+    for branch in branches:
+        on = branch.orbits[len(branch) // 2]
+        end, _ = around(on)
+        assert end == pytest.approx([on.times[0], on.speeds[0]], abs=1e-8)
+    law = bb.hunt_crossley(4000.0, 0.05)
+    found = bb.orbit(law, amplitude=0.5, table=table)
+    end, _ = around(found)
+    assert end == pytest.approx([found.times[0], found.speeds[0]], abs=1e-9)
+
+
+def test_datasets_carry_the_table(tmp_path):
+    table = Table([(1, 1.0, 0.0), (2, 0.1, 0.8)])
+    branch = bb.follow(bb.orbit(bb.Rigid(0.7), amplitude=0.8, table=table), along="phase_2", to=1.5)
+    file = tmp_path / "branch.nc"
+    bb.to_dataset(branch).to_netcdf(file)
+    back = bb.read_orbits(file)
+    assert back.orbits[-1].table == branch.orbits[-1].table
+    assert back.orbits[-1].distance(branch.orbits[-1]) == 0
+    assert back.along == "phase_2"
+    one = bb.orbit(bb.Rigid(0.7), amplitude=0.8)
+    with pytest.raises(ValueError, match="change along one path"):
+        bb.to_dataset([one, branch.orbits[0]])
+
+
+# Motions on which balls end
+
+
+def test_balls_end_on_orbits_of_the_table():
+    table = TABLES["skewed"]
+    for ball in (bb.Rigid(0.5), bb.SpringDamper(20.0, 0.5)):
+        limits = bb.limits(ball, table=table)
+        amplitude = (limits.saddle_node.amplitude + limits.period_doubling.amplitude) / 2
+        stable = bb.orbit(ball, amplitude=amplitude, table=table)
+        start = {"phase": stable.phase + 0.01, "velocity": stable.impact_velocity}
+        found = bb.orbit_of_motion(ball, amplitude=amplitude, table=table, **start)
+        assert found.distance(stable) < 1e-10
+        motion = bb.motion_of(ball, amplitude=amplitude, table=table, **start)
+        expected = np.log(np.abs(stable.multipliers).max())
+        # By a ball that is near the orbit, to 1e-7.
+        assert float(motion.lyapunov_exponent) == pytest.approx(expected, abs=1e-5)
+        shares = bb.basins(ball, amplitude=amplitude, table=table, starts=8, impacts=400)
+        assert float(shares.share.sum()) == pytest.approx(1)
+
+
+def test_a_locked_ball_leaves_at_a_lift_off_of_the_table():
+    table = TABLES["two maxima"]
+    amplitude = 1.3
+    found = bb.simulate(bb.Rigid(0.1), amplitude=amplitude, impacts=300, table=table)
+    rests = (found.contact_duration.values > 0) & (found.relative_bounce_velocity.values == 0)
+    assert rests.any()
+    leaves = (found.impact_phase.values + found.contact_duration.values)[rests]
+    np.testing.assert_allclose(1 + amplitude * table(leaves, 2), 0, atol=1e-10)
+    motion = bb.motion_of(bb.Rigid(0.1), amplitude=amplitude, table=table)
+    assert str(motion.kind.values) == "locked"
+    times = found.time.values[rests] + found.contact_duration.values[rests]
+    turns = np.diff(times[-20:]) / (2 * np.pi)
+    assert np.isclose(turns.cumsum(), int(motion.periods), atol=1e-9).any()
+
+
+def test_the_sine_has_no_parameters():
+    assert SINE.parameters == {}
+    with pytest.raises(ValueError, match="along = 'harmonic_1': must be one of amplitude"):
+        bb.follow(bb.orbit(bb.Rigid(0.5), amplitude=1.2), along="harmonic_1", to=2.0)

@@ -326,3 +326,41 @@ def test_the_sine_has_no_parameters():
     assert SINE.parameters == {}
     with pytest.raises(ValueError, match="along = 'harmonic_1': must be one of amplitude"):
         bb.follow(bb.orbit(bb.Rigid(0.5), amplitude=1.2), along="harmonic_1", to=2.0)
+
+
+def test_a_recorded_acceleration_on_a_shaker():
+    """Samples of one period in any unit; the stroke of a table and its acceleration agree."""
+    table = TABLES["three harmonics"]
+    recorded = 12.5 * table(2 * np.pi * np.arange(64) / 64, 2)
+    shape = Table.of_samples(recorded, acceleration=True)
+    given = {"frequency": "50 Hz", "restitution": 0.85, "contact_duration": "100 us"}
+    answer = bb.on_shaker(**given, acceleration="0.8 g", table=shape)
+    again = bb.on_shaker(**given, stroke=answer.stroke, table=table)
+    height = bb.orbit(answer.ball, amplitude=answer.amplitude, table=shape).max_height
+    unit = 9.80665 / (100 * np.pi) ** 2
+    assert answer.max_height.exact == pytest.approx(height * unit, rel=1e-9)
+    assert again.max_height.exact == pytest.approx(answer.max_height.exact, rel=1e-9)
+    assert again.lowest_frequency == pytest.approx(answer.lowest_frequency, rel=1e-6)
+    assert "an acceleration of Λ = 0.8 times gravity" in str(answer)
+
+
+@pytest.mark.parametrize("name", ["three harmonics", "skewed"])
+def test_the_error_law_is_of_second_order_on_any_table(name):
+    """Times ϖ² what it leaves, and what the corrected model leaves, tend to constants."""
+    table = TABLES[name]
+    left = []
+    for ratio in (200.0, 400.0):
+        ball = bb.SpringDamper(ratio, 0.65)
+        given = {"amplitude": 0.8, "table": table}
+        exact = bb.exact_errors(ball, **given)
+        law = bb.law_errors(ball, **given)
+        corrected = bb.exact_errors(ball, **given, simple=bb.Corrected)
+        each = [[exact[q] - law[q], corrected[q]] for q in exact]
+        left.append(ratio**2 * np.array(each, float))
+    assert np.abs(left[1]).max() < 3
+    # What is left of them is of the order 1/ϖ.
+    np.testing.assert_allclose(left[0], left[1], atol=0.03)
+    thresholds = bb.law_thresholds(bb.SpringDamper(1.0, restitution=0.65), **given, tolerance=1e-4)
+    for quantity in ("max_height", "phase", "saddle_node"):
+        error = bb.law_errors(bb.SpringDamper(thresholds[quantity], 0.65), **given)[quantity]
+        assert abs(error) == pytest.approx(1e-4, rel=1e-2)

@@ -22,6 +22,7 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import tsuji
 from bouncing_ball_beyond.paths import Frequency
+from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 STANDARD_GRAVITY = 9.80665
 UNITS: pint.UnitRegistry = pint.UnitRegistry()
@@ -94,13 +95,13 @@ class ShakerAnswer:
 
     n: int
     amplitude: float
-    """Λ, the acceleration of the table over gravity."""
+    """Λ, the scale of the table's waveform; of a sine, its acceleration over gravity."""
     ball: Ball
     """The ball with its contact, dimensionless, for the other functions of the package."""
     frequency: float
     """Of the table, in Hz."""
     stroke: float
-    """Of the table, in m: the amplitude of its motion."""
+    """Of the table, in m: half of the distance between its lowest and its highest position."""
     contact_duration: float
     """Of a free impact with the speed of the orbit, in s."""
     tolerance: float
@@ -116,6 +117,8 @@ class ShakerAnswer:
     """In Hz: up to here the orbit on this contact is stable, at the same stroke."""
     longest_contact: float
     """In s: up to here the height is within the tolerance, at the same frequency."""
+    table: Table = SINE
+    """The waveform of the table."""
 
     @property
     def bounces(self) -> bool:
@@ -174,13 +177,18 @@ class ShakerAnswer:
         ]
         return "\n".join([*lines, "", *self._sentences()])
 
+    def _acceleration(self) -> str:
+        """The greatest acceleration over gravity, which is Λ if W″ reaches 1."""
+        greatest = self.amplitude * self.table.acceleration
+        return f"Λ = {greatest:.4g}" if np.isclose(greatest, self.amplitude) else f"{greatest:.4g}"
+
     def _sentences(self) -> list[str]:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
-            f" with an acceleration of Λ = {self.amplitude:.4g} times gravity."
+            f" with an acceleration of {self._acceleration()} times gravity."
             f" A contact lasts {in_words(self.contact_duration, 's')},"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
@@ -200,7 +208,7 @@ class ShakerAnswer:
                     f"Contacts of up to {in_words(self.longest_contact, 's')} are within this"
                     " tolerance."
                 )
-        if self.amplitude < 1:
+        if self.amplitude * self.table.lift < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
         if begun == 0 or doubled == 2:
@@ -243,6 +251,7 @@ def on_shaker(
     gravity: float | str = STANDARD_GRAVITY,
     n: int = 1,
     tolerance: float | str = 0.01,
+    table: Table = SINE,
 ) -> ShakerAnswer:
     """Whether a restitution coefficient is good enough for a ball on a shaker.
 
@@ -271,6 +280,9 @@ def on_shaker(
         The number of periods of the table in which the ball bounces once.
     tolerance
         Largest relative error of the greatest height.
+    table
+        The waveform of the table, by default a sine. That of a recorded acceleration is
+        ``Table.of_samples(values, acceleration=True)`` of one period.
 
     Raises
     ------
@@ -300,10 +312,11 @@ def on_shaker(
     for name, (value, unit) in bodies.items():
         if value is not None:
             in_si(name, value, unit)
+    check_table(table)
     if _one_of(stroke=stroke, acceleration=acceleration) == "stroke":
-        amplitude = in_si("stroke", stroke, "m") * rate**2 / fall
+        amplitude = in_si("stroke", stroke, "m") * rate**2 / fall / _half_stroke(table)
     else:
-        amplitude = in_si("acceleration", acceleration, "m/s^2") / fall
+        amplitude = in_si("acceleration", acceleration, "m/s^2") / fall / table.acceleration
     contact = _one_of(
         contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
     )
@@ -333,7 +346,13 @@ def on_shaker(
         def contacts(times):
             return spring.at(frequency_ratio=ratio * times)
 
-    return _answer(contacts, amplitude, n, within, rate, fall)
+    return _answer(contacts, amplitude, n, within, rate, fall, table)
+
+
+def _half_stroke(table: Table) -> float:
+    """Half of the distance between the lowest and the highest position, in units of W."""
+    highest, lowest = table.peaks
+    return (highest - lowest) / 2
 
 
 def _one_of(**quantities: float | str | None) -> str:
@@ -359,15 +378,15 @@ def _compliance(modulus: float | str | None, ratio: float, body: str) -> float:
     return (1 - ratio**2) / in_si(f"{body}youngs_modulus", modulus, "Pa")
 
 
-def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
+def _answer(contacts, amplitude, n, tolerance, rate, fall, table) -> ShakerAnswer:
     """The answer for the ball contacts(1) at Λ, with Ω in rad/s and gravity in m/s²."""
     ball = contacts(1.0)
     impact = free_impact(ball, n)
     duration = float(impact.duration)
-    simple = restitution_values(impact, amplitude)
-    law = law_errors(impact, amplitude=amplitude)
+    simple = restitution_values(impact, amplitude, table)
+    law = law_errors(impact, amplitude=amplitude, table=table)
     names = ("saddle_node", "period_doubling", "max_height")
-    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names)
+    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names, table=table)
     if np.isnan(exact["saddle_node"] + exact["period_doubling"]):
         raise ValueError(
             f"no saddle-node and period doubling are found: a contact lasts"
@@ -388,6 +407,7 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
             quantities=["max_height"],
             low=low,
             high=1e6 * low,
+            table=table,
         )["max_height"]
         longest = float(duration / threshold.ratio) / rate
     unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
@@ -405,17 +425,18 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall) -> ShakerAnswer:
         amplitude=amplitude,
         ball=ball,
         frequency=frequency,
-        stroke=amplitude * fall / rate**2,
+        stroke=amplitude * _half_stroke(table) * fall / rate**2,
         contact_duration=duration / rate,
         tolerance=tolerance,
-        lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact),
-        highest_frequency=frequency * _times(ball, amplitude, n, "period_doubling", exact),
+        lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact, table),
+        highest_frequency=frequency * _times(ball, amplitude, n, "period_doubling", exact, table),
         longest_contact=longest,
+        table=table,
         **compared,
     )
 
 
-def _times(ball, amplitude, n, name, exact) -> float:
+def _times(ball, amplitude, n, name, exact, table) -> float:
     """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke.
 
     Λ is proportional to the square of the frequency. That of a bifurcation hardly changes with it,
@@ -425,7 +446,8 @@ def _times(ball, amplitude, n, name, exact) -> float:
     times = np.sqrt(exact[name] / amplitude)
     for _ in range(30):
         shaken, there = path.apply(ball, amplitude, times * np.sqrt(amplitude))
-        found = contact_values(shaken, amplitude=there, n=n, quantities=[name])[name]
+        given = {"amplitude": there, "n": n, "quantities": [name], "table": table}
+        found = contact_values(shaken, **given)[name]
         before = times
         times = np.sqrt(found / amplitude)
         if abs(times - before) < 1e-6 * times:

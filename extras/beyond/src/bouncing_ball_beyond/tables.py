@@ -129,9 +129,7 @@ class Table:
         kept = sizes * k**2 > 1e-12 * (sizes * k**2).max()
         waves = zip(k[kept], sizes[kept], np.angle(parts[kept]) + np.pi / 2, strict=True)
         found = cls(waves)
-        at = found.grid[np.abs(found(found.grid, 2)).argmax()]
-        scale = float(abs(found(_polished(found, at, 3), 2)))
-        return cls((k, a / scale, p) for k, a, p in found.harmonics)
+        return cls((k, a / found.acceleration, p) for k, a, p in found.harmonics)
 
     def __repr__(self):
         harmonics = zip(self.orders, self.sizes, self.phases, strict=True)
@@ -254,6 +252,12 @@ class Table:
         """The greatest -W″: above Λ = 1/lift the table falls faster than a ball."""
         start = self.grid[np.argmin(self(self.grid, 2))]
         return float(-self(_polished(self, start, 3), 2))
+
+    @cached_property
+    def acceleration(self):
+        """The greatest |W″|."""
+        start = self.grid[np.abs(self(self.grid, 2)).argmax()]
+        return float(abs(self(_polished(self, start, 3), 2)))
 
     @cached_property
     def peaks(self):
@@ -463,7 +467,7 @@ class Sine(Table):
 
     parameters = {}  # noqa: RUF012
     bounds = (1.0,) * 6
-    lift = slope = 1.0
+    lift = slope = acceleration = 1.0
     peaks = (1.0, -1.0)
     steepest = 0.0
 

@@ -14,6 +14,8 @@ from unittest import mock
 
 import pytest
 from snakemake import cli
+from tests import repository
+from tests.project import FILES, Project
 
 ROOT = Path(__file__).resolve().parents[1]
 STUB = """from pathlib import Path
@@ -29,6 +31,43 @@ def stub(script: Path) -> str:
     nodes = ast.walk(ast.parse(script.read_text("utf-8")))
     imports = [ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
     return STUB.format(imports="\n    ".join(imports))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def hostile_git(tmp_path_factory):
+    """The environment of a hook in another repository, and settings that change what git answers:
+    all tests run in it, and nothing happens in that repository.
+    """
+    other = tmp_path_factory.mktemp("other")
+    repository.git(other, "init", "-q")
+    before = repository.commit(other, "first")
+    variables = {
+        "GIT_DIR": str(other / ".git"),
+        "GIT_WORK_TREE": str(other),
+        "GIT_INDEX_FILE": str(other / ".git/index"),
+        "GIT_PREFIX": "src/",
+        "GIT_EXTERNAL_DIFF": "false",
+        "GIT_GLOB_PATHSPECS": "1",
+    }
+    settings = {
+        "commit.gpgSign": "true",
+        "gpg.program": "false",
+        "diff.relative": "true",
+        "diff.external": "false",
+        "diff.noprefix": "true",
+        "status.relativePaths": "true",
+        "status.showUntrackedFiles": "no",
+        "core.quotePath": "on",
+    }
+    variables["GIT_CONFIG_COUNT"] = str(len(settings))
+    for number, (key, value) in enumerate(settings.items()):
+        variables |= {f"GIT_CONFIG_KEY_{number}": key, f"GIT_CONFIG_VALUE_{number}": value}
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in variables.items():
+            patch.setenv(name, value)
+        yield other
+    assert repository.git(other, "rev-parse", "HEAD") == before
+    assert repository.git(other, "status", "--porcelain", "--untracked-files=all") == ""
 
 
 @dataclass(frozen=True)
@@ -113,3 +152,33 @@ def used(complete, tmp_path) -> Checkout:
     """A copy for one test, after a whole run."""
     shutil.copytree(complete.path, tmp_path / "checkout")
     return Checkout(tmp_path / "checkout")
+
+
+@pytest.fixture(scope="session")
+def original_project(tmp_path_factory):
+    """A project whose reference was accepted, committed and pushed."""
+    made = Project(tmp_path_factory.mktemp("project") / "checkout")
+    for file, words in FILES.items():
+        path = made.top / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(words, "utf-8")
+    (made.top / "figures").mkdir()
+    repository.git(made.top, "init", "-q")
+    repository.commit(made.top, "code")
+    made.run()
+    assert len(made.accept()) == 5
+    repository.commit(made.top, "reference")
+    repository.git(made.top, "update-ref", "refs/remotes/origin/main", "HEAD")
+    assert made.lines() == ["All 5 files agree with the reference."]
+    return made
+
+
+@pytest.fixture
+def project(original_project):
+    """The same at the same place, for a test that changes it."""
+    saved = original_project.top.parent.with_name("saved")
+    if not saved.exists():
+        shutil.copytree(original_project.top.parent, saved)
+    shutil.rmtree(original_project.top.parent)
+    shutil.copytree(saved, original_project.top.parent)
+    return original_project

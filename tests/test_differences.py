@@ -17,7 +17,7 @@ def curves(cases=CASES, points=4) -> xr.Dataset:
     data = xr.Dataset(
         {"apparent_restitution": (("case", "frequency_ratio"), start[:, np.newaxis] + ratio)},
         {"case": cases, "frequency_ratio": ratio, "amplitude": ("case", start)},
-        {"title": "Figure 5"},
+        {"title": "Figure 5", "parameters": "{}"},
     )
     data["apparent_restitution"].attrs = {"tolerance": 1e-9, "floor": 1e-3}
     return data
@@ -54,11 +54,23 @@ def test_more_frequency_ratios_are_compared_where_they_are_the_same():
     ]
 
 
-def test_exchanged_repeated_or_only_new_labels_do_not_agree():
-    exchanged = texts(curves().isel(case=[2, 1, 0]), curves())
-    assert f"case is {CASES[2]}, the reference has {CASES[0]} at" in " ".join(exchanged)
+def test_of_labels_in_another_order_only_the_order_is_different():
+    reversed_cases = curves().isel(case=[2, 1, 0])
+    assert texts(reversed_cases, curves()) == ["case: the order changed; the 3 agree"]
+    reversed_ratios = curves().isel(frequency_ratio=slice(None, None, -1))
+    assert texts(reversed_ratios, curves()) == ["frequency_ratio: the order changed; the 4 agree"]
+    more = curves([CASES[2], NEW, CASES[0]])
+    words = f"case: new {NEW!r}, without {CASES[1]!r}, and the order changed; the other 2 agree"
+    assert texts(more, curves()) == [words]
+    reversed_cases["apparent_restitution"].loc[{"case": CASES[2]}] *= 1.001
+    found = texts(reversed_cases, curves())
+    assert f"at case = {CASES[2]}" in found[0] and "and 3 more of 12 values" in found[0]
+    assert found[1:] == ["case: the order changed; the 3 were compared"]
+
+
+def test_repeated_or_only_new_labels_do_not_agree():
     repeated = texts(curves([*CASES, CASES[0]]), curves())
-    assert "case has dimensions {'case': 4}, in the reference {'case': 3}" in repeated
+    assert "dimensions of case is {'case': 4}, in the reference {'case': 3}" in repeated
     another = texts(curves([NEW]), curves(CASES[1:2]))
     assert f"case is {NEW}, the reference has {CASES[1]} at" in " ".join(another)
 

@@ -5,6 +5,7 @@ numbers of a whole run are those of the reference is for `make replication` to s
 """
 
 import importlib.util
+import json
 import runpy
 import shutil
 import sys
@@ -22,6 +23,7 @@ from tests import independent
 from bouncing_ball import claims, tables
 from bouncing_ball.continuation import branch
 from bouncing_ball.datasets import parameters, printed_table, read
+from bouncing_ball.history import contents
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
@@ -50,7 +52,7 @@ def run(tmp_path, monkeypatch):
         given = SimpleNamespace(
             input=Namedlist(fromdict=inputs),
             output=Namedlist(fromdict=outputs),
-            params=SimpleNamespace(**(params or {})),
+            params=Namedlist(fromdict=params or {}),
             log=[str(tmp_path / "log")],
         )
         path = str(SCRIPTS / f"{name}.py")
@@ -131,13 +133,15 @@ def test_a_comparison_ends_with_1_if_something_differs(run, tmp_path, monkeypatc
     figures.mkdir(parents=True)
     for path in REFERENCE.glob("fig11.*"):
         shutil.copyfile(path, figures / path.name)
-    if factor != 1:
-        data = read(REFERENCE / "fig11.nc")
-        changed = data.assign(threshold_amplitude=factor * data.threshold_amplitude)
-        changed.to_netcdf(figures / "fig11.nc")
+    data = read(REFERENCE / "fig11.nc")
+    # As if it had been made by the script of today.
+    code = json.dumps(contents([SCRIPTS / "permanent_contact.py"]))
+    changed = data.assign(threshold_amplitude=factor * data.threshold_amplitude)
+    changed.assign_attrs(code=code).to_netcdf(figures / "fig11.nc")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(sys, "path", [*sys.path])
-    given = {"results": "results", "reference": str(ROOT), "artifacts": {}, "names": ["fig11"]}
+    given = {"results": "results", "reference": str(ROOT), "names": ["fig11"]}
+    given["config"] = {"permanent_contact": {"fig11": parameters(data)}}
     with pytest.raises(SystemExit) as ended:
         run("compare", {}, {}, given)
     assert ended.value.code == status

@@ -1,4 +1,4 @@
-"""The comparison of results with the reference, and how results become the reference.
+"""The comparison of results with the reference.
 
 The reference is kept in git: the folder `figures` with datasets, pictures and tables, and the texts
 `paper.md` and `supplement.md`. A run writes the same files into a folder of its own, `results`.
@@ -6,44 +6,55 @@ Three comparisons are made, of which `differences` says what is different:
 
 1. Each dataset of the results with that of the reference. A result that records other parameters
    than those of the configuration, or other code than today's, is stale, whatever else it says.
-   Commit, code and versions of the reference are shown and not judged.
-2. Pictures, tables and texts are functions of datasets. Today's code makes them again from the
-   datasets of the *reference*, and they must equal the files of the reference. The datasets being
-   the same, there is no rounding to forgive.
+2. Pictures, tables, claims and texts are functions of datasets. Today's code makes them again from
+   the datasets of the *reference*, and they must equal the files of the reference. The datasets
+   being the same, there is no rounding to forgive.
 3. Made from the datasets of the *results*, they must equal the files of the results in the same
    way. Otherwise a picture is older than its dataset, or was edited.
+
+The cause of a difference is what the file is made from and what has changed. A dataset records its
+parameters, versions, and files of code with their contents, so that those of both sides can be
+compared without git, which then only says when a file changed. Claims change by other code, which
+the second comparison shows, or by the datasets that decide them.
 """
 
-import re
-import shutil
+import io
+import os
+import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 import jinja2
 import matplotlib
 import netCDF4
 import xarray as xr
+import yaml
 from matplotlib.figure import Figure
 
 from bouncing_ball import datasets, drawing
-from bouncing_ball.datasets import Datasets
+from bouncing_ball.datasets import PACKAGES, Datasets
 from bouncing_ball.differences import (
+    DESCRIPTIVE,
     KINDS,
+    PICTURES,
     Finding,
     changes,
     dataset_differences,
-    file_difference,
+    file_differences,
     record,
     same_bits,
 )
+from bouncing_ball.history import CHECKOUT, History, commit, contents
+
+# Files, and the datasets that they follow from
 
 Code = tuple[str | Path, ...]
 """Files of code, templates and numbers that a product is made by."""
-
-
-# Files, and the datasets that they follow from
 
 
 @dataclass(frozen=True)
@@ -60,6 +71,16 @@ class Product:
         """The name of the figure, table or text."""
         return Path(self.files[0]).stem
 
+    @property
+    def is_dataset(self) -> bool:
+        """Whether it is a dataset, which follows from others."""
+        return self.files[0].endswith(".nc")
+
+    @property
+    def is_picture(self) -> bool:
+        """Whether it is drawn, which another version of matplotlib does otherwise."""
+        return self.files[0].endswith(PICTURES)
+
 
 def picture(
     name: str, needs: tuple[str, ...], draw: Callable[[Datasets], Figure], code: Code
@@ -72,7 +93,7 @@ def picture(
 
     def make(data: Datasets, folder: Path) -> None:
         svg, png = (folder / file for file in files)
-        drawing.save_picture(draw(data), png, svg, datasets.commit())
+        drawing.save_picture(draw(data), png, svg, commit(code))
 
     return Product(files, needs, make, code)
 
@@ -104,57 +125,105 @@ def needed(products: Collection[Product]) -> list[str]:
     return list(dict.fromkeys(name for product in products for name in product.needs))
 
 
-def following(products: Collection[Product]) -> set[str]:
-    """The datasets that are products: they follow from other datasets."""
-    return {Path(file).stem for each in products for file in each.files if file.endswith(".nc")}
+# Both sides
 
 
-# Causes
-
-
-def cause(files: Collection[str | Path], commit: str, reference: Path) -> str:
-    """The changed files, as far as git knows, among those that a result is made from.
-
-    First what is not committed, then what this branch changed against the main one, in the code and
-    in the file of the reference itself; only if there is none of these, what changed in the code
-    since `commit`, that of the reference.
+@dataclass(frozen=True)
+class Side:
+    """The folder of the results or of the reference, with the datasets that could be read, and why
+    others could not.
     """
-    if not files:
-        return "changes of the code are unknown"
-    code = [str(Path(file).resolve()) for file in files]
-    paths = [*code, str(reference.resolve())]
-    folder = Path(code[0]).parent
-    if git(folder, "rev-parse", "HEAD") is None:
-        return "changes of the code are unknown without git"
-    edited = changed_files(folder, paths, "HEAD") or []
-    created = git(folder, "ls-files", "--others", "--full-name", "--", *paths) or ""
-    uncommitted = sorted({*edited, *created.splitlines()})
-    changed = [f"{name} (not committed)" for name in uncommitted]
-    main = "origin/main" if git(folder, "rev-parse", "--verify", "origin/main") else "main"
-    fork = git(folder, "merge-base", "HEAD", main)
-    branch = changed_files(folder, paths, fork, "HEAD") if fork else None
-    changed += [f"{name} (on this branch)" for name in branch or [] if name not in uncommitted]
+
+    name: str
+    folder: Path
+    data: dict[str, xr.Dataset]
+    unread: dict[str, str]
+
+    def matplotlib(self, product: Product) -> str:
+        """The version of matplotlib that drew a picture, as its dataset says; that of a picture
+        without dataset is that of any.
+        """
+        made = [self.data[name] for name in product.needs or self.data if name in self.data]
+        return record(made[0], "versions")["matplotlib"] if made else matplotlib.__version__
+
+    def drawn_elsewhere(self, product: Product) -> bool:
+        """Whether a picture was drawn by another version of matplotlib than that of today."""
+        return product.is_picture and self.matplotlib(product) != matplotlib.__version__
+
+
+def side(name: str, folder: Path, names: Collection[str]) -> Side:
+    """A side with the datasets that are there."""
+    data = {}
+    unread = {}
+    for each in names:
+        path = folder / "figures" / f"{each}.nc"
+        # A pipe would be read for ever.
+        if path.is_file():
+            try:
+                data[each] = read(path)
+            except Exception as error:  # Whatever readers of damaged files raise.
+                unread[each] = f"{type(error).__name__}: {error}"
+    return Side(name, folder, data, unread)
+
+
+def read(path: Path) -> xr.Dataset:
+    """The dataset of a file that records how it was made, and has nothing else in it.
+
+    Raises ValueError, or whatever the reader raises, for another file.
+    """
+    with netCDF4.Dataset(path) as file:
+        if file.data_model != "NETCDF4" or file.groups:
+            raise ValueError(f"it has the format {file.data_model} and {len(file.groups)} groups")
+        unlimited = [name for name, each in file.dimensions.items() if each.isunlimited()]
+        if unlimited:
+            raise ValueError(f"the dimension {', '.join(unlimited)} is unlimited")
+    data = datasets.read(path)
+    missing = {*PACKAGES} - record(data, "versions").keys()
+    if missing:
+        raise ValueError(f"it does not record the versions of {', '.join(sorted(missing))}")
+    record(data, "parameters")
+    return data
+
+
+def code_of(data: xr.Dataset) -> dict[str, str]:
+    """The files of code that a dataset records, with their contents; none without a record."""
+    try:
+        return record(data, "code")
+    except ValueError:
+        return {}
+
+
+WORDS = ("title", "caption", "table")
+"""What a configuration says of a dataset beside its parameters."""
+
+
+def configured(config: Mapping, name: str, recorded: Collection[str]) -> dict:
+    """The parameters of a dataset in a configuration.
+
+    Its sections are stages with their datasets, and everything else is a setting of the whole run,
+    which counts where a dataset records it.
+    """
+    found = {key: value for key, value in config.items() if key in recorded}
+    for stage in config.values():
+        if isinstance(stage, Mapping) and isinstance(stage.get(name), Mapping):
+            found |= {key: value for key, value in stage[name].items() if key not in WORDS}
+    return datasets.plain(found)
+
+
+def staleness(new: xr.Dataset, name: str, config: Mapping, top: Path) -> Iterator[str]:
+    """Why a result is not that of a configuration and of today's code, in the checkout `top`."""
+    recorded = record(new, "parameters")
+    changed = changes(recorded, configured(config, name, recorded))
     if changed:
-        return f"changed: {', '.join(changed)}"
-    since = changed_files(folder, code, commit[:40], "HEAD")
-    if since is None:
-        return "changes of the code are unknown: git does not know the commit of the reference"
-    if since:
-        return f"also changed since the reference was made: {', '.join(since)}"
-    return "no file that it is made from has changed"
-
-
-def changed_files(folder: Path, paths: list[str], *commits: str) -> list[str] | None:
-    """Files that differ between two commits, or one and the checkout; none if git fails."""
-    revisions = [*commits, "--", *paths]
-    names = git(folder, "diff", "--name-only", *revisions)
-    return None if names is None else names.splitlines()
-
-
-def git(folder: Path, *arguments: str) -> str | None:
-    """The answer of git in a folder; none if there is no git or it refuses."""
-    answer = datasets.git(folder, *arguments)
-    return answer.stdout.strip() if answer and answer.returncode == 0 else None
+        yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
+    code = code_of(new)
+    today = contents([top / name for name in code if (top / name).is_file()])
+    edited = [name for name in code if today.get(name) != code[name]]
+    if edited:
+        words = f"stale: it was made by other code than today's: {', '.join(edited)}"
+        yield f"{words}; remove it, and run again"
+    if not code:
+        yield "stale: it does not record the code that made it; remove it, and run again"
 
 
 # The comparison
@@ -165,113 +234,334 @@ class Report:
     """What was found, the most telling first, and what else a reader should know.
 
     `consequences` are files of the results that differ from those of the reference because their
-    datasets do; they are shown and not counted. `provenance` has a line for each dataset of the
-    reference, and `notes` say what was not compared.
+    datasets do; they are shown and not counted. `notes` tell of other versions. `skipped` of the
+    files are pictures that were not compared, because another matplotlib drew them.
     """
 
     findings: list[Finding]
     consequences: list[Finding]
-    provenance: list[str]
     notes: list[str]
     files: int
+    skipped: int
 
     @property
     def lines(self) -> list[str]:
-        """The report on a terminal: the most telling finding of each artifact, then the verdict."""
-        first: dict[str, str] = {}
+        """The report on a terminal: the most telling finding of each artifact, others of the same
+        with another cause, and the verdict.
+        """
+        told = []
+        red: set[str] = set()
         for finding in self.findings:
-            first.setdefault(finding.artifact, finding.line)
-        verdict = f"All {self.files} files agree with the reference."
-        if first:
-            verdict = f"Differences: {len(self.findings)}, in {', '.join(sorted(first))}."
-        return [*first.values(), " ".join([verdict, *self.notes])]
+            if finding.cause or finding.artifact not in red:
+                told.append(finding.line)
+            red.add(finding.artifact)
+        agreeing = f"{self.files - self.skipped} of {self.files}" if self.skipped else self.files
+        verdict = f"{'' if self.skipped else 'All '}{agreeing} files agree with the reference."
+        if red:
+            verdict = f"Differences: {len(self.findings)}, in {', '.join(sorted(red))}."
+        return [*told, " ".join([verdict, *self.notes])]
 
 
-@dataclass(frozen=True)
-class Side:
-    """The folder of the results or of the reference, with the datasets that could be read."""
-
-    name: str
-    folder: Path
-    data: dict[str, xr.Dataset]
-
-    def other_matplotlib(self, names: Collection[str] = ()) -> set[str]:
-        """Versions of matplotlib that made all or some of this side, and are not that of today."""
-        made = [self.data[name] for name in names or self.data]
-        found = {str(record(data, "versions").get("matplotlib")) for data in made}
-        return found - {matplotlib.__version__}
-
-
-def compare(
-    results: str | Path,
-    reference: str | Path,
-    products: Collection[Product],
-    artifacts: Mapping[str, Mapping],
-    names: Collection[str] = (),
-) -> Report:
-    """Compare the results in a folder with the reference: all, or those with the names given.
+class Comparison:
+    """Results beside the reference: all, or those with the names given.
 
     `products` are all files that follow from datasets; these and their datasets are compared.
-    `artifacts` has for each dataset the "parameters" of the configuration and the files of "code"
-    that compute it; "settings" are parameters that count where a result records them. Without
-    parameters and code it is unknown whether a result is stale, and why it differs. The cause of
-    differences is stated once for each artifact. Raises ValueError if the results are the reference
-    itself, or for a name that is not compared.
+    `config` is the configuration of the results, and `top` the checkout of today's code. Raises
+    ValueError if the results are no results or the reference itself, or for a name that is not
+    compared.
     """
-    compared, made = chosen(products, names)
-    files = [f"figures/{name}.nc" for name in compared]
-    files += [file for product in made for file in product.files if file not in files]
-    folders = Path(results), Path(reference)
-    refuse_links(*folders, files)
-    new, old = (
-        Side(name, folder, read_all(folder, [*compared, *needed(made)] or needed(products)))
-        for name, folder in zip(("results", "reference"), folders, strict=True)
-    )
-    whole = len(made) == len(products)
-    findings = [*file_findings(new, files, whole), *file_findings(old, files, whole)]
-    for name in compared:
-        if name in new.data:
-            artifact = artifacts.get(name, {})
-            findings += dataset_findings(name, new.data[name], old.data.get(name), artifact)
-    findings = [*derived(findings, set(needed(products)) - following(products))]
-    with tempfile.TemporaryDirectory() as scratch:
-        for side in (new, old):
-            (Path(scratch) / side.name / "figures").mkdir(parents=True)
-        for product in made:
-            findings += product_findings(product, new, old, Path(scratch))
-    findings.sort(key=lambda each: each.rank)
-    stated = {(each.artifact, each.cause): each for each in reversed(findings)}
-    findings = [
-        each if stated[each.artifact, each.cause] is each else replace(each, cause="")
-        for each in findings
-    ]
-    red = {finding.artifact for finding in findings}
-    return Report(
-        findings,
-        [
-            finding
-            for product in made
-            if red.intersection(product.needs)
-            for finding in consequences(product, new, old)
-        ],
-        [provenance(name, old.data[name]) for name in compared if name in old.data],
-        notes(new, old, artifacts),
-        len(files),
-    )
+
+    def __init__(
+        self,
+        results: str | Path,
+        reference: str | Path,
+        products: Collection[Product],
+        config: Mapping,
+        names: Collection[str] = (),
+        top: Path = CHECKOUT,
+    ):
+        self.config = config
+        self.history = History(top)
+        self.names, self.made = chosen(products, names)
+        self.whole = len(self.made) == len(products)
+        files = [f"figures/{name}.nc" for name in self.names]
+        self.files = list(dict.fromkeys([*files, *(f for each in self.made for f in each.files)]))
+        refuse(Path(results), Path(reference), self.files)
+        self.new = side("results", Path(results), needed(products))
+        self.old = side("reference", Path(reference), needed(products))
+        self.derived = {product.artifact for product in products if product.is_dataset}
+        self.differences = {
+            name: compared(self.new.data[name], self.old.data[name])
+            for name in self.new.data
+            if name in self.old.data and name not in self.derived
+        }
+        self.why = cache(self.cause_of_dataset)
+
+    def report(self) -> Report:
+        """All findings. The cause of differences is stated once for each artifact."""
+        findings = [*self.file_findings(self.new), *self.file_findings(self.old)]
+        for name in self.names:
+            findings += self.dataset_findings(name)
+        with tempfile.TemporaryDirectory() as scratch:
+            for product in self.made:
+                findings += self.product_findings(product, Path(scratch))
+        findings.sort(key=lambda each: each.rank)
+        red = {finding.artifact for finding in findings}
+        shown = [each for product in self.made for each in self.consequences(product, red)]
+        stated = {(each.artifact, each.cause): each for each in reversed(findings)}
+        return Report(
+            [
+                each if stated[each.artifact, each.cause] is each else replace(each, cause="")
+                for each in findings
+            ],
+            shown,
+            self.notes(),
+            len(self.files),
+            len(self.skipped()),
+        )
+
+    # What differs
+
+    def file_findings(self, side: Side) -> Iterator[Finding]:
+        """Files of one side that are missing, unreadable or, in a whole comparison, unexpected."""
+        folder = side.folder / "figures"
+        present = sorted(folder.iterdir()) if self.whole else []
+        texts = {
+            file: f"figures/{path.name} of the {side.name} is made by no rule"
+            for path in present
+            if (file := f"figures/{path.name}") not in self.files and path.name[0] != "."
+        }
+        for file in self.files:
+            path = side.folder / file
+            if not path.is_file():
+                what = "no regular file" if path.exists() else "missing"
+                texts[file] = f"{file} is {what} in the {side.name}"
+            elif file.endswith(".nc") and path.stem in side.unread:
+                texts[file] = f"{file} of the {side.name} cannot be read: {side.unread[path.stem]}"
+        for file, words in texts.items():
+            name = Path(file).stem
+            yield Finding("file", words, artifact=name, of_results=side is self.new)
+
+    def dataset_findings(self, name: str) -> Iterator[Finding]:
+        """Whether a dataset is stale, and where it differs from the reference."""
+        if name in self.new.data:
+            for words in staleness(self.new.data[name], name, self.config, self.history.top):
+                yield Finding("stale", words, artifact=name, of_results=True)
+        for each in self.differences.get(name, []):
+            yield replace(each, artifact=name, cause=self.why(name))
+
+    def product_findings(self, product: Product, scratch: Path) -> Iterator[Finding]:
+        """Files of both sides that are not what today's code makes of the datasets of that side.
+
+        The datasets being the same to the last bit, a product is made once.
+        """
+        made = None
+        for side in (self.old, self.new):
+            if any(name not in side.data for name in product.needs):
+                continue
+            if side.drawn_elsewhere(product):
+                continue
+            needs = [(self.new.data.get(name), self.old.data.get(name)) for name in product.needs]
+            if made is None or not all(new and old and same_bits(new, old) for new, old in needs):
+                made = scratch / side.name
+                (made / "figures").mkdir(parents=True, exist_ok=True)
+                try:
+                    product.make(side.data, made)
+                except Exception as error:  # Whatever a drawing does not find in a dataset.
+                    words = f"today's code cannot make it of the dataset in the {side.name}"
+                    yield self.found(Finding("file", f"{words}: {error!r}"), product, side)
+                    # The other side would fail in the same way.
+                    return
+            for file in product.files:
+                path = side.folder / file
+                what = f"today's code makes another {file} of the reference"
+                if side is self.new:
+                    what = f"{file} in the results is not what its dataset gives"
+                for each in file_differences(made / file, path) if path.is_file() else []:
+                    named = replace(each, text=f"{what}: {each.text}")
+                    yield self.found(named, product, side)
+            if side is self.old and product.is_dataset:
+                yield from self.followed(product, datasets.read(made / product.files[0]))
+
+    def found(self, finding: Finding, product: Product, side: Side) -> Finding:
+        """A finding on a product; what is wrong in the results alone has no cause in the code."""
+        if side is self.new:
+            return replace(finding, artifact=product.artifact, of_results=True)
+        reference = [*product.files, *(f"figures/{name}.nc" for name in product.needs)]
+        changed = self.since(product.code, product.needs, reference)
+        why = self.cause(changed, reference)
+        return replace(finding, artifact=product.artifact, cause=why)
+
+    def followed(self, product: Product, expected: xr.Dataset) -> Iterator[Finding]:
+        """How a dataset that follows from others differs from what today's code makes of those in
+        the reference. The causes are the datasets that decide the claims that differ.
+        """
+        name = product.artifact
+        if name not in self.new.data:
+            return
+        new = self.new.data[name]
+        declared = declarations(expected) | declarations(new)
+        changed = [other for other in product.needs if self.values_differ(other)]
+        for each in compared(new, expected):
+            decides = {
+                other: {label for label in each.labels if other in declared.get(label, ())}
+                for other in changed
+            }
+            deciding = fewest(decides) if each.labels else changed
+            causes = {self.why(other) for other in deciding}
+            # Each of several causes stands with its dataset.
+            words = [f"follows from {', '.join(deciding)}", *(causes if len(causes) == 1 else ())]
+            yield replace(each, artifact=name, cause=": ".join(words) if deciding else "")
+
+    def values_differ(self, name: str) -> bool:
+        """Whether a dataset has other numbers, texts or parameters than that of the reference."""
+        if name not in self.differences:
+            return name in self.new.data and name not in self.derived
+        return any(each.order != DESCRIPTIVE for each in self.differences[name])
+
+    def consequences(self, product: Product, red: Collection[str]) -> Iterator[Finding]:
+        """Texts and PNG files in the results that differ from those in the reference because one of
+        their datasets does.
+        """
+        for file in product.files if not {*product.needs}.isdisjoint(red) else ():
+            paths = self.new.folder / file, self.old.folder / file
+            if not file.endswith((".svg", ".nc")) and all(path.is_file() for path in paths):
+                for difference in file_differences(*paths):
+                    yield replace(difference, artifact=product.artifact)
+
+    # Why it differs
+
+    def cause_of_dataset(self, name: str) -> str:
+        """Why a dataset differs: by what both sides record."""
+        if name not in self.old.data:
+            return "it is not in the reference"
+        new, old = self.new.data[name], self.old.data[name]
+        reference = [f"figures/{name}.nc"]
+        parameters = changes(record(old, "parameters"), record(new, "parameters"))
+        others = [f"changed parameter: {'; '.join(parameters)}"] if parameters else []
+        libraries = [
+            each
+            for each in changes(record(old, "versions"), record(new, "versions"))
+            if each.split()[0] in PACKAGES
+        ]
+        mine, theirs = code_of(new), code_of(old)
+        ids = {*mine.values(), *theirs.values()}
+        same = {*mine.values()} & {*theirs.values()}
+        changed: Collection[str] | None = [
+            file for file, each in (mine | theirs).items() if each in ids - same
+        ]
+        if not theirs:
+            changed = self.since(mine, [name], reference)
+        if libraries:
+            others.append(f"other versions: {', '.join(libraries)}")
+        return self.cause(changed, reference, others)
+
+    def since(
+        self, code: Collection[str | Path], needs: Collection[str], reference: Collection[str]
+    ) -> Collection[str] | None:
+        """Files of code that have changed since a file of the reference was made; none if that is
+        unknown.
+        """
+        code = [self.history.top / file for file in code]
+        commits = [str(self.old.data[name].attrs.get("commit")) for name in needs]
+        made = self.history.newest(commits, [self.old.folder / file for file in reference])
+        later = self.history.since(made, code)
+        edited = self.history.uncommitted(code)
+        return {*edited, *(later or ())} if edited or later is not None else None
+
+    def cause(
+        self,
+        changed: Collection[str] | None,
+        reference: Collection[str],
+        others: Collection[str] = (),
+    ) -> str:
+        """The cause in words: changed files, among them those of the reference that were edited,
+        and what else has changed.
+        """
+        own = [self.old.folder / file for file in reference]
+        files = {*(changed or ()), *self.history.uncommitted(own)}
+        causes = [*others]
+        if files:
+            causes.insert(0, f"changed: {', '.join(self.history.told(files))}")
+        elif changed is None:
+            unknown = ": git does not know when the reference was made"
+            without = unknown if self.history.head else " without git"
+            causes.append(f"changes of the code are unknown{without}")
+        elif not causes:
+            made = self.history.told(self.history.names(own))[:1]
+            causes.append(" since ".join(["no file that it is made from has changed", *made]))
+        return "; ".join(causes)
+
+    # What else a reader should know
+
+    def skipped(self) -> dict[str, set[str]]:
+        """Pictures that are not compared, with the versions of matplotlib that drew them."""
+        found: dict[str, set[str]] = {}
+        for side in (self.old, self.new):
+            for product in self.made:
+                for file in product.files if side.drawn_elsewhere(product) else ():
+                    found.setdefault(file, set()).add(side.matplotlib(product))
+        return found
+
+    def notes(self) -> list[str]:
+        """What was not compared, and which versions are not those of today."""
+        found = []
+        skipped = self.skipped()
+        if skipped:
+            drew = ", ".join(sorted(set().union(*skipped.values())))
+            found.append(
+                f"{len(skipped)} pictures were not compared: matplotlib {drew} drew them, and this "
+                f"is {matplotlib.__version__}."
+            )
+        others = []
+        relevant = {*self.names, *needed(self.made)}
+        for package in PACKAGES:
+            places = {
+                f"in the {side.name}": {
+                    record(side.data[name], "versions")[package]
+                    for name in relevant & side.data.keys()
+                }
+                for side in (self.old, self.new)
+            } | {"today": {datasets.versions()[package]}}
+            if len(set().union(*places.values())) > 1:
+                words = [f"{', '.join(sorted(each))} {where}" for where, each in places.items()]
+                others.append(f"{package} {', '.join(words)}")
+        if others:
+            found.append(f"Other versions: {'; '.join(others)}.")
+        return found
 
 
-def derived(findings: list[Finding], studies: Collection[str]) -> Iterator[Finding]:
-    """The findings of datasets, where those that follow from other datasets have their cause.
+def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
+    """Differences of two datasets, whatever they have in them."""
+    try:
+        return dataset_differences(new, old)
+    except (KeyError, TypeError, ValueError) as error:
+        return [Finding("file", f"the datasets cannot be compared: {error!r}")]
 
-    `studies` are the datasets that are computed from the models.
+
+def declarations(data: xr.Dataset) -> dict[str, list[str]]:
+    """The datasets that each claim declares to decide it."""
+    if "decided_by" not in data:
+        return {}
+    claims = data[str(data.decided_by.dims[0])].values
+    return {
+        claim: text.split(", ") for claim, text in zip(claims, data.decided_by.values, strict=True)
+    }
+
+
+def fewest(decides: Mapping[str, Collection[str]]) -> list[str]:
+    """A choice of datasets that decide all of the claims that differ, no more than needed.
+
+    >>> fewest({"fig02": {"a"}, "fig06": {"a", "b"}, "fig14": {"c"}, "fig16": set()})
+    ['fig06', 'fig14']
     """
-    reasons = {each.artifact: each.cause for each in findings if each.artifact in studies}
-    for each in findings:
-        if each.artifact not in studies and each.cause and reasons:
-            first, why = next(iter(reasons.items()))
-            yield replace(each, cause=f"follows from {first}: {why}" if why else each.cause)
-        else:
-            yield each
+    left = set().union(*decides.values())
+    found = []
+    while left:
+        most = max(decides, key=lambda name: len(left & {*decides[name]}))
+        left -= {*decides[most]}
+        found.append(most)
+    return found
 
 
 def chosen(
@@ -296,8 +586,10 @@ def chosen(
     return [name for name in needed(products) if name in names], made
 
 
-def refuse_links(results: Path, reference: Path, files: Collection[str]) -> None:
-    """Refuse results that are the reference, or lie in it, also by links."""
+def refuse(results: Path, reference: Path, files: Collection[str]) -> None:
+    """Refuse folders that have no results, and results that are the reference, or lie in it, also
+    by links.
+    """
     inside = results.resolve().is_relative_to((reference / "figures").resolve())
     pairs = [(results / file, reference / file) for file in ["", "figures", *files]]
     same = [
@@ -306,260 +598,62 @@ def refuse_links(results: Path, reference: Path, files: Collection[str]) -> None
     if inside or same:
         path = same[0][0] if same else results
         raise ValueError(f"{path} is a part of the reference: results must be files of their own")
+    for folder in (results, reference):
+        if not (folder / "figures").is_dir():
+            raise ValueError(f"{folder} is no folder of results: there is no {folder / 'figures'}")
 
 
-def read_all(folder: Path, names: Collection[str]) -> dict[str, xr.Dataset]:
-    """The datasets of a folder that can be read, without groups that nobody sees."""
-    data = {}
-    for name in dict.fromkeys(names):
-        path = folder / "figures" / f"{name}.nc"
-        try:
-            with netCDF4.Dataset(path) as file:
-                hidden = list(file.groups)
-            if not hidden:
-                data[name] = datasets.read(path)
-        except Exception:  # Whatever readers of damaged files raise; `file_findings` tells.
-            continue
-    return data
+# The page, the log and the terminal
+
+TEMPLATE = CHECKOUT / "workflow" / "templates" / "diff.html.j2"
 
 
-def file_findings(side: Side, files: Collection[str], whole: bool) -> Iterator[Finding]:
-    """Files of one side that are missing, unreadable or, in a `whole` comparison, unexpected."""
-    folder = side.folder / "figures"
-    present = sorted(folder.iterdir()) if whole and folder.is_dir() else []
-    texts = {
-        file: f"figures/{path.name} of the {side.name} is made by no rule"
-        for path in present
-        if (file := f"figures/{path.name}") not in files and not path.name.startswith(".")
-    }
-    for file in files:
-        if not (side.folder / file).is_file():
-            texts[file] = f"{file} is missing in the {side.name}"
-        elif file.endswith(".nc") and Path(file).stem not in side.data:
-            texts[file] = f"{file} of the {side.name} cannot be read, or has groups"
-    for file, words in texts.items():
-        name = Path(file).stem
-        yield Finding("file", words, artifact=name, of_results=side.name == "results")
-
-
-def dataset_findings(
-    name: str, new: xr.Dataset, old: xr.Dataset | None, artifact: Mapping
-) -> Iterator[Finding]:
-    """Whether a dataset is stale, and where it differs from the reference, with the causes."""
-    for words in staleness(new, artifact):
-        yield Finding("stale", words, artifact=name, of_results=True)
-    if old is None:
-        return
-    try:
-        differences = dataset_differences(new, old)
-    except (KeyError, TypeError, ValueError) as error:
-        differences = [Finding("file", f"the datasets cannot be compared: {error!r}")]
-    if differences:
-        changed = changes(record(old, "parameters"), record(new, "parameters"))
-        causes = [f"changed parameter: {'; '.join(changed)}"] if changed else []
-        reference = Path(old.encoding["source"])
-        causes.append(cause(artifact.get("code", ()), str(old.attrs.get("commit")), reference))
-        why = "; ".join(causes)
-        yield from (replace(each, artifact=name, cause=why) for each in differences)
-
-
-def staleness(new: xr.Dataset, artifact: Mapping) -> Iterator[str]:
-    """Why a result is not that of today's configuration and code."""
-    if "parameters" in artifact:
-        recorded = record(new, "parameters")
-        settings = {
-            key: value for key, value in artifact.get("settings", {}).items() if key in recorded
-        }
-        wanted = datasets.plain({**artifact["parameters"], **settings})
-        changed = changes(recorded, wanted)
-        if changed:
-            yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
-    if "code" in artifact and new.attrs.get("code") != datasets.digest(artifact["code"]):
-        yield "stale: it was made by other code than today's; remove it, and run again"
-
-
-def product_findings(product: Product, new: Side, old: Side, scratch: Path) -> Iterator[Finding]:
-    """Files of both sides that are not what today's code makes of the datasets of that side."""
-    commit = next((str(data.attrs.get("commit")) for data in old.data.values()), "unknown")
-    for side in (old, new):
-        made = scratch / side.name
-        if any(need not in side.data for need in product.needs):
-            continue
-        if side is new and all(
-            need in old.data and same_bits(new.data[need], old.data[need]) for need in product.needs
-        ):
-            made = scratch / old.name
-        else:
-            try:
-                product.make(side.data, made)
-            except Exception as error:  # Whatever a drawing does not find in an older dataset.
-                words = f"today's code cannot make it of the dataset in the {side.name}: {error!r}"
-                why = (
-                    ""
-                    if side is new
-                    else cause(product.code, commit, side.folder / product.files[0])
-                )
-                failed = Finding("file", words, artifact=product.artifact, cause=why)
-                yield replace(failed, of_results=side is new)
-                return
-        loosely = bool(side.other_matplotlib(product.needs))
-        for file in product.files:
-            path = side.folder / file
-            difference = file_difference(made / file, path, loosely) if path.is_file() else None
-            if difference:
-                what = f"today's code makes another {file} of the reference"
-                if side is new:
-                    what = f"{file} in the results is not what its dataset gives"
-                why = "" if side is new else cause(product.code, commit, path)
-                words = f"{what}: {difference.text}"
-                named = replace(difference, artifact=product.artifact, text=words)
-                yield replace(named, cause=why, of_results=side is new)
-
-
-def consequences(product: Product, new: Side, old: Side) -> Iterator[Finding]:
-    """Texts and PNG files in the results that differ from those in the reference."""
-    for file in product.files:
-        paths = new.folder / file, old.folder / file
-        if not file.endswith(".svg") and all(path.is_file() for path in paths):
-            difference = file_difference(*paths, loosely=False)
-            if difference:
-                yield replace(difference, artifact=product.artifact)
-
-
-def provenance(name: str, old: xr.Dataset) -> str:
-    """What a dataset of the reference records of its making."""
-    versions = ", ".join(f"{key} {value}" for key, value in record(old, "versions").items())
-    commit, code = (old.attrs.get(key, "unknown") for key in ("commit", "code"))
-    return f"{name}: commit {commit}, code {code[:12]}, {versions}"
-
-
-def notes(new: Side, old: Side, artifacts: Mapping[str, Mapping]) -> list[str]:
-    """What was not compared."""
-    found = []
-    other = sorted(new.other_matplotlib() | old.other_matplotlib())
-    if other:
-        found.append(
-            f"Pictures of matplotlib {', '.join(other)} were compared with those of "
-            f"{matplotlib.__version__} by strokes, fills, words and curves, and not by pixels."
-        )
-    known = [{"parameters", "code"} <= set(artifacts.get(name, {})) for name in new.data]
-    if not all(known):
-        found.append("It is not known whether today's code made the results.")
-    return found
-
-
-def page(report: Report, template: Path) -> str:
+def page(report: Report) -> str:
     """The report as a page of HTML that needs no other file."""
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    written = environment.from_string(template.read_text(encoding="utf-8"))
-    return written.render(report=report, kinds=KINDS)
+    return environment.from_string(TEMPLATE.read_text("utf-8")).render(report=report, kinds=KINDS)
 
 
-# How results become the reference
+def main(
+    products: Collection[Product], folder: Path, job: Any = None, top: Path = CHECKOUT
+) -> int | str:
+    """Compare, print the report, and write it as a page into the folder of the results.
 
-CODE = ("Snakefile", "config", "src", "workflow")
-"""What must be committed, so that the commit that a reference names is the code that made it."""
-
-
-def refuse_other_settings(given: Mapping, accepted: Mapping) -> None:
-    """Raise ValueError if the settings of a run are not those of the configuration in git."""
-    changed = [key for key in {**given, **accepted} if given.get(key) != accepted.get(key)]
-    if changed:
-        raise ValueError(f"config/config.yaml has another {', '.join(changed)} than this run")
-
-
-def accept(
-    results: str | Path,
-    reference: str | Path,
-    products: Collection[Product],
-    artifacts: Mapping[str, Mapping],
-    names: Collection[str] = (),
-    code: Collection[str] = CODE,
-) -> list[str]:
-    """Make results the reference: those named, or all that differ; returns the files written.
-
-    Datasets are copied, and name the commit of today. Pictures and texts, of these and of texts
-    that depend on them, are made anew from the datasets that are then the reference. `code` are
-    files and folders of code beside the reference. Raises ValueError, with the reason, if a result
-    is stale, incomplete, or not what its dataset gives, and if the code is not committed.
+    A `job` of Snakemake has the parameters; the command line has a folder of results and perhaps
+    one of a reference, which is otherwise `folder`, as is the configuration. Returns the exit
+    status, or why nothing was compared. Until the end there is no page, and the log says so. Where
+    nothing can be written the report is printed all the same.
     """
-    old_folder = Path(reference)
-    commit = datasets.commit(old_folder).removesuffix("+dirty")
-    if not re.fullmatch("[0-9a-f]{40}", commit):
-        raise ValueError(f"nothing is accepted, because the commit of the code is {commit}")
-    edited = git(old_folder, "status", "--porcelain", "--untracked-files=all", "--", *code) or ""
-    if edited:
-        raise ValueError(f"nothing is accepted, commit first: {', '.join(edited.splitlines())}")
-    report = compare(results, reference, products, artifacts, names)
-    every = needed(products)
-    new = Side("results", Path(results), read_all(Path(results), every))
-    unfit = [finding.line for finding in report.findings if finding.of_results]
-    unfit += notes(new, new, artifacts)
-    if unfit:
-        raise ValueError(f"nothing is accepted: {unfit[0]}")
-    red = {finding.artifact for finding in report.findings}
-    with tempfile.TemporaryDirectory() as scratch:
-        stage(products, red, new, read_all(old_folder, every), Path(scratch), commit)
-        return list(replaced(Path(scratch), old_folder))
-
-
-def stage(
-    products: Collection[Product],
-    red: Collection[str],
-    new: Side,
-    old: Datasets,
-    folder: Path,
-    commit: str,
-) -> None:
-    """Write what becomes the reference into a folder: datasets, and what is made from them."""
-    (folder / "figures").mkdir()
-    data = dict(old)
-    for name in red:
-        if name in new.data and (
-            name not in old
-            or dataset_differences(new.data[name], old[name])
-            # Its pictures are drawn anew, by the matplotlib of today.
-            or record(old[name], "versions").get("matplotlib") != matplotlib.__version__
-        ):
-            data[name] = stamped(new.folder, folder, name, commit)
-    accepted = [name for name in data if data[name] is not old.get(name)]
-    for product in products:
-        concerned = product.artifact in red or any(need in accepted for need in product.needs)
-        if not concerned or any(need not in data for need in product.needs):
-            continue
-        product.make(data, folder)
-        for name in following([product]):
-            data[name] = fitting(name, new, old, folder, commit)
-
-
-def fitting(name: str, new: Side, old: Datasets, folder: Path, commit: str) -> xr.Dataset:
-    """A dataset that follows from others, as the accepted ones give it: that of the reference, or
-    that of the results.
-    """
-    path = folder / "figures" / f"{name}.nc"
-    made = datasets.read(path)
-    path.unlink()
-    if name in old and not dataset_differences(made, old[name]):
-        return old[name]
-    if name in new.data and not dataset_differences(made, new.data[name]):
-        return stamped(new.folder, folder, name, commit)
-    raise ValueError(f"nothing is accepted: it changes the {name}; make and accept all results")
-
-
-def stamped(source: Path, folder: Path, name: str, commit: str) -> xr.Dataset:
-    """Copy a dataset into a folder, as a result of a commit that has the code that made it."""
-    copy = folder / "figures" / f"{name}.nc"
-    shutil.copyfile(source / "figures" / copy.name, copy)
-    with netCDF4.Dataset(copy, "a") as file:
-        file.setncattr("commit", commit)
-    return datasets.read(copy)
-
-
-def replaced(source: Path, folder: Path) -> Iterator[str]:
-    """Move the files that differ from one folder into another, each whole or not at all."""
-    for path in sorted(path for path in source.rglob("*") if path.is_file()):
-        target = folder / path.relative_to(source)
-        if path.suffix == ".nc" or not target.is_file() or file_difference(path, target, False):
-            with datasets.whole(target) as unfinished:
-                shutil.copyfile(path, unfinished)
-            yield str(path.relative_to(source))
+    # A terminal may not know all letters.
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
+    if job:
+        given = dict(job.params)
+    elif len(sys.argv) in (2, 3):
+        configuration = yaml.safe_load((folder / "config" / "config.yaml").read_text("utf-8"))
+        results, reference = (*sys.argv[1:], folder)[:2]
+        given = {"results": results, "reference": reference, "config": configuration}
+    else:
+        return "usage: python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]"
+    path = Path(given["results"]) / "diff" / "index.html"
+    with suppress(OSError):
+        path.unlink(missing_ok=True)
+    log = Path(job.log[0] if job else os.devnull)
+    log.write_text("The comparison has not ended.\n", encoding="utf-8")
+    try:
+        report = Comparison(**given, products=products, top=top).report()
+    except ValueError as error:
+        log.write_text(f"{error}\n", encoding="utf-8")
+        return str(error)
+    *told, verdict = report.lines
+    # Snakemake shows the log of a failed job last.
+    log.write_text("\n".join([verdict, *told, ""]), encoding="utf-8")
+    place = f"See {path}."
+    try:
+        path.parent.mkdir(exist_ok=True)
+        with datasets.whole(path) as unfinished:
+            unfinished.write_text(page(report), encoding="utf-8", newline="\n")
+    except OSError as error:
+        place = f"There is no page: {error}"
+    print("\n".join([*told, verdict, place]))
+    return 1 if report.findings else 0

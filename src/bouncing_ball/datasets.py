@@ -13,20 +13,20 @@ booleans agree only if they are equal.
 """
 
 import csv
-import hashlib
 import json
 import os
 import platform
-import re
-import subprocess
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+
+from bouncing_ball.history import commit, contents
 
 REFERENCE = (
     "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
@@ -276,11 +276,12 @@ def save(
     """Save a dataset as netCDF, with the descriptions of its variables and its provenance.
 
     `parameters` are the parameters it was computed with, `code` the files of code that computed
-    it: the script and the modules of the package that it uses. The file appears whole or not at
-    all. Raises ValueError for a variable that `variables` do not describe.
+    it: the script and the modules of the package that it uses. Their names are recorded with the id
+    that git gives to the content of each. The file appears whole or not at all. Raises ValueError
+    for a variable that `variables` do not describe.
     """
     path = Path(path)
-    files = [Path(file) for file in code]
+    files = list(code)
     unknown = [str(name) for name in dataset.variables if name not in variables]
     if unknown:
         raise ValueError(f"{path.name}: VARIABLES has no description of {', '.join(unknown)}")
@@ -289,8 +290,8 @@ def save(
         title=title,
         references=REFERENCE,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
-        commit=commit(files[0].parent) if files else commit(),
-        code=digest(files),
+        commit=commit(files),
+        code=json.dumps(contents(files)),
         versions=json.dumps(versions()),
     )
     for name, variable in described.variables.items():
@@ -390,49 +391,9 @@ def plain(value):
     return value.item() if isinstance(value, np.generic) else value
 
 
-def digest(files: Iterable[str | Path]) -> str:
-    """SHA-256 over names and contents of text files, whatever their order and line ends."""
-    contents = {
-        (Path(file).name, Path(file).read_bytes().replace(b"\r\n", b"\n")) for file in files
-    }
-    total = hashlib.sha256()
-    for name, content in sorted(contents):
-        total.update(f"{name} {hashlib.sha256(content).hexdigest()}\n".encode())
-    return total.hexdigest()
-
-
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that numbers and pictures depend on."""
     return {"python": platform.python_version()} | {
         name: metadata.version(name) for name in PACKAGES
     }
-
-
-def git(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str] | None:
-    """The answer of git in a folder; none if there is no git."""
-    command = ["git", "-C", str(folder), "-c", "core.quotePath=off", *arguments]
-    environment = os.environ | {"LC_ALL": "C", "GIT_OPTIONAL_LOCKS": "0"}
-    try:
-        return subprocess.run(
-            command, capture_output=True, check=False, encoding="utf-8", env=environment
-        )
-    except OSError:
-        return None
-
-
-def commit(folder: str | Path = Path(__file__).parent) -> str:
-    """The commit of the checkout that holds `folder`, with "+dirty" if a tracked file has changed.
-
-    In an archive that git made, the commit that the archive names; "unknown" without either.
-    """
-    folder = Path(folder).resolve()
-    for parent in (folder, *folder.parents):
-        archival = parent / ".git_archival.txt"
-        if archival.is_file():
-            named = re.search(r"node: ([0-9a-f]{40})", archival.read_text(encoding="utf-8"))
-            if named:
-                return f"{named[1]} (archive)"
-    answer = git(folder, "describe", "--always", "--abbrev=40", "--exclude=*", "--dirty=+dirty")
-    if answer and "dubious ownership" in answer.stderr:
-        return "unknown (git: dubious ownership)"
-    return answer.stdout.strip() if answer and answer.returncode == 0 else "unknown"

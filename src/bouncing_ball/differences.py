@@ -2,12 +2,9 @@
 
 Datasets are compared by names, dimensions, types, attributes, texts and places of NaN exactly, and
 by numbers within the tolerance that the reference declares beside the variable (`datasets` says
-what it means). If a curve or a claim was added or removed, the others are compared. Texts are
-compared exactly, SVG byte for byte but for its description, PNG pixel for pixel.
-
-Another version of matplotlib places texts, and with them everything else, a little differently.
-Then SVG files are compared by what they draw: strokes, fills, words and curves. PNG files are not
-compared.
+what it means). They are aligned first: if a curve or a claim was added, removed or moved, the
+others are compared. Texts are compared exactly, SVG byte for byte and PNG pixel for pixel with
+whatever else is in the file, but for the description that names a commit.
 """
 
 import base64
@@ -15,12 +12,12 @@ import difflib
 import io
 import json
 import re
-from collections.abc import Iterator, Mapping
+import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import takewhile, zip_longest
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 import xarray as xr
@@ -44,15 +41,16 @@ KINDS = {
 class Finding:
     """A difference, as the report shows it.
 
-    `text` says what is different in one line, `cause` why, as far as the parameters or git know.
-    Within a kind, a smaller `order` tells more. `lines` are a unified diff, `images` the file, what
-    it should be, and where they differ. `of_results` says that the result is wrong in itself,
-    whatever the reference is.
+    `text` says what is different in one line, `cause` why, as far as the parameters, the files of
+    code or git know. Within a kind, a smaller `order` tells more. `labels` are the claims or curves
+    that differ. `lines` are a unified diff, `images` the file, what it should be, and where they
+    differ. `of_results` says that the result is wrong in itself, whatever the reference is.
     """
 
     kind: str
     text: str
-    order: tuple[float, ...] = (0.0,)
+    order: float = 0.0
+    labels: tuple = ()
     lines: str = ""
     images: tuple[str, ...] = ()
     artifact: str = ""
@@ -61,8 +59,9 @@ class Finding:
 
     @property
     def line(self) -> str:
-        """The finding in a sentence."""
-        return f"{self.artifact}: {self.text}{'; ' if self.cause else ''}{self.cause}"
+        """The finding in a sentence, without characters that would control a terminal."""
+        line = f"{self.artifact}: {self.text}{'; ' if self.cause else ''}{self.cause}"
+        return "".join(each if each.isprintable() else repr(each)[1:-1] for each in line)
 
     @property
     def rank(self) -> tuple:
@@ -79,35 +78,48 @@ STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value",
 """How a file packs a variable; other encodings, such as compression, do not change values."""
 
 
+DESCRIPTIVE = 2.0
+"""The order of findings that change no number: names and units, and not parameters."""
+
+
 def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
-    """Differences of a dataset from the reference `old`, whose tolerances apply."""
-    labels, *shared = at_shared_labels(new, old)
-    found = [*variables_differences(*shared)]
-    if labels:
-        rest = "were compared" if found else "agree"
-        text = "; ".join(f"{each} {rest}" for each in labels)
-        found.append(Finding("content", text, (-1.0,)))
-    if not found and record(old, "parameters") != record(new, "parameters"):
+    """Differences of a dataset from the reference `old`, whose tolerances apply; the most telling
+    first.
+    """
+    moved, *shared = aligned(new, old)
+    found = variables_differences(*shared)
+    values = [each for each in found if each.order != DESCRIPTIVE]
+    rest = "were compared" if found else "agree"
+    found += [replace(each, text=f"{each.text} {rest}") for each in moved]
+    if not values and record(old, "parameters") != record(new, "parameters"):
         found.append(Finding("content", "its parameters changed, and its values did not"))
-    return found
+    return sorted(found, key=lambda each: each.rank)
 
 
-def at_shared_labels(new: xr.Dataset, old: xr.Dataset) -> tuple[list[str], xr.Dataset, xr.Dataset]:
-    """Both datasets where they have the same labels, and what only one has along each dimension.
+def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[Finding], xr.Dataset, xr.Dataset]:
+    """Both datasets at the labels that they share, in the order of the reference, after what is
+    different in these.
 
     Labels are the values of a coordinate along its own dimension. Numbers, which another processor
-    may round otherwise, are taken as labels only if there are more or fewer of them.
+    may round otherwise, are taken as labels only if there are more or fewer of them, or if they are
+    the same in another order.
     """
     found = []
     for dim in [str(dim) for dim in old.indexes if dim in new.indexes]:
-        labels = new.indexes[dim], old.indexes[dim]
-        common = labels[0].isin(labels[1]), labels[1].isin(labels[0])
-        rounded = labels[1].dtype.kind == "f" and len(labels[0]) == len(labels[1])
-        gained = gained_and_lost(labels[0].tolist(), labels[1].tolist())
-        if gained and common[1].any() and not rounded:
-            new = new.isel({dim: common[0]})
-            old = old.isel({dim: common[1]})
-            found.append(f"{dim}: {gained}; the other {np.count_nonzero(common[1])}")
+        ours, theirs = new.indexes[dim], old.indexes[dim]
+        shared = theirs[theirs.isin(ours)]
+        rounded = theirs.dtype.kind == "f" and len(ours) == len(theirs) > len(shared)
+        unclear = rounded or not ours.is_unique or not theirs.is_unique or not len(shared)
+        if unclear or ours.tolist() == theirs.tolist():
+            continue
+        words = gained_and_lost(ours.tolist(), theirs.tolist())
+        labels = ours.symmetric_difference(theirs)
+        if ours[ours.isin(theirs)].tolist() != shared.tolist():
+            words = f"{words}{', and ' if words else ''}the order changed"
+        new = new.isel({dim: ours.get_indexer(shared)})
+        old = old.isel({dim: theirs.get_indexer(shared)})
+        text = f"{dim}: {words}; the {'other ' if len(labels) else ''}{len(shared)}"
+        found.append(Finding("content", text, -1.0, tuple(labels)))
     return found, new, old
 
 
@@ -125,70 +137,74 @@ def gained_and_lost(new: list, old: list) -> str:
     )
 
 
-def variables_differences(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
+def variables_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     """Differences in the names of variables, in each of them, and in attributes of the dataset."""
+    judged = [
+        {
+            f"attribute {key} of the dataset": repr(value)
+            for key, value in data.attrs.items()
+            if key not in (*PROVENANCE, "parameters")
+        }
+        for data in (new, old)
+    ]
+    found = unequal(*judged)
     added = [str(name) for name in new.variables if name not in old.variables]
-    for name in old.variables:
+    for name in map(str, old.variables):
         if name in new.variables:
-            yield from variable_differences(str(name), new, old)
+            found += unequal(description(name, new), description(name, old))
+            if new[name].sizes == old[name].sizes and same_type(new[name], old[name]):
+                found += value_differences(name, new, old)
         else:
             twins = [other for other in added if new[other].variable.equals(old[name].variable)]
             renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
-            yield Finding("content", f"{name} is missing{renamed}")
-    for name in added:
-        yield Finding("content", f"{name} is not in the reference")
-    judged = [
-        {key: value for key, value in data.attrs.items() if key not in (*PROVENANCE, "parameters")}
-        for data in (new, old)
-    ]
-    yield from attribute_differences("the dataset", *judged)
+            found.append(Finding("content", f"{name} is missing{renamed}"))
+    return found + [Finding("content", f"{name} is not in the reference") for name in added]
 
 
-def variable_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
-    """Differences of one variable in attributes, form and values."""
-    yield from attribute_differences(name, new[name].attrs, old[name].attrs)
-    forms = form(name, new), form(name, old)
-    for what, found in forms[0].items():
-        if found != forms[1][what]:
-            text = f"{name} has {what} {found}, in the reference {forms[1][what]}"
-            yield Finding("content", text)
-    if all(forms[0][what] == forms[1][what] for what in ("dimensions", "type")):
-        yield from value_differences(name, new, old)
+def same_type(first: xr.DataArray, second: xr.DataArray) -> bool:
+    """Whether two variables are of one type; texts may have other lengths."""
+    return first.dtype == second.dtype or {first.dtype.kind, second.dtype.kind} <= {*"UO"}
 
 
-def form(name: str, data: xr.Dataset) -> dict[str, str]:
-    """What a variable is apart from its values: dimensions, type, role and storage."""
+def description(name: str, data: xr.Dataset) -> dict[str, str]:
+    """What a variable is apart from its values: dimensions, type, role, storage, attributes."""
     variable = data[name]
     text = variable.dtype.kind in "UO"
     packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
-    return {
+    found = {
         "dimensions": str(dict(variable.sizes)),
         "type": "text" if text else str(variable.dtype),
         "role": "coordinate" if name in data.coords else "variable",
         # The storage of a text names its length.
         "storage": "" if text else str(packed),
     }
+    found |= {f"attribute {key}": repr(value) for key, value in variable.attrs.items()}
+    return {f"{what} of {name}": value for what, value in found.items()}
 
 
-def attribute_differences(where: str, new: Mapping, old: Mapping) -> Iterator[Finding]:
-    """Attributes that are absent on one side, or have another value or type."""
-    for key in sorted({*new, *old}):
-        found, expected = (repr(attributes.get(key, "absent")) for attributes in (new, old))
-        if found != expected:
-            text = f"attribute {key} of {where} is {found}, in the reference {expected}"
-            yield Finding("content", text, (2.0,))
+def unequal(new: Mapping[str, str], old: Mapping[str, str]) -> list[Finding]:
+    """Findings on what is absent on one side, or is something else."""
+    return [
+        Finding(
+            "content",
+            f"{what} is {new.get(what, 'absent')}, in the reference {old.get(what, 'absent')}",
+            DESCRIPTIVE if what.startswith("attribute") else 0.0,
+        )
+        for what in sorted({*new, *old})
+        if new.get(what) != old.get(what)
+    ]
 
 
-def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
+def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     """The place where a variable is furthest from the reference, if beyond the tolerance."""
     x = new[name].values
     y = old[name].values
     numbers = y.dtype.kind == "f"
-    allowed = tolerance(name, old)
+    allowed = tolerance(name, old) if numbers else np.zeros(y.shape)
     multiple = multiples(x, y, allowed) if numbers else np.where(x != y, np.inf, 0.0)
-    count = np.count_nonzero(multiple > 1)
-    if count == 0:
-        return
+    different = np.argwhere(multiple > 1)
+    if not len(different):
+        return []
     worst = np.unravel_index(np.argmax(multiple), y.shape)
     places = [
         f"{dim} = {old[dim].values[index] if dim in old.coords else index}"
@@ -196,25 +212,25 @@ def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[F
     ]
     found, expected = legible(x[worst], y[worst])
     text = f"{name} is {found}, the reference has {expected}"
+    labels: tuple = ()
     if places:
         text += f" at {', '.join(places)}"
+        first = old[old[name].dims[0]]
+        labels = tuple(first.values[np.unique(different[:, 0])])
     if np.isfinite(multiple[worst]):
         text += f" (tolerance {allowed[worst]:.1e}, exceeded {multiple[worst]:.2g} times)"
-    if count > 1:
-        text += f", and {count - 1} more of {y.size} values"
+    if len(different) > 1:
+        text += f", and {len(different) - 1} more of {y.size} values"
     kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    yield Finding(kind, text, (-multiple[worst],))
+    return [Finding(kind, text, -multiple[worst], labels)]
 
 
 def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
-    """The differences allowed from the numbers of a variable; zero if none is declared."""
+    """The differences allowed from numbers; zero if no tolerance is declared."""
     attributes = old[name].attrs
-    if "tolerance_scale" in attributes:
-        scale = abs(old[attributes["tolerance_scale"]].values)
-    elif "tolerance" in attributes:
-        scale = np.maximum(abs(old[name].values), attributes["floor"])
-    else:
-        scale = np.zeros(old[name].shape)
+    scale = abs(old[attributes.get("tolerance_scale", name)].values)
+    if "tolerance_scale" not in attributes:
+        scale = np.maximum(scale, attributes.get("floor", 0.0))
     return attributes.get("tolerance", 0.0) * scale
 
 
@@ -244,11 +260,19 @@ def excerpts(first: str, second: str) -> tuple[str, str]:
 
 
 def record(data: xr.Dataset, key: str) -> dict:
-    """The parameters or versions that a dataset records; none if the record cannot be read."""
-    try:
-        return dict(json.loads(data.attrs[key]))
-    except (KeyError, ValueError, TypeError):
-        return {}
+    """The parameters, versions or files of code that a dataset records.
+
+    Raises ValueError if there is no such record, or if it has a key twice.
+    """
+    return dict(json.loads(data.attrs.get(key, ""), object_pairs_hook=once))
+
+
+def once(pairs: list[tuple[str, Any]]) -> dict:
+    """A mapping of JSON, of which a reader would take the last value of a repeated key."""
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise ValueError(f"a key occurs twice among {', '.join(key for key, _ in pairs)}")
+    return found
 
 
 def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
@@ -278,86 +302,82 @@ def same_bits(first: xr.Dataset, second: xr.Dataset) -> bool:
 
 # Texts and pictures
 
-DESCRIPTION = re.compile(r"<dc:description>[^<]*</dc:description>")
-"""The provenance in an SVG; without "<" it can contain nothing that is drawn."""
+PICTURES = (".svg", ".png")
+COMMIT = r"drawn at commit [0-9a-z+:() ]*"
+"""What a picture says of its making: letters that nothing can be drawn with."""
 
 
-def file_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
-    """How a file differs from what is `made` of its datasets; pictures `loosely` by what they draw.
+def file_differences(made: Path, path: Path) -> list[Finding]:
+    """How a file differs from what is `made` of its datasets.
 
     An arrow in the text of a finding leads from the file to what is made.
     """
     try:
         if path.suffix == ".nc":
             found = dataset_differences(datasets.read(made), datasets.read(path))
-            named = [
+            return [
                 replace(each, text=each.text.replace("the reference", "the file")) for each in found
             ]
-            return min(named, key=lambda each: each.rank, default=None)
-        if path.suffix == ".png":
-            return None if loosely else png_difference(made, path)
-        return text_difference(made, path, loosely)
+        return png_differences(made, path) if path.suffix == ".png" else lines_differ(made, path)
     except Exception as error:  # Whatever readers of damaged files raise.
-        return Finding("file", f"it cannot be read: {error!r}")
+        return [Finding("file", f"it cannot be read: {error!r}")]
 
 
-def text_difference(made: Path, path: Path, loosely: bool) -> Finding | None:
-    """How two texts, which may be pictures as SVG, differ."""
-    texts = [file.read_text(encoding="utf-8", errors="replace") for file in (path, made)]
+def lines_differ(made: Path, path: Path) -> list[Finding]:
+    """How two texts, which may be pictures as SVG, differ. Line ends may be those of Windows."""
+    texts = [file.read_bytes().decode().replace("\r\n", "\n") for file in (path, made)]
     if path.suffix == ".svg":
-        texts = [DESCRIPTION.sub("", text, count=1) for text in texts]
+        description = f"<dc:description>{COMMIT}</dc:description>"
+        texts = [re.sub(description, "", text, count=1) for text in texts]
     if texts[0] == texts[1]:
-        return None
-    if path.suffix == ".svg" and loosely:
-        return outline_difference(*texts)
-    lines = [text.splitlines(keepends=True) for text in texts]
+        return []
+    given, expected = (text.splitlines(keepends=True) for text in texts)
     number, pair = next(
         (number, pair)
-        for number, pair in enumerate(zip_longest(*lines, fillvalue=""), 1)
+        for number, pair in enumerate(zip_longest(given, expected, fillvalue=""), 1)
         if pair[0] != pair[1]
     )
     words = " -> ".join(repr(excerpt) for excerpt in excerpts(*pair))
     if path.suffix == ".svg":
-        return Finding("picture", f"line {number}: {words}", (1.0,))
-    titles = "the file", "as its datasets give it"
-    unified = difflib.unified_diff(lines[0], lines[1], *titles, n=1)
-    return Finding("text", f"line {number}: {words}", lines="".join(unified))
+        return [Finding("picture", f"line {number}: {words}", 1.0)]
+    unified = difflib.unified_diff(given, expected, "the file", "as its datasets give it", n=1)
+    return [Finding("text", f"line {number}: {words}", lines="".join(unified))]
 
 
-def png_difference(made: Path, path: Path) -> Finding | None:
+def png_differences(made: Path, path: Path) -> list[Finding]:
     """How two PNG files differ in pixels, with an image of the difference, or in other chunks."""
-    files = path, made
-    images = [Image.open(io.BytesIO(file.read_bytes())) for file in files]
-    chunks = [png_chunks(file.read_bytes()) for file in files]
+    contents = [file.read_bytes() for file in (path, made)]
+    images = [Image.open(io.BytesIO(content)) for content in contents]
     if images[0].size != images[1].size:
-        return Finding("picture", f"its size: {images[0].size} -> {images[1].size}")
+        return [Finding("picture", f"its size: {images[0].size} -> {images[1].size}")]
     pixels = [np.asarray(image.convert("RGBA")) for image in images]
     unequal = np.any(pixels[0] != pixels[1], axis=-1)
     if np.any(unequal):
         marked = Image.fromarray(np.where(unequal, 0, 255).astype("uint8"))
         uris = tuple(data_uri(image) for image in (*images, marked))
-        return Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", images=uris)
+        return [Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", images=uris)]
+    chunks = [png_chunks(content) for content in contents]
     if chunks[0] != chunks[1]:
         kinds = [" ".join(kind for kind, _ in each) for each in chunks]
-        return Finding("picture", f"its chunks: {kinds[0]} -> {kinds[1]}")
-    return None
+        return [Finding("picture", f"its chunks: {kinds[0]} -> {kinds[1]}")]
+    return []
 
 
 def png_chunks(data: bytes) -> list[tuple[str, bytes]]:
-    """Chunks of a PNG file, without its provenance and without its compressed pixels."""
-    chunks = []
+    """The chunks of a PNG file and what follows them, without the description and the pixels."""
+    chunks: list[tuple[str, bytes]] = []
     start = 8
     while start < len(data):
-        length = int.from_bytes(data[start : start + 4], "big")
-        kind = data[start + 4 : start + 8].decode("latin-1")
-        content = data[start + 8 : start + 8 + length]
+        length, kind = struct.unpack_from(">I4s", data, start)
+        content = data[start + 8 : start + 12 + length]
         start += 12 + length
-        if not content.startswith(b"Description\0"):
-            chunks.append((kind, b"" if kind == "IDAT" else content))
-    # Pixels may be cut into several chunks.
-    return [
-        chunk for chunk, before in zip(chunks, [None, *chunks], strict=False) if chunk != before
-    ]
+        described = rb"Description\0" + COMMIT.encode() + rb"[\0-\xff]{4}"
+        # The same pixels may be compressed otherwise, and be cut into several chunks.
+        pixels = kind == b"IDAT"
+        continued = pixels and chunks[-1:] == [("IDAT", b"")]
+        if not continued and (kind != b"tEXt" or not re.fullmatch(described, content)):
+            chunks.append((kind.decode("latin-1"), b"" if pixels else content))
+    return chunks
 
 
 def data_uri(image: Image.Image) -> str:
@@ -365,131 +385,3 @@ def data_uri(image: Image.Image) -> str:
     file = io.BytesIO()
     image.save(file, "PNG")
     return f"data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}"
-
-
-# Pictures of another matplotlib
-
-SVG = "{http://www.w3.org/2000/svg}"
-NUMBER = re.compile(r"-?\d[\d.]*(?:e[-+]?\d+)?")
-
-HREF = "{http://www.w3.org/1999/xlink}href"
-PLACES = {"id", "d", "x", "y", "width", "height", "clip-path", "transform", "viewBox", HREF}
-"""Attributes that say where an element is, and what its outline is."""
-
-CURVE_TOLERANCE = 1.0
-"""How far something may be off within its axes, in points: about the width of a line."""
-
-LAYOUT_TOLERANCE = 8.0
-"""How far axes, labels and legends may be off, in points: the size of a letter."""
-
-
-@dataclass(frozen=True)
-class Shape:
-    """An element of an SVG: its look, and its segments, of shape (number, 2, 2), in a box.
-
-    The box, that of the axes to which the element is clipped or that of the picture, is left, top,
-    width and height in points; segments are in units of it.
-    """
-
-    look: str
-    clipped: bool
-    box: np.ndarray
-    segments: np.ndarray
-
-
-def outline_difference(old: str, new: str) -> Finding | None:
-    """How two SVG files of different versions of matplotlib differ in what they draw.
-
-    Elements must have the same look in the same order, and lie at the same place but for the
-    tolerances above. Letters are compared as words, which matplotlib writes in comments.
-    """
-    for found, expected in zip_longest(drawn(old), drawn(new)):
-        if found is None or expected is None or found.look != expected.look:
-            looks = [shape.look if shape else "nothing" for shape in (found, expected)]
-            return Finding("picture", f"it draws {' -> '.join(excerpts(*looks))}", (1.0,))
-        size = expected.box[2:]
-        allowed = CURVE_TOLERANCE if expected.clipped else LAYOUT_TOLERANCE
-        if distance(found.segments * size, expected.segments * size) > allowed:
-            return Finding("picture", f"{found.look} is drawn elsewhere", (1.0,))
-    return None
-
-
-def drawn(svg: str) -> Iterator[Shape]:
-    """All elements of an SVG that matplotlib wrote."""
-    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-    root = ElementTree.fromstring(svg, parser)
-    named = {element.get("id"): element for element in root.iter()}
-    return shapes(root, named, np.array(root.attrib["viewBox"].split(), float))
-
-
-def shapes(
-    element: ElementTree.Element,
-    named: Mapping[str | None, ElementTree.Element],
-    box: np.ndarray,
-    clipped: bool = False,
-) -> Iterator[Shape]:
-    """An element and all in it, in order, without metadata and without the letters of words."""
-    if "clip-path" in element.attrib:
-        rectangle = named[element.attrib["clip-path"][len("url(#") : -1]][0]
-        box = np.array([rectangle.attrib[key] for key in ("x", "y", "width", "height")], float)
-        clipped = True
-    outline = (segments(element, named) - box[:2]) / box[2:]
-    yield Shape(look_of(element), clipped, box, outline)
-    if element.tag != SVG + "metadata" and "transform" not in element.attrib:
-        for child in element:
-            yield from shapes(child, named, box, clipped)
-
-
-def look_of(element: ElementTree.Element) -> str:
-    """How an element is drawn: its attributes without places, its words, and if it has letters."""
-    attributes = [
-        key if key in PLACES else f"{key}={value}" for key, value in sorted(element.attrib.items())
-    ]
-    turned = re.sub(r"translate\([^)]*\)", "", element.get("transform", ""))
-    kind = "words" if callable(element.tag) else element.tag.removeprefix(SVG)
-    letters = "" if element.find(SVG + "use") is None else "letters"
-    words = [kind, *attributes, turned, letters, (element.text or "").strip()]
-    return f"[{' '.join(word for word in words if word)}]"
-
-
-def segments(element: ElementTree.Element, named: Mapping) -> np.ndarray:
-    """The segments of a path or of a copy of it, of curves those between control points.
-
-    Words have a point where they start, and a rectangle has its diagonal.
-    """
-    parts = [np.empty((0, 2, 2))]
-    for piece in element.get("d", "").split("M")[1:]:
-        points = np.array(NUMBER.findall(piece), float).reshape(-1, 2)
-        parts.append(np.stack([points[:-1], points[1:]], axis=1))
-    place = [element.attrib[key] for key in ("x", "y") if key in element.attrib]
-    place += NUMBER.findall(element.get("transform", ""))[:2]
-    if HREF in element.attrib:
-        path = named[element.attrib[HREF].removeprefix("#")]
-        return segments(path, named) + np.array(place or ["0", "0"], float)
-    if place:
-        size = [element.get("width", "0"), element.get("height", "0")]
-        corners = np.cumsum(np.array([place, size], float), axis=0)
-        parts.append(corners[np.newaxis])
-    return np.concatenate(parts)
-
-
-def distance(first: np.ndarray, second: np.ndarray) -> float:
-    """The largest distance of a point of one set of segments from the other set (Hausdorff).
-
-    Points are the ends of segments and three between them.
-    """
-    if len(first) == 0 or len(second) == 0:
-        return 0.0 if len(first) == len(second) else np.inf
-    return max(farthest(first, second), farthest(second, first))
-
-
-def farthest(first: np.ndarray, second: np.ndarray) -> float:
-    """The largest distance of a point of the first segments from the second."""
-    along = np.linspace(0, 1, 5)[:, np.newaxis, np.newaxis]
-    points = (first[:, 0] + along * (first[:, 1] - first[:, 0])).reshape(-1, 1, 2)
-    start = second[:, 0]
-    step = second[:, 1] - start
-    length = np.maximum(np.sum(step**2, axis=-1), np.finfo(float).tiny)
-    nearest = np.clip(np.sum((points - start) * step, axis=-1) / length, 0, 1)
-    gaps = points - start - nearest[..., np.newaxis] * step
-    return float(np.max(np.min(np.linalg.norm(gaps, axis=-1), axis=1)))

@@ -10,7 +10,7 @@ rule diff:
         code=code("compare"),
     params:
         names=requested,
-        artifacts={name: description(name) for name in KINDS},
+        config=config,
         results=results_folder,
         reference=checkout("."),
     log:
@@ -29,7 +29,6 @@ rule accept:
         code=code("accept"),
     params:
         names=requested,
-        artifacts={name: description(name) for name in KINDS},
         results=results_folder,
         reference=checkout("."),
         # The reference is that of the configuration in git.
@@ -43,6 +42,7 @@ rule accept:
         "../scripts/accept.py"
 
 
-# If a figure fails, the page of an earlier comparison would be taken for that of this run.
+# If a figure fails, the page and the log of an earlier comparison would be taken for this run's.
 onstart:
-    shell("rm -rf results/diff")
+    for path in ("results/diff/index.html", "results/logs/diff.log"):
+        Path(path).unlink(missing_ok=True)

@@ -124,15 +124,6 @@ def listed(name):
     return TITLES.get(name.removeprefix("compute_"))
 
 
-def description(name):
-    """The parameters and the code from which a figure, a table or a dataset is made."""
-    for stage in COMPUTED:
-        if name in STAGES[stage]:
-            parameters = {**parameters_of(ENTRIES[name]), **settings(stage)}
-            return {"parameters": parameters, "code": code(stage)}
-    return {"parameters": {}, "code": code("draw" if name in FIGURES else name)}
-
-
 # Files
 
 
@@ -147,7 +138,10 @@ def requested(wildcards):
     With any other target, such as `article` or a file, everything is compared.
     """
     known = STAGES | {name: [name] for name in KINDS}
-    targets = set(workflow.dag_settings.targets) - {"diff", "accept"}
+    targets = set(workflow.dag_settings.targets)
+    if {"diff", "accept"} <= targets:
+        end("diff and accept are two commands: compare, look at the page, then accept")
+    targets -= {"diff", "accept"}
     if not targets or targets - known.keys():
         return sorted(KINDS)
     return sorted({name for target in targets for name in known[target]})

@@ -33,8 +33,3 @@ def results_folder(wildcards):
 def reference_folder(wildcards):
     """The folder of the reference."""
     return os.path.relpath(PACKAGE)
-
-
-def descriptions():
-    """The parameters and the code from which each dataset is made."""
-    return {name: description(name) for name in KINDS}

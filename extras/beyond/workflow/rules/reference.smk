@@ -10,10 +10,9 @@ rule diff:
         code=code("compare"),
     params:
         names=requested,
-        artifacts=descriptions(),
+        config=config,
         results=results_folder,
         reference=reference_folder,
-        template=package("../../workflow/templates/diff.html.j2"),
     log:
         "results/logs/diff.log",
     conda:
@@ -30,7 +29,6 @@ rule accept:
         code=code("accept"),
     params:
         names=requested,
-        artifacts=descriptions(),
         results=results_folder,
         reference=reference_folder,
         # The reference is that of the configuration in git.
@@ -44,6 +42,7 @@ rule accept:
         "../scripts/accept.py"
 
 
-# If a figure fails, the page of an earlier comparison would be taken for that of this run.
+# If a figure fails, the page and the log of an earlier comparison would be taken for this run's.
 onstart:
-    shell("rm -rf results/diff")
+    for path in ("results/diff/index.html", "results/logs/diff.log"):
+        Path(path).unlink(missing_ok=True)

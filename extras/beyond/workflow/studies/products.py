@@ -2,12 +2,12 @@
 
 from functools import partial
 
-from bouncing_ball import compare, drawing
+from bouncing_ball import accept, drawing
 from bouncing_ball import tables as replicated_tables
 from bouncing_ball.compare import Code, Product, picture, table, text
 from studies import article, explorer, figures, tables
 
-CODE = (*compare.CODE, "../../src", "../../workflow")
+CODE = (*accept.CODE, "../../src", "../../workflow")
 """What must be committed, so that the commit that a reference names is the code that made it: that
 of this package, and that of the replication."""
 

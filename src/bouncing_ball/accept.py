@@ -1,0 +1,144 @@
+"""How results become the reference.
+
+Only results that follow from committed code and from the configuration in git are accepted, so that
+the commit that a dataset names has the code that made it.
+"""
+
+import shutil
+import tempfile
+from collections.abc import Collection, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import xarray as xr
+
+from bouncing_ball import datasets
+from bouncing_ball.compare import Comparison, Product
+from bouncing_ball.differences import dataset_differences, file_differences
+from bouncing_ball.history import CHECKOUT
+
+CODE = ("Snakefile", "config", "src", "workflow")
+"""What must be committed, from the folder of the reference."""
+
+
+def accept(
+    results: str | Path,
+    reference: str | Path,
+    products: Collection[Product],
+    config: Mapping,
+    names: Collection[str] = (),
+    code: Collection[str] = CODE,
+    top: Path = CHECKOUT,
+) -> list[str]:
+    """Make results the reference: those named, or all; returns the files that were written.
+
+    A dataset that agrees with that of the reference keeps its numbers, and names the commit, code
+    and versions that gave them again, unless the code is still that of the commit that it names.
+    Pictures, claims and texts are made anew from the datasets that are then the reference. Raises
+    ValueError, with the reason, if a result is stale, incomplete, or not what its dataset gives,
+    and if the code is not committed.
+    """
+    comparison = Comparison(results, reference, products, config, names, top)
+    history, new, old = comparison.history, comparison.new, comparison.old
+    folders = [old.folder / each for each in code]
+    edited = sorted(history.uncommitted(folders))
+    unfit = [finding.line for finding in comparison.report().findings if finding.of_results]
+    drawn = [each.artifact for each in comparison.made if new.drawn_elsewhere(each)]
+    if not history.head:
+        raise ValueError("nothing is accepted, because the commit of the code is unknown")
+    if edited:
+        raise ValueError(f"nothing is accepted, commit first: {', '.join(edited)}")
+    if unfit:
+        raise ValueError(f"nothing is accepted: {unfit[0]}")
+    if drawn:
+        raise ValueError(f"nothing is accepted: another matplotlib drew {', '.join(drawn)}")
+    data = dict(old.data)
+    with tempfile.TemporaryDirectory() as scratch:
+        made = Path(scratch)
+        (made / "figures").mkdir()
+        for name in comparison.names:
+            if name not in comparison.derived:
+                data[name] = renewed(comparison, name, new.data[name], made, folders)
+        for product in products:
+            changed = any(
+                data[name] is not old.data.get(name) for name in product.needs if name in data
+            )
+            if not {*product.needs} <= data.keys() or not (changed or product in comparison.made):
+                continue
+            product.make(data, made)
+            if product.is_dataset:
+                name = product.artifact
+                expected = datasets.read(made / product.files[0])
+                (made / product.files[0]).unlink()
+                data[name] = renewed(comparison, name, expected, made, folders)
+        return list(moved(made, old.folder))
+
+
+def renewed(
+    comparison: Comparison, name: str, expected: xr.Dataset, made: Path, code: list[Path]
+) -> xr.Dataset:
+    """The dataset that becomes the reference; a file of the folder `made` if it is another one.
+
+    Its numbers are those of the reference if these agree with the expected ones, and those of the
+    results otherwise. Its provenance is that of the results.
+    """
+    new, old = comparison.new, comparison.old
+    agrees = name in old.data and not dataset_differences(expected, old.data[name])
+    side = old if agrees else new
+    if not agrees and (name not in new.data or dataset_differences(expected, new.data[name])):
+        raise ValueError(f"nothing is accepted: it changes the {name}; make and accept all results")
+    if agrees and name not in comparison.names:
+        return old.data[name]
+    found = side.data[name]
+    history = comparison.history
+    given = {key: new.data[name].attrs[key] for key in ("code", "versions")}
+    same = all(found.attrs.get(key) == given[key] for key in given)
+    if agrees and same and history.since(str(found.attrs.get("commit")), code) == []:
+        return found
+    copy = made / "figures" / f"{name}.nc"
+    shutil.copyfile(side.folder / "figures" / copy.name, copy)
+    with netCDF4.Dataset(copy, "a") as file:
+        file.setncatts(given | {"commit": history.head})
+    return datasets.read(copy)
+
+
+def moved(source: Path, folder: Path) -> Iterator[str]:
+    """Move the files that differ from one folder into another, each whole or not at all.
+
+    What an earlier acceptance left unfinished, because it was killed, is removed.
+    """
+    for left in [*folder.glob(".*.part.*"), *folder.glob("figures/.*.part.*")]:
+        left.unlink()
+    for path in sorted(path for path in source.rglob("*") if path.is_file()):
+        target = folder / path.relative_to(source)
+        if path.suffix == ".nc" or not target.is_file() or file_differences(path, target):
+            with datasets.whole(target) as unfinished:
+                shutil.copyfile(path, unfinished)
+            yield str(path.relative_to(source))
+
+
+def main(
+    products: Collection[Product], job: Any, code: Collection[str] = CODE, top: Path = CHECKOUT
+) -> int | str:
+    """Accept for a job of Snakemake, and print what was written; returns the exit status, or why
+    nothing was accepted.
+    """
+    given = dict(job.params)
+    try:
+        in_git = given.pop("accepted")
+        other = [
+            key
+            for key in {**given["config"], **in_git}
+            if given["config"].get(key) != in_git.get(key)
+        ]
+        if other:
+            raise ValueError(f"config/config.yaml has another {', '.join(other)} than this run")
+        files = accept(**given, products=products, code=code, top=top)
+    except ValueError as error:
+        Path(job.log[0]).write_text(f"{error}\n", encoding="utf-8")
+        return str(error)
+    none = ["Nothing was written, because the reference has these results already."]
+    written = [*files, f"{len(files)} files of the reference were written."]
+    print("\n".join(written if files else none))
+    return 0

@@ -1,0 +1,150 @@
+"""What a reviewer reads first after an edit: the line on what changed, and why."""
+
+import pytest
+from tests.repository import commit, git
+
+# The matrix: edits, each of a text in a file, and the first line that a reviewer reads.
+
+EDITS = {
+    "code": ("src/study.py", "1 / ratio", "1.4 / ratio"),
+    "a model": ("src/model.py", "1.0", "1.4"),
+    "verdicts": ("src/judge.py", "LIMIT = 2.0", "LIMIT = 1.2"),
+    "drawing": ("src/table.py", 'height"', 'heights"'),
+    "template": ("templates/paper.md", "The greatest", "A greatest"),
+    "printed table": ("config/printed.csv", "0.255", "0.256"),
+    "parameter": ("config/config.yaml", "[1.0, 1.5]", "[1.0, 2.5]"),
+    "small parameter": ("config/config.yaml", "[0.5, 1.0]", "[0.5, 1.01]"),
+    "curve": ("config/config.yaml", "[1.0, 1.5]", "[1.0, 1.5, 2.5]"),
+}
+VERDICTS = (
+    "claims: verdict is contradicted, the reference has reproduced at claim = high, and 1 more"
+)
+LINES = {
+    "code": (VERDICTS, "follows from fig14: changed: src/study.py ({})"),
+    "a model": (VERDICTS, "follows from fig14: changed: src/model.py ({})"),
+    "verdicts": (
+        "claims: today's code makes another figures/claims.nc of the reference: verdict is contra",
+        "; changed: src/judge.py ({})",
+    ),
+    "drawing": (
+        "fig02: today's code makes another figures/fig02.md of the reference: line 1: 'height",
+        "; changed: src/table.py ({})",
+    ),
+    "template": (
+        "paper: today's code makes another paper.md of the reference: line 1: 'The gr",
+        "; changed: templates/paper.md ({})",
+    ),
+    "printed table": (
+        "fig14: printed is 0.256, the reference has 0.255",
+        "; changed: config/printed.csv ({})",
+    ),
+    "parameter": (
+        VERDICTS,
+        "follows from fig14: changed parameter: amplitude: new 2.5, without 1.5",
+    ),
+    "small parameter": (
+        "fig02: max_height is 1.01, the reference has 1 at",
+        "; changed parameter: amplitude: new 1.01, without 1.0",
+    ),
+    "curve": (VERDICTS, "follows from fig14: changed parameter: amplitude: new 2.5"),
+}
+STATES = {
+    "not committed": "not committed",
+    "on a branch": "on this branch, {}",
+    "on main, pushed": "{}",
+}
+
+
+def reads(line, expected, when=""):
+    begin, end = expected
+    return line.startswith(begin) and line.endswith(end.format(when))
+
+
+@pytest.mark.parametrize(
+    ("kind", "state"),
+    # When a parameter changed is not said.
+    [
+        (kind, state)
+        for kind in EDITS
+        for state in STATES
+        if "{}" in LINES[kind][1] or state == "on a branch"
+    ],
+)
+def test_the_first_line_after_an_edit_names_its_cause(project, kind, state):
+    if state == "on a branch":
+        git(project.top, "checkout", "-q", "-b", "feature")
+    project.edit(*EDITS[kind])
+    project.edit("README.md", "read", "do not read")
+    if state != "not committed":
+        commit(project.top, "edit")
+    if state == "on main, pushed":
+        git(project.top, "update-ref", "refs/remotes/origin/main", "HEAD")
+    when = STATES[state].format(git(project.top, "rev-parse", "--short", "HEAD"))
+    project.run()
+    lines = project.lines()
+    assert reads(lines[0], LINES[kind], when), lines
+
+
+# The causes that the first line names after two edits, and those that other lines name.
+PAIRS = {
+    ("code", "verdicts"): (["src/judge.py"], ["src/study.py"]),
+    ("code", "drawing"): (["src/study.py"], ["src/table.py"]),
+    ("code", "template"): (["src/study.py"], ["templates/paper.md"]),
+    ("code", "printed table"): (["config/printed.csv", "src/study.py"], []),
+    ("code", "small parameter"): (["src/study.py"], ["new 1.01, without 1.0"]),
+    ("verdicts", "drawing"): (["src/judge.py"], ["src/table.py"]),
+    ("verdicts", "template"): (["src/judge.py"], ["templates/paper.md"]),
+    ("verdicts", "printed table"): (["src/judge.py"], ["config/printed.csv"]),
+    ("verdicts", "small parameter"): (["src/judge.py"], ["new 1.01, without 1.0"]),
+    ("curve", "small parameter"): (["follows from fig14: ", "new 2.5"], ["new 1.01, without 1.0"]),
+    ("parameter", "drawing"): (["new 2.5, without 1.5"], ["src/table.py"]),
+    ("parameter", "template"): (["new 2.5, without 1.5"], ["templates/paper.md"]),
+    ("printed table", "drawing"): (["config/printed.csv"], ["src/table.py"]),
+    ("template", "drawing"): (["src/table.py"], ["templates/paper.md"]),
+}
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids="+".join)
+def test_of_two_edits_each_is_the_cause_of_what_it_changes(project, pair):
+    """The first is committed on a branch, the second is not committed."""
+    first, others = PAIRS[pair]
+    git(project.top, "checkout", "-q", "-b", "feature")
+    project.edit(*EDITS[pair[0]])
+    commit(project.top, "edit")
+    project.edit(*EDITS[pair[1]])
+    project.run()
+    lines = project.lines()
+    assert all(cause in lines[0] for cause in first), lines
+    assert not any(cause in lines[0] for cause in others), lines
+    assert all(cause in " ".join(lines[1:-1]) for cause in others), lines
+
+
+# Data that were edited by hand
+
+
+def test_a_claim_follows_from_the_dataset_that_decides_it(project):
+    """A title is another, and changes no verdict."""
+    project.change("fig02", project.results, lambda data: data.assign_attrs(title="another"))
+    project.change(
+        "fig14", project.results, lambda data: data.assign(max_height=1.5 * data.max_height)
+    )
+    project.follow()
+    lines = project.lines()
+    assert lines[0].startswith(VERDICTS) and f"; follows from fig14: {NOTHING}" in lines[0], lines
+    assert any(
+        reads(line, ("fig02: attribute title of the dataset is 'another'", "")) for line in lines
+    )
+
+
+NOTHING = "no file that it is made from has changed since figures/fig14.nc"
+
+
+def test_a_reference_that_was_edited_is_named(project):
+    project.change("fig14", project.top, lambda data: data.assign(max_height=2 * data.max_height))
+    (line,) = [line for line in project.lines() if line.startswith("fig14: max_height")]
+    assert line.endswith("; changed: figures/fig14.nc (not committed)")
+    edited = commit(project.top, "edit")[:7]
+    (line,) = [line for line in project.lines() if line.startswith("fig14: max_height")]
+    assert line.endswith(f"; {NOTHING} (on this branch, {edited})")
+    project.edit("paper.md", "greatest", "largest")
+    assert project.lines()[-2].endswith("changed: paper.md (not committed)")

@@ -241,6 +241,8 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
             for name in ("fig05", "fig06")
         ),
         "saddle-node": thresholds.sel({"quantity": "saddle_node", "tolerance": 0.01}),
+        "needed": data["validity_map"].enough_from.sel(quantity="max_height").max(),
+        "doubled": 100 * data["validity_map"].doubled_share[0].max(),
         "moves at 10": 100 * abs(rows[1] / rows[0] - 1).max(),
         "moves at 2": 100 * abs(rows[2] / rows[0] - 1).max(),
         "growth": computed.diff("bound").diff("frequency_ratio").min(),
@@ -272,10 +274,10 @@ BOUNDS = {
         "reproduces more than {} of these": ("hits", "up"),
         "height is off by at most {} %": ("height", "up"),
         "impact is off by at most {} %": ("phase", "up"),
-        "velocity (off by up to {} %)": ("velocity", "up"),
-        "coefficient ({} %), both at r": ("restitution", "up"),
         "differs from $r$ by at most {}.": ("apparent", "up"),
         "is within 1 % from ϖ = {} on": ("saddle-node", "up"),
+        "up to ϖ = {} is needed": ("needed", "up"),
+        "n = 1, 2 and 3 on up to {} %": ("doubled", "up"),
     },
     "supplement": {
         "move from the first row by up to {} % at ϖ = 10 ": ("moves at 10", "up"),
@@ -311,7 +313,7 @@ BOUNDS = {
 NUMBER = r"(\d+(?:\.\d+)?)"
 IS_BOUND = (
     r"(?:[Aa]t most|[Aa]t least|(?:long|short|great|small)er than|up to|within|more than|less than)"
-    rf" (?:Λ = )?{NUMBER}(?!ζ)|from ϖ = {NUMBER} on|{NUMBER}(?: %)? (?:or more|at most)"
+    rf" (?:[Λϖr] = )?{NUMBER}(?!ζ)|from ϖ = {NUMBER} on|{NUMBER}(?: %)? (?:or more|at most)"
 )
 
 
@@ -329,6 +331,10 @@ def test_bounds_are_rounded_away_from_what_they_bound(name, data):
         surplus = float(number) - true[what] if side == "up" else true[what] - float(number)
         assert -1e-9 <= surplus < unit, (sentence, number, true[what])
         rest = re.sub(pattern, "", rest)
+    for n, number in re.findall(rf"n = (\d) up to r = {NUMBER}", rest):
+        fails = data["validity_map"].failing_up_to.sel(n=int(n)).values
+        assert any(0 <= float(number) - up_to < 1e-3 for up_to in fails)
+    rest = re.sub(r"n = \d up to r = [\d.]+", "", rest)
     # Every other bound is the tolerance, or belongs to a claim in its own words.
     assert {"".join(numbers) for numbers in re.findall(IS_BOUND, rest)} <= {"1"}
 
@@ -351,6 +357,25 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
     assert not beyond.sel(measure=["max_height", "phase"]).any()
     for measure in ("bounce_velocity", "apparent_restitution"):
         assert np.array_equal(beyond.sel(measure=measure), least)
+
+
+def test_what_the_article_says_of_the_map(data):
+    found = data["validity_map"]
+    assert found.not_reached.sum() == 0
+    fails = found.stiff_error > LIMIT
+    # Beside the saddle-node, nowhere for n = 3, and for a whole range.
+    for quantity in ("max_height", "phase_in_periods"):
+        one = fails.sel(quantity=quantity)
+        assert (one.cumprod("place").sum("place") == one.sum("place")).all()
+        assert not one.sel(n=3).any() and one.sel(n=2).any()
+    velocity = found.stiff_error.sel(quantity="bounce_velocity")
+    assert (velocity.max("place") < 1.02 * velocity.min("place")).all()
+    assert not fails.sel(quantity="bounce_velocity", n=[2, 3]).any()
+    apparent = fails.sel(quantity="apparent_restitution")
+    assert apparent.isel(place=[0, -1]).any(["restitution", "place"]).all()
+    assert not apparent.sel(place=0.2, method="nearest").isel(restitution=slice(3, None)).any()
+    needed = found.enough_from.sel(quantity="max_height")
+    assert needed.argmax(["n", "restitution", "place"]) == {"n": 0, "restitution": 0, "place": 0}
 
 
 def test_the_orbits_without_damping_are_marginally_stable(data):

@@ -106,8 +106,9 @@ def test_a_changed_number_changes_its_verdict_alone(reference, judged, ratio, ve
 
 READINGS = {
     "safe above 100": (
-        ["the greatest height", "permanent contact"],
+        ["the greatest height on Figs. 5, 6, 10", "permanent contact"],
         [
+            "the greatest height on all orbits",
             "the bouncing-off velocity",
             "the apparent restitution",
         ],
@@ -122,7 +123,7 @@ READINGS = {
         ["each step on every curve"],
     ),
     "stable between": (
-        ["the restitution model", "the stability of this range, in branches without it (0,"],
+        ["the stability of this range, in branches without it (0,"],
         ["all other orbits, in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)"],
     ),
     "compliant divergence": (
@@ -148,7 +149,7 @@ def test_the_readings_of_a_statement_are_named_with_what_holds_in_them(judged, n
 
 # Numbers of the readings, to three digits: those that hold, and those that do not.
 FOUND = {
-    "safe above 100": [0.0086, 9.63e-5, 0.006, 0.00155, 0.00333, 0.0314, 0.0113, 0.0108],
+    "safe above 100": [0.0086, 9.63e-5, 0.006, 0.00155, 0.0597, 0.0132, 0.0419, 0.0169, 0.0314],
     "bifurcations move apart": [0.0319, -0.00606],
     "stiff row": [1.52e-5, 0.000447, 0.00637],
     "apart when compliant": [0.311],
@@ -259,17 +260,12 @@ def test_a_ball_is_chaotic_if_its_exponent_is_positive_by_five_standard_errors(
     assert verdict("kinds of motion", changed) == expected
 
 
-def test_an_unstable_orbit_below_the_doubling_breaks_the_rule(reference, judged):
-    data = reference["fig03"]
-    one = data["stable"].copy()
-    # Of the first family, that in the middle of the stable orbits.
-    place = int(np.flatnonzero(one[0].values).mean())
-    assert one[0, place]
-    one[0, place] = False
-    assert judged["own_sense"].sel(claim="stable between") == "holds"
-    for stable in (one, data["stable"] | True):
-        changed = with_other(reference, "fig03", stable=stable)
-        assert answer(EVERY["stable between"], changed)["own_sense"] == "does not hold"
+def test_a_range_that_is_not_stable_breaks_the_rule(reference, judged):
+    name = "stable between"
+    assert judged["own_sense"].sel(claim=name) == "holds"
+    stable = reference["fig09"]["stable"] & False
+    changed = with_other(reference, "fig09", stable=stable)
+    assert verdict(name, changed) == "contradicted"
 
 
 def test_a_dip_that_cannot_be_seen_is_none(reference):
@@ -475,7 +471,6 @@ VERDICTS = {
         "bifurcations move apart",
         "stiff row",
         "safe above 100",
-        "safe on all orbits",
     },
     "by construction": {
         "saddle-node",
@@ -504,7 +499,7 @@ OWN_SENSE_FAILS = {
     "closer with stiffness",
     "bifurcations move apart",
     "stiff row",
-    "safe on all orbits",
+    "safe above 100",
 }
 
 

@@ -60,6 +60,7 @@ def filled_in(name: str, datasets: Datasets) -> str:
         departure=claims.departure,
         spread=claims.spread,
         durations=partial(durations, datasets),
+        failing=partial(failing, datasets["validity_map"]),
         crossing=claims.crossing,
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
@@ -150,6 +151,18 @@ def durations(datasets: Datasets, ratio: float) -> NDArray:
     """The durations of all contacts of Figs. 8 and 9 at a frequency ratio."""
     figures = [datasets[name].contact_duration for name in ("fig08", "fig09")]
     return np.concatenate([np.ravel(at(figure, frequency_ratio=ratio)) for figure in figures])
+
+
+def failing(validity_map: xr.Dataset, quantity: str) -> str:
+    """For which n, and up to which r, the advised frequency ratio is not enough, in words."""
+    r = validity_map.restitution.values
+    parts = []
+    for up_to in validity_map.failing_up_to.sel(quantity=quantity):
+        if up_to == r[-1]:
+            parts.append(f"n = {up_to.n.item()} at every r")
+        elif np.isfinite(up_to):
+            parts.append(f"n = {up_to.n.item()} up to r = {fixed(up_to, 3, 'up')}")
+    return listed(parts) if parts else "no n"
 
 
 def stiff_errors(datasets: Datasets) -> xr.DataArray:

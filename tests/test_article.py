@@ -305,7 +305,7 @@ BOUNDS = {
         "ends are off by up to {} %": ("node", "up"),
         "others are off by at most {} %": ("share", "up"),
         "by {} or more from row to row": ("growth", "down"),
-        "height, which is off by at most {} %": ("height", "up"),
+        "where it is off by at most {} %": ("height", "up"),
     },
 }
 """Sentences with a bound, {} for its number, with what it bounds and how it must be rounded."""

@@ -9,6 +9,8 @@ import math
 import os
 import pwd
 import runpy
+import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -500,6 +502,27 @@ def test_a_python_that_a_shell_misreads_is_refused(character, tmp_path, monkeypa
     monkeypatch.setattr(sys, "executable", f"/a{character}b/bin/python")
     line = no_place(tmp_path)
     assert f" has {character!r} in its name".replace("\\n", r"\n") in line and line.isprintable()
+
+
+@pytest.mark.parametrize("folder", ["", "extras/beyond/"])
+@pytest.mark.parametrize("name", ["sp ace", "br{x}", "qu'o", 'dou"ble', "do$lar", "pa(r", "ünï[1]"])
+def test_make_refuses_a_folder_in_which_snakemake_fails(name, folder, tmp_path):
+    """Before it sets anything up, unless the environment lies elsewhere."""
+    (tmp_path / name).mkdir()
+    shutil.copyfile(ROOT / f"{folder}Makefile", tmp_path / name / "Makefile")
+
+    def refusal_of_make(*arguments: str) -> str:
+        command = ["make", "--dry-run", *arguments, "lint"]
+        done = subprocess.run(
+            command, cwd=tmp_path / name, capture_output=True, text=True, check=False
+        )
+        return done.stderr
+
+    line = (
+        "Snakemake needs a Python whose path has no space and none of '\"\\`$&|;<>(){}: move this"
+    )
+    assert (line in refusal_of_make()) == (name != "ünï[1]")
+    assert line not in refusal_of_make("VENV=/another/path")
 
 
 def test_other_names_of_folders_are_good(tmp_path):

@@ -2,6 +2,7 @@
 
 import json
 import os
+import platform
 
 import numpy as np
 import pytest
@@ -39,6 +40,7 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path):
     assert json.loads(saved.attrs["parameters"]) == {"n": 1, "range": {"max": 2.0}}
     assert json.loads(saved.attrs["code"]) == {str(code): PASS}
     assert json.loads(saved.attrs["versions"])["numpy"] == np.__version__
+    assert saved.attrs["computed_on"].startswith(platform.system())
     assert os.listdir(path.parent) == ["fig02.nc"]
     assert small.phase.attrs == {}
 

@@ -1083,7 +1083,11 @@ FORMULAS = [
     ("Eqs. 14 and 15", "motion in flight", "orbits.Family.motion"),
     ("Eq. 16", "damping ratio", "spring_damper.damping_ratio"),
     ("Eq. 17", "apparent restitution coefficient", "orbits.Family.apparent_restitution"),
-    ("Eqs. 18-26", "equations of the n-T orbits", "orbits.Family.contact_end, orbits.Family.equations"),
+    (
+        "Eqs. 18-26",
+        "equations of the n-T orbits",
+        "orbits.Family.contact_end, orbits.Family.equations",
+    ),
     ("Eq. 27", "bouncing-off velocity", "orbits.Family.bounce_velocity"),
     (
         "Eqs. 28-33",

@@ -293,6 +293,7 @@ def save(
         commit=commit(files),
         code=json.dumps(contents(files)),
         versions=json.dumps(versions()),
+        computed_on=computed_on(),
     )
     for name, variable in described.variables.items():
         variable.attrs = description(variables[str(name)], variable.dtype)
@@ -392,6 +393,15 @@ def plain(value):
 
 
 @cache
+def computed_on() -> str:
+    """The platform and the library of linear algebra, on which the last digits of numbers depend.
+
+    It is for the reader of a dataset, and is not compared.
+    """
+    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
+    return f"{platform.platform()}, {blas['name']} {blas['version']}"
+
+
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that numbers and pictures depend on."""
     return {"python": platform.python_version()} | {

@@ -71,7 +71,7 @@ class Finding:
 
 # Datasets
 
-PROVENANCE = ("commit", "code", "versions")
+PROVENANCE = ("commit", "code", "versions", "computed_on")
 """Attributes of the reference that are shown and not judged."""
 
 STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value", "_Unsigned")

@@ -364,6 +364,15 @@ def test_what_is_no_file_is_refused(file):
     )
 
 
+@pytest.mark.parametrize("file", ["pipe", "/dev/null"])
+def test_a_pipe_or_a_device_is_no_file_of_a_configuration(file):
+    """It would be waited for, or could be read once only."""
+    os.mkfifo("pipe")
+    assert refused("--configfile", file).startswith(
+        f"configuration: {file}: a pipe or a device; allowed: a file; "
+    )
+
+
 @pytest.mark.parametrize("entry", ["largest_step", "=3", "a=3", "3=a", "\x1b[31mred", ""])
 @pytest.mark.parametrize("option", ["--config", "-C"])
 def test_a_value_without_a_key_is_refused(option, entry):

@@ -37,15 +37,22 @@ def yaml_of(file):
     return yaml.load(Path(file).read_text("utf-8"), LOADER)
 
 
+def waits(path):
+    """Whether a path is that of a pipe or a device, whose content may never come."""
+    return os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path))
+
+
 def composed(file):
     """The YAML node of a configuration file, and the line on it if it has none.
 
     The loader in Python is used, because its messages name the character or the alias.
     """
+    allowed = "allowed: a file; --configfile takes all names up to the next option"
+    if waits(file):
+        return None, f"{file}: a pipe or a device; {allowed}"
     try:
         content = Path(file).read_bytes()
     except OSError as error:
-        allowed = "allowed: a file; --configfile takes all names up to the next option"
         return None, f"{file or repr(file)}: {error.strerror}; {allowed}"
     text = content.decode("utf-8", errors="replace")
     try:
@@ -61,17 +68,21 @@ def composed(file):
         reason = f"the byte 0x{content[error.start]:02x} is not UTF-8"
         line = content.count(b"\n", 0, error.start)
     except yaml.reader.ReaderError as error:
-        reason, line = error.reason, text.count("\n", 0, error.position)
+        reason = error.reason
+        line = text.count("\n", 0, error.position)
     except yaml.MarkedYAMLError as error:
-        reason, line = error.problem.removeprefix("but "), error.problem_mark.line
+        reason = error.problem.removeprefix("but ")
+        line = error.problem_mark.line
         if error.context_mark and line == len(text.splitlines()):
             # Something is open at the end of the file.
-            reason, line = f"{error.context}: {reason}", error.context_mark.line
+            reason = f"{error.context}: {reason}"
+            line = error.context_mark.line
     except (ValueError, RecursionError) as error:
         # A date that no calendar has, or hundreds of brackets.
         return None, f"{file}: {error}; {ALLOWED}"
-    stands = [repr(each[:60]) for each in text.splitlines()[line : line + 1]]
-    return None, f"{': '.join([f'{file}, line {line + 1}', *stands, reason])}; {ALLOWED}"
+    shown = [repr(each[:60]) for each in text.splitlines()[line : line + 1]]
+    found = ": ".join([f"{file}, line {line + 1}", *shown, reason])
+    return None, f"{found}; {ALLOWED}"
 
 
 def is_whole(checker, value):
@@ -282,7 +293,7 @@ def refuse_place(checkout):
         if target.exists() and not target.is_dir():
             end(f"{folder} is no folder, but results are written there")
         for path in sorted(folder.glob("*")):
-            if path.exists() and not (path.is_file() or path.is_dir()):
+            if waits(path):
                 end(f"{path} is a pipe or a device, which would be waited for: remove it")
     refuse_no_locks(Path("results") if Path("results").is_dir() else Path())
 

@@ -60,15 +60,29 @@ def by_rule(line):
 LINES = drops()
 
 
+def distances(name):
+    """Return the largest distance of least, mean and greatest r from the rule, of each drop."""
+    lines = [line for line in LINES if line["engine"] == name]
+    measured = [[float(line[key]) for key in ("mean", "least", "greatest")] for line in lines]
+    return np.abs(np.array([by_rule(line) for line in lines]) - measured).max(axis=1)
+
+
+def table():
+    """Return the table of the page: how far the rules are from the drops."""
+    rows = ["| engine | run in | drops | within 0.0001 | largest distance |"]
+    rows.append("| --- | --- | --- | --- | --- |")
+    for name in dict.fromkeys(line["engine"] for line in LINES):
+        apart = distances(name)
+        exact = f"{len(apart)} | {np.sum(apart < EXACT)} | {apart.max():.4f}"
+        rows.append(f"| `{name}` | {BY_NUMBER[name].ran} | {exact} |")
+    return "\n".join(rows) + "\n"
+
+
 @pytest.mark.parametrize("name", dict.fromkeys(line["engine"] for line in LINES))
 def test_the_rule_of_an_engine_is_what_it_does(name):
     """Of each engine 30 drops: mean, least and greatest r over eight instants within a step."""
-    lines = [line for line in LINES if line["engine"] == name]
-    measured = np.array(
-        [[float(line[key]) for key in ("mean", "least", "greatest")] for line in lines]
-    )
-    apart = np.abs(np.array([by_rule(line) for line in lines]) - measured).max(axis=1)
-    assert len(lines) == 30
+    apart = distances(name)
+    assert len(apart) == 30
     assert apart.max() < LARGEST.get(name, EXACT)
     assert np.median(apart) < (0.0015 if name == "matter-js" else EXACT)
 
@@ -202,3 +216,14 @@ def test_a_mistake_is_one_line(typed, line):
     assert (status, out) == (2, "")
     assert err.startswith("bounce: ") and err.count("\n") == 1
     assert MISTAKES[line] in err
+
+
+def test_the_page_has_what_was_measured():
+    """The table of docs/bounces.md is the one of these drops; ``python`` of this file prints it."""
+    page = (Path(__file__).parents[1] / "docs" / "bounces.md").read_text("utf-8")
+    shown = page.partition("<!-- rules -->\n")[2].partition("<!-- end of rules -->")[0]
+    assert shown == table()
+
+
+if __name__ == "__main__":
+    print(table(), end="")

@@ -668,7 +668,7 @@ class Rebound(Page):
             f"r is up to {self.restitution[2]:.3f}: at some instants the ball gains energy": (
                 self.restitution[2] >= 1.0005
             ),
-            f"at a third of the speed r is {_around(self.slower)}": not is_slow
+            f"at a third of the speed r is {_around(self.slower)}": speed / 3 > slowest
             and abs(self.slower[1] - mean) > TOLERANCE / 2,
             f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
                 not is_slow and lowest > 0

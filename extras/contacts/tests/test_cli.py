@@ -33,9 +33,9 @@ def test_everything_in_json(typed):
     assert found["parameters"]["contactStiffness"] > 0 and "changeDynamics" in found["snippet"]
     found = json.loads(typed(f"{MUJOCO} --restitution 0.5 --json")[1])
     assert found["parameters"]["solref"] == [0.02, 1.0]
-    found = json.loads(typed("fit croquet --json")[1])
+    found = json.loads(typed("fit croquet --laws --json")[1])
     assert len(found["laws"]) == 3
-    found = json.loads(typed("fit croquet --engine pybullet --time-step 1/240 --json")[1])
+    found = json.loads(typed("fit croquet --laws --engine pybullet --time-step 1/240 --json")[1])
     assert len(found["laws"]) == 3 and "changeDynamics" in found["design"]["snippet"]
 
 
@@ -51,7 +51,7 @@ def test_a_recording_is_piped(tmp_path):
     code = "from bouncing_ball_contacts.cli import run; run()"
     done = subprocess.run(
         [sys.executable, "-c", code, "fit", "-"],
-        input="h0,h1\n1,0.64\n0.5,0.32\n",
+        input="drop,rebound\n1,0.64\n0.5,0.32\n",
         capture_output=True,
         text=True,
         check=True,

@@ -94,6 +94,8 @@ def main(context: click.Context) -> None:
 
 
 def _values(found: Any) -> dict[str, Any]:
+    if isinstance(found, dict):
+        return {name: _values(each) for name, each in found.items()}
     values = dataclasses.asdict(found)
     if isinstance(found, Rebound):
         values |= {"snippet": found.snippet, "notes": found.notes}
@@ -229,6 +231,16 @@ def _lines(text: str | None) -> tuple[int, ...]:
         raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
 
 
+def _print_balls(found: dict[str, Any], engine: str | None, as_json: bool) -> None:
+    """Print one result for each of several balls."""
+    if engine is not None:
+        raise Refused(f"the file has {', '.join(found)}: a contact is written for one, --ball")
+    if as_json:
+        _print(found, as_json)
+        return
+    click.echo("\n\n".join(f"{name}\n{each}" for name, each in found.items()))
+
+
 @main.command(
     "fit",
     params=[
@@ -240,6 +252,9 @@ def _lines(text: str | None) -> tuple[int, ...]:
         click.Option(["--mass"], help="Of the ball, for the drag of the air and the engine."),
         click.Option(["--diameter"], help="Of the ball, for the drag of the air."),
         click.Option(["--leave-out"], help="Lines of the file, such as 4,7."),
+        click.Option(["--ball"], help="One of several in the file."),
+        click.Option(["--read-at"], help="Of rebound heights, off the ball: bottom or top."),
+        click.Option(["--laws"], is_flag=True, help="Judge contact laws by r over the speed."),
         click.Option(
             ["--intervals"], is_flag=True, help="Read the intervals, and show single impacts."
         ),
@@ -255,6 +270,8 @@ def _lines(text: str | None) -> tuple[int, ...]:
 def fit_command(
     recording: str,
     leave_out: str | None,
+    intervals: bool,
+    ball: str | None,
     engine: str | None,
     time_step: str | None,
     tolerance: str | None,
@@ -272,10 +289,18 @@ def fit_command(
     RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
     from bouncing_ball_contacts.fits import fit
+    from bouncing_ball_contacts.recordings import read, read_all
 
     source = "/dev/stdin" if recording == "-" else recording
-    found = fit(source, leave_out=_lines(leave_out), **of_fit)
-    if of_fit["intervals"] and not as_json:
+    left_out = _lines(leave_out)
+    balls = read_all(source, left_out, intervals) if ball is None else {}
+    if len(balls) > 1:
+        each = {name: fit(one, **of_fit) for name, one in balls.items()}
+        _print_balls(each, engine, as_json)
+        return
+    one = read(source, left_out, intervals, ball) if ball else next(iter(balls.values()))
+    found = fit(one, **of_fit)
+    if intervals and not as_json:
         click.echo("\n".join([*found.intervals, ""]))
     contact = {
         "density": density,
@@ -288,9 +313,9 @@ def fit_command(
     written: Design | Rebound | None = None
     row = None if engine is None else engine_by_number(engine)
     if row is not None and engine not in ENGINES:
-        ball = {"mass": found.mass, "radius": found.diameter and found.diameter / 2}
+        of_ball = {"mass": found.mass, "radius": found.diameter and found.diameter / 2}
         wanted = {"restitution": found.restitution, "speed": found.speed}
-        written = number_for(falling(**ball, **wanted, **contact), row, time_step)
+        written = number_for(falling(**of_ball, **wanted, **contact), row, time_step)
     elif engine is not None:
         bounce = found.bounce(**contact)
         written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)

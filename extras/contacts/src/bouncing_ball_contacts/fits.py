@@ -75,6 +75,8 @@ _KINDS = {
     "track": ("m/s", 2e-2, (1.0, 1.0)),
     "coefficients": ("", 1.1e-2, (0.0, 1.0)),
 }
+# ρ C A/(2 m) of a tennis ball in 1/m.
+_TENNIS = 0.017
 _WITH_DRAG = ("flights", "heights", "drops", "track")
 # The priors: the width of the logarithm of errors, the middle of scatter and the width of its
 # logarithm, and the width of c.
@@ -737,10 +739,10 @@ class Fit(Page):
         )
 
     def __str__(self) -> str:
-        lines = [repr(self)]
-        for table in self.tables:
+        lines = [repr(self), *(f"! {note}" for note in self.notes)]
+        for table in self.tables if self.laws else []:
             lines += ["", *aligned(table)] if len(table) > 1 else []
-        return "\n".join(lines + [f"! {note}" for note in self.notes])
+        return "\n".join(lines)
 
     def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
         """Return the bounce at this speed, with the contact time of the recording if it has one.
@@ -764,6 +766,27 @@ class Fit(Page):
         return design(self.bounce(**more), engine, time_step)
 
 
+def lowest_points(recording: Recording, diameter: float | None) -> Recording:
+    """Return a recording whose heights were read at the top of the ball as those of its bottom.
+
+    Of drops these are the rebounds; the drop height is that of the bottom.
+
+    Raises
+    ------
+    Refused
+        If there are no heights, the diameter is missing, or it is more than a height.
+    """
+    if recording.kind not in ("drops", "heights"):
+        raise Refused("--read-at is for heights: there are none in this recording")
+    if diameter is None:
+        raise Refused("heights read at the top of the ball need its diameter: --diameter '43 mm'")
+    size = np.array([0.0, diameter]) if recording.kind == "drops" else diameter
+    chains = tuple(each - size for each in recording.chains)
+    if min(each.min() for each in chains) <= 0:
+        raise Refused(f"a height is less than the diameter of {show(diameter, 'm')}")
+    return replace(recording, chains=chains)
+
+
 def _of_logs(estimate: Estimate) -> tuple[float, float]:
     """Return the ends of an interval of r, which is at most 1."""
     return min(math.exp(estimate.low), 1.0), min(math.exp(estimate.high), 1.0)
@@ -779,6 +802,9 @@ def fit(
     contact_time: Quantity = None,
     leave_out: tuple[int, ...] = (),
     intervals: bool = False,
+    ball: str | None = None,
+    read_at: str | None = None,
+    laws: bool = False,
 ) -> Fit:
     """Return r of a recording at a speed with its 95 % interval, and the laws that it allows.
 
@@ -800,13 +826,23 @@ def fit(
         Lines of the file.
     intervals : bool
         Whether a file with times and intervals is read by its intervals.
+    ball : str, optional
+        The name of one, if the file has a column of several.
+    read_at : {"bottom", "top"}, optional
+        Where rebound heights were read off the ball.
+    laws : bool
+        Whether contact laws are judged.
 
     Raises
     ------
     Refused
-        If the recording cannot be read, no impact lies between two flights, or r is above 1.
+        If the recording cannot be read or has several balls, no impact lies between two
+        flights, or r is above 1.
     """
-    recording = source if isinstance(source, Recording) else read(source, leave_out, intervals)
+    if isinstance(source, Recording):
+        recording = source
+    else:
+        recording = read(source, leave_out, intervals, ball)
 
     def given(name: str, value: Quantity, unit: str) -> float | None:
         said = recording.head.get(name) if value is None else value
@@ -816,6 +852,10 @@ def fit(
     known = given("resolution", resolution, unit) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
+    if read_at not in (None, "bottom", "top"):
+        raise Refused(f"--read-at {read_at} is neither bottom nor top")
+    if read_at == "top":
+        recording = lowest_points(recording, metres)
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
     contact = given("contact time", contact_time, "s")
     durations = recording.durations if contact is None else np.array([contact])
@@ -846,13 +886,26 @@ def fit(
     # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
     lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
-    laws = tuple(judge(impacts, curves, at)) if len(v) > 2 else ()
-    flies = recording.kind in _WITH_DRAG
+    judged = tuple(judge(impacts, curves, at)) if laws and len(v) > 2 else ()
+    # Of a flight to a height h, drag takes about r D v²/g; a tennis ball has D = 0.017/m.
+    by_drag = (drag or _TENNIS) * r * float(np.mean(v**2)) / STANDARD_GRAVITY
+    does_drag = recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
+    is_height = recording.kind in ("drops", "heights") and read_at is None
+    size = metres or 0.04
+    # r = √(h′/h), and h′ = r² v²/2g.
+    by_size = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * v**2)))
+    # Both heights of a series are too large.
+    by_size *= 1 - r**2 if recording.kind == "heights" else 1.0
     notes = {
         f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded": rounding
         > impacts.usual,
-        f"the drag of the air is removed, {drag:.2g} of the speed per metre": flies and drag > 0,
-        "the drag of the air is not removed: give the mass and the diameter": flies and not drag,
+        f"the drag of the air is not removed: of a tennis ball it would be {by_drag:.2g} of r; "
+        "give the mass and the diameter": does_drag and not drag,
+        f"the drag of the air is removed, {by_drag:.2g} of r": does_drag and drag > 0,
+        "heights are taken as those of the lowest point of the ball: read at its top, a ball of "
+        f"{show(size, 'm')} has an r that is too high by {by_size:.2g} (--read-at bottom or top)": (
+            is_height
+        ),
         f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard
         and lasts > 0,
         # Contacts of rubber, the longest ones, last for 10 ms.
@@ -867,10 +920,10 @@ def fit(
         f"{show(at, 'm/s')} is outside of the measured speeds": not 0.99 * v.min()
         <= at
         <= 1.01 * v.max(),
-        "too few impacts for an interval of their own: it is wide": not laws,
-        "no errors are given: a law can only be said to deviate": known is None,
-        "no law fits: r is that of a smooth curve": bool(laws)
-        and all(each.probability < REJECTED for each in laws),
+        "too few impacts for an interval of their own: it is wide": len(v) < 3,
+        "no errors are given: a law can only be said to deviate": bool(judged) and known is None,
+        "no law fits: r is that of a smooth curve": bool(judged)
+        and all(each.probability < REJECTED for each in judged),
     }
     r = min(r, 1.0)
     return Fit(
@@ -883,8 +936,8 @@ def fit(
         without_scatter=second,
         scatter=curves.scatter,
         slope=scattering.slope,
-        laws=laws,
-        times=by_contact_time(impacts, durations, laws, r, at, kilograms) if lasts else (),
+        laws=judged,
+        times=by_contact_time(impacts, durations, judged, r, at, kilograms) if lasts else (),
         mass=kilograms,
         diameter=metres,
         notes=recording.notes + tuple(text for text, holds in notes.items() if holds),

@@ -63,13 +63,20 @@ Steps = Iterator[tuple[float, float]]
 
 
 def _jolt(at: Fall, z: float, v: float) -> Steps:
-    """Contacts are found 20 mm ahead; the velocity before the step's gravity is reversed."""
+    """Contacts are found 20 mm ahead; the velocity before the step's gravity is reversed.
+
+    What is deeper than 20 mm is taken back by a fifth, twice in a step.
+    """
     while True:
         u = v - at.added
+        deepest = math.inf
         if z <= 0.02:
+            deepest = 0.02
             touches = u < -max(z, 0.0) / at.step
             u = max(u, -at.number * v if touches and u < -at.threshold else -max(z, 0.0) / at.step)
         z += at.step * u
+        for _ in range(2):
+            z += 0.2 * max(-z - deepest, 0.0)
         v = u
         yield z, v
 
@@ -77,13 +84,23 @@ def _jolt(at: Fall, z: float, v: float) -> Steps:
 def _physx(at: Fall, z: float, v: float, ahead: float) -> Steps:
     """Within both contact offsets, the velocity with the step's gravity is reversed.
 
-    Below the threshold the body is stopped at the surface.
+    A body that is too slow for that is stopped at the surface, or put out of it by 0.8 of its depth
+    in a step.
     """
     while True:
         v -= at.added
-        if z < ahead and z + at.step * v < 0 and v < 0:
-            v = -at.number * v if v < -at.threshold else -max(z, 0.0) / at.step
-        z += at.step * v
+        touches = z < ahead and z + at.step * v < 0
+        if touches and v < -at.threshold:
+            v *= -at.number
+            z += at.step * v
+        elif touches and z > 0:
+            v = -z / at.step
+            z = 0.0
+        elif touches:
+            z = max(z + at.step * v, 0.2 * z)
+            v = max(v, 0.0)
+        else:
+            z += at.step * v
         yield z, v
 
 
@@ -97,11 +114,9 @@ _SLOP = 0.005
 
 
 def _fly(at: Fall, z: float, v: float) -> tuple[float, float]:
-    """Return a step of free flight; a ball faster than half a radius per step is held at 5 mm."""
+    """Return height and velocity after a step of free flight."""
     z += at.step * (v - at.added * (_SUBSTEPS + 1) / (2 * _SUBSTEPS))
-    v -= at.added
-    is_fast = abs(v) * at.step > at.radius / 2
-    return (max(z, -_SLOP) if is_fast else z), v
+    return z, v - at.added
 
 
 def _soft_contact(
@@ -149,23 +164,27 @@ def _box2d(at: Fall, z: float, v: float) -> Steps:
         else:
             impulse = 0.0
             z, v = _fly(at, z, v)
+            # A ball that is faster than half a radius per step is held where it is 5 mm deep.
+            z = max(z, -_SLOP) if abs(v) * at.step > at.radius / 2 else z
         yield z, v
 
 
 def _rapier(at: Fall, z: float, v: float) -> Steps:
     """As Box2D, but a contact is looked for again only after a way of 20 mm, or 50 mm in contact.
 
-    A contact that already pushed in the step before does not bounce.
+    Before, the ball has to be near: it has a box in a tree, which is made anew with a margin of
+    40 mm when the ball leaves it. A contact that pushed in the step before does not bounce.
     """
     impulse = 0.0
     in_contact = False
-    leaf = z
+    box = z
+    margin = 0.0
     looked = math.inf
     while True:
-        # The ball has a box in a tree, with a margin of 40 mm around it.
-        if abs(z - leaf) > 0.04:
-            leaf = z
-        if leaf > 0.06:
+        if abs(z - box) > margin:
+            box = z
+            margin = 0.04
+        if box - margin > 0.02:
             in_contact = False
             looked = math.inf
         elif abs(z - looked) > (0.05 if in_contact else _PREDICTION):
@@ -179,7 +198,9 @@ def _rapier(at: Fall, z: float, v: float) -> Steps:
                 v, impulse = _rebounding(at, before, v, impulse)
         else:
             impulse = 0.0
+            above = z
             z, v = _fly(at, z, v)
+            z = max(z, -_SLOP) if above - z > at.radius / 2 else z
         yield z, v
 
 

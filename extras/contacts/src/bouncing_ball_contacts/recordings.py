@@ -1,13 +1,9 @@
 """Recordings of bounces: what was measured, and the flights, heights or pairs of it.
 
-1. The quantities of a table (:mod:`.tables`) say what was measured: the first of the layouts that
-   they have.
-2. Numbers are grouped into series. A number that is missing divides a series, whether its cell or
-   its line is empty, it is no number, or its line is left out.
-3. Positions over time and signals are samples, of which a missing one does not matter: of them the
-   flights between impacts are found.
-
-Series that no ball has are refused, with their line.
+The columns of a table say what was measured, by the first of :data:`LAYOUTS` that they have. A
+column of balls makes one recording for each ball. Series are divided by an empty cell or line, by
+a column of recordings, and where a count of bounces jumps. Series that no ball has are refused with
+their line.
 """
 
 import itertools
@@ -19,59 +15,33 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.tables import (
-    HEADINGS,
-    KEYS,
-    PLAUSIBLE,
-    QUANTITY,
-    RECORDING,
-    SI,
-    TIMES,
-    Column,
-    Lines,
-    Table,
-    check,
-    columns_of,
-    counts,
-    digit_of,
-    number_in,
-    table_of,
-    text_of,
-    values_of,
-)
+from bouncing_ball_contacts.tables import HEADINGS, Column, Lines, Table, table_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
 
-_Run = tuple[Array, Lines]
-_Layouts = tuple[tuple[str, tuple[str, ...]], ...]
-
-_UNSORTED = "the one before: sort the lines, or leave an empty line where another recording begins"
-# What was measured is the first row whose quantities are all there. Pairs come first: a time beside
-# them says nothing more.
-_PAIRS: _Layouts = (
-    ("drops", ("height before", "height after")),
+LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("drops", ("drop height", "rebound height")),
+    ("drops", ("drop height", "trial")),
     ("speeds", ("speed before", "speed after")),
-    ("coefficients", ("speed", "coefficient")),
-    ("coefficients", ("speed before", "coefficient")),
-)
-_SERIES: _Layouts = (
-    ("signal", ("time", "force")),
+    ("speeds", ("speed", "speed after")),
+    ("coefficients", ("speed", "restitution")),
+    ("coefficients", ("speed before", "restitution")),
     ("track", ("time", "position")),
-    ("signal", ("time", "signal")),
     ("track", ("time", "height")),
-    ("flights", ("time",)),
+    ("times", ("time",)),
     ("flights", ("interval",)),
+    ("flights", ("flight",)),
     ("heights", ("height",)),
 )
-# Numbers of a pair that lacks its other half are no series.
-_HALVES = {"height before", "height after", "speed before", "speed after", "coefficient"}
+"""What was measured is the first row whose columns are all there."""
+# Without its other half such a column says that another one is missing.
+_HALVES = ("drop height", "rebound height", "trial", "speed before", "speed after", "restitution")
+_KEYS = ("mass", "diameter", "contact time", "resolution", "drop height", "frame rate")
+_QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
-# A signal is quiet for at least this time between impacts, in s.
-_QUIET = 0.03
 # Flights of a track have at least so many positions, without those beside an impact.
 _FEWEST = 4
 # Seconds of which times may be multiples, the longest first: frames of cameras, also of those whose
@@ -122,7 +92,7 @@ def _frame_of(recording: Recording) -> float:
     if not recording.are_times:
         return 0.0
     rate = recording.head.get("frame rate")
-    frames = _FRAMES if rate is None else 1 / np.array([number_in(rate.split()[0])])
+    frames = _FRAMES if rate is None else np.array([1 / positive("frame rate", rate, "Hz")])
     share = np.maximum(0.05, recording.digit / frames)
     # Numbers of a computer have errors of 1e-16.
     digits = frames / (recording.digit or 1e-12)
@@ -152,195 +122,152 @@ def rounding_of(recording: Recording) -> float:
 # Numbers to series.
 
 
-def _runs(values: Array, lines: Lines) -> list[_Run]:
-    """Return the numbers between missing ones, with their lines."""
-    pieces = np.ma.clump_unmasked(np.ma.masked_invalid(values))
-    return [(values[piece], lines[piece]) for piece in pieces]
+def _series(table: Table, columns: list[Column], names: list[str]) -> list[tuple[Array, Lines]]:
+    """Return the numbers between missing ones, with their lines.
 
-
-def _groups(roles: dict[str, list[Column]], is_missing: NDArray[np.bool_]) -> list[Lines]:
-    """Return the rows of each recording, divided where the count of bounces jumps."""
-    jumps = [
-        np.diff(each.numbers, prepend=each.numbers[0]) > 1
-        for each in roles.get("count", [])
-        if counts(each.numbers)
-    ]
-    texts = roles["recording"][0].texts if "recording" in roles else [""] * len(is_missing)
-    # A name that is empty, or never beside a number, is that of the row above.
-    known = {text for text, missing in zip(texts, is_missing, strict=True) if text and not missing}
-    name = ""
-    names = [name := text if text in known else name for text in texts]
-    parts = [*zip(names, np.cumsum(sum(jumps, 0 * is_missing)).tolist(), strict=True)]
+    Those of several columns, as h0 and h1, run along each line.
+    """
+    matrix = np.column_stack([table.values(each) for each in columns])
+    if len(columns) > 1:
+        falls = matrix[:, 1:] / matrix[:, :-1]
+        table.refuse(
+            np.any(falls[:, 1:] > np.sqrt(falls[:, :-1]), axis=1),
+            "these heights do not fall on as those of successive bounces: repeated drops from one "
+            "height are named drop height, trial 1, trial 2",
+        )
+        runs = [
+            (row, np.full(len(row), line)) for row, line in zip(matrix, table.lines, strict=True)
+        ]
+    else:
+        counted = [np.diff(each.numbers, prepend=each.numbers[0]) > 1 for each in table.of("count")]
+        parts = list(zip(names, np.cumsum(sum(counted, np.zeros(len(names)))), strict=True))
+        groups = [
+            [i for i, each in enumerate(parts) if each == part] for part in dict.fromkeys(parts)
+        ]
+        runs = [(matrix[rows, 0], table.lines[rows]) for rows in groups]
     return [
-        np.array([i for i, each in enumerate(parts) if each == part])
-        for part in dict.fromkeys(parts)
+        (values[piece], lines[piece])
+        for values, lines in runs
+        for piece in np.ma.clump_unmasked(np.ma.masked_invalid(values))
     ]
 
 
-def _series(table: Table, columns: list[Column], groups: list[Lines]) -> list[_Run]:
-    """Return series that run down columns, or along lines if only those make sense."""
-    matrix = np.column_stack([values_of(table, each) for each in columns])
-    lines = np.broadcast_to(table.lines[:, None], matrix.shape)
-    down = [
-        run
-        for i in range(len(columns))
-        for rows in groups
-        for run in _runs(matrix[rows, i], lines[rows, i])
-    ]
-    # Columns such as "run 1 interval" are recordings.
-    if len(columns) == 1 or all(
-        re.search(rf"(?:{RECORDING})\W*\d", each.name, re.I) for each in columns
-    ):
-        return down
-    along = [run for i in range(len(matrix)) for run in _runs(matrix[i], lines[i])]
-    # A drop and its rebounds are in a line.
-    if len(matrix) == 1 or columns[0].role != columns[1].role:
-        return along
-    ways = [way for way in (down, along) if any(len(x) > 1 for x, _ in way)]
-    fitting = [way for way in ways if all((np.diff(x) < 0).all() for x, _ in way)]
-    if columns[0].role == "time":
-        rising = [way for way in ways if all((np.diff(x) > 0).all() for x, _ in way)]
-        # Of several balls there are more times than balls, and of several drops more flights.
-        is_long = len(matrix) > len(columns)
-        fitting = (rising or fitting) if is_long else rising + fitting
-    if len(fitting) != 1:
-        raise Refused(
-            f"{table.name}: each line or each column may be a recording: write one below the other "
-            "with an empty line between"
-        )
-    return fitting[0]
-
-
-def _flights(table: Table, runs: list[_Run]) -> list[_Run]:
-    """Return the flights between times; times below a heading that fall are flights already."""
-    if table.is_bare and any((np.diff(times) <= 0).any() for times, _ in runs):
-        raise Refused(
-            f"{table.name}: a column without a heading is taken as times in s, which rise: write a "
-            "heading, such as interval (s) or height (cm)"
-        )
-    if all((np.diff(times) < 0).all() for times, _ in runs):
-        return runs
+def _flights_between(table: Table, runs: list[tuple[Array, Lines]]) -> list[tuple[Array, Lines]]:
+    """Return the flights between times."""
     flights = [(np.diff(times), lines[1:]) for times, lines in runs]
     for lasting, lines in flights:
-        table.refuse(lasting <= 0, lines, f"the time is not after {_UNSORTED}")
+        table.refuse(
+            lasting <= 0,
+            "the time is not after the one before: sort the lines, or leave an empty line where "
+            "another recording begins",
+            lines=lines,
+        )
         # Flights get shorter, even if r is 0.997.
         half = len(lasting) // 2
         if half >= 10 and lasting[half:].mean() > 0.97 * lasting[:half].mean():
             raise Refused(
-                f"{table.name}: evenly spaced times are those of samples: of what? write headings "
-                "such as t and y, or time and force"
+                f"{table.name}: evenly spaced times are those of samples: of what? name the "
+                "columns t and y"
             )
     return flights
 
 
-def _of_series(table: Table, columns: list[Column], runs: list[_Run]) -> Recording:
+def _of_series(table: Table, kind: str, digit: float, runs: list[tuple[Array, Lines]]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
-    quantity = columns[0].role.split()[0]
-    digit = min(digit_of(table, each) for each in columns)
-    are_times = False
-    if quantity == "time":
-        quantity = "interval"
-        flights = _flights(table, runs)
-        are_times = flights is not runs
-        runs = flights
+    are_times = kind == "times"
+    runs = _flights_between(table, runs) if are_times else runs
+    chains = tuple(values for values, _ in runs if len(values))
+    # The errors of intervals that were rounded one by one do not cancel, as those of times.
+    is_read = are_times or kind == "heights"
     found = Recording(
         table.name,
-        "heights" if quantity == "height" else "flights",
-        tuple(values for values, _ in runs if len(values)),
+        "heights" if kind == "heights" else "flights",
+        chains,
         are_times=are_times,
-        # The errors of intervals that were rounded one by one do not cancel, as those of times.
-        digit=digit if are_times or quantity == "height" else 0.0,
+        digit=digit if is_read else 0.0,
         head=table.head,
     )
-    if not found.chains:
-        return found
-    rounding = rounding_of(found)
+    rounding = rounding_of(found) if chains else 0.0
     # Errors of two readings may let a height grow by a last digit, and those of three times a
     # flight by two.
     grows = 2 * rounding if are_times else rounding
-    said = f"a {PLAUSIBLE[quantity][0]} of {{}} {SI[quantity]}"
-    grown = (
-        f"{said} follows one of {{}} {SI[quantity]}: an impact is missing, the first time is that "
-        "of the release, or another recording begins (give a column 'recording', or --leave-out "
-        "its line)"
-    )
-    missed = (
-        "a flight of {} s, after which one of {} s has less than half of the ratio that the next "
-        "one has: an impact is missing within it (--leave-out its line)"
-    )
+    what = "height of {} m" if kind == "heights" else "flight of {} s"
     for values, lines in runs:
-        check(table, quantity, bool(columns[0].unit), values, lines)
-        is_grown = values[1:] > _GROWTH * values[:-1] + grows
-        table.refuse(is_grown, lines[1:], grown, values[1:], values[:-1])
-        if quantity == "interval":
-            # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2. The
-            # next flight may be longer by the error of one time; with that of two times an impact
-            # that is missed in a film would hide more often.
-            middle = values[1:-1]
-            beside = values[:-2] * values[2:]
-            is_missed = (middle + rounding / 2) ** 2 < beside / 2
-            table.refuse(is_missed, lines[:-2], missed, values[:-2], middle)
-            # To a fall, which is half a flight, the next one has the ratio 2r. The middle between
-            # that and r, in the logarithms that scatter alike, is √2 r.
-            is_short = (middle - rounding / 2) ** 2 > math.sqrt(2) * beside
-            table.refuse(
-                is_short[:1],
-                lines,
-                "a flight of {} s is short beside the two after it: it begins with the release, or "
-                "the next one has an impact within it (--leave-out the line of either)",
-                values,
-            )
+        if kind != "heights":
+            small = "a flight of {} s is too short: is the unit right?"
+            table.refuse(values < 1e-3, small, values, lines=lines)
+            long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading"
+            table.refuse(values > 9, f"{long}, or divide times of slow motion", values, lines=lines)
+        table.refuse(
+            values[1:] > _GROWTH * values[:-1] + grows,
+            f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
+            "release, or another recording begins (leave an empty line, or --leave-out its line)",
+            values[1:],
+            values[:-1],
+            lines=lines[1:],
+        )
+        if kind == "heights":
+            continue
+        # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2, and to a
+        # fall, which is half a flight, the next one has the ratio 2r; the middle between that and
+        # r, in the logarithms that scatter alike, is √2 r.
+        middle = values[1:-1]
+        beside = values[:-2] * values[2:]
+        table.refuse(
+            (middle + rounding / 2) ** 2 < beside / 2,
+            "a flight of {} s, after which one of {} s has less than half of the ratio that the "
+            "next one has: an impact is missing within it (--leave-out its line)",
+            values[:-2],
+            middle,
+            lines=lines[:-2],
+        )
+        table.refuse(
+            ((middle - rounding / 2) ** 2 > math.sqrt(2) * beside)[:1],
+            "a flight of {} s is short beside the two after it: it begins with the release, or the "
+            "next one has an impact within it (--leave-out the line of either)",
+            values,
+            lines=lines,
+        )
     return found
-
-
-def _check_pairs(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
-    """Refuse pairs of heights or speeds with an r above 1.05."""
-    before, after = pairs.T
-    si = "m" if kind == "drops" else "m/s"
-    most = 1.05**2 if kind == "drops" else 1.05
-    said = f"it rebounds with {{}} {si} from {{}} {si}: is a number wrong, or are the columns "
-    table.refuse(after > most * before, lines, f"{said}exchanged?", after, before)
 
 
 def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of pairs: of the first column with each of the others."""
-    first, *others = (values_of(table, each) for each in columns)
+    first, *others = (table.values(each) for each in columns)
     pairs = np.concatenate([np.column_stack([first, each]) for each in others])
     lines = np.tile(table.lines, len(others))
     is_there = ~np.isnan(pairs).any(axis=1)
     if kind != "coefficients":
-        _check_pairs(table, kind, pairs[is_there], lines[is_there])
-    # Of a drop height in the head the rebounds stand in one column.
-    falls = _fall_on(np.array([[*first[:1], *others[0]]]))
-    if "drop height" in table.head and falls.size and falls.all():
-        raise Refused(
-            f"{table.name}: these rebounds fall on as those of one ball: write the drop height as "
-            "the first of the heights"
-        )
+        _refuse_growth(table, kind, pairs[is_there], lines[is_there])
     read_off = columns if kind == "speeds" else columns[1:]
-    digit = min(digit_of(table, each) for each in read_off)
+    digit = min(each.digit for each in read_off)
     return Recording(table.name, kind, (pairs[is_there],), digit=digit)
 
 
-def _fall_on(heights: Array) -> NDArray[np.bool_]:
-    """Return whether heights along lines fall on, by more than the square root of the first factor.
-
-    Those of one ball do, and rebounds of one drop do not.
-    """
-    return heights[:, 2:] ** 2 * heights[:, :1] < heights[:, 1:-1] ** 2 * heights[:, 1:2]
-
-
-def _are_successive(table: Table, columns: list[Column]) -> bool:
-    """Return whether heights in lines are those of one ball, and not rebounds of one drop."""
-    h = np.column_stack([values_of(table, each) for each in columns])
-    falls = _fall_on(h)
-    are_falling = falls[~np.isnan(h[:, 2:] * h[:, 1:-1] * h[:, :1])]
-    if are_falling.any() and not are_falling.all():
-        raise Refused(f"{table.name}: some lines fall on, others have rebounds of one drop")
-    return bool(are_falling.any())
+def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
+    """Refuse pairs of heights or speeds with an r above 1.05."""
+    before, after = pairs.T
+    unit = "m" if kind == "drops" else "m/s"
+    most = 1.05**2 if kind == "drops" else 1.05
+    said = f"it rebounds with {{}} {unit} from {{}} {unit}: is a number wrong, or are the columns "
+    table.refuse(after > most * before, f"{said}exchanged?", after, before, lines=lines)
 
 
 # Samples to series.
+
+
+def _samples(table: Table, columns: list[Column]) -> tuple[Array, Array, Lines]:
+    """Return times in s, values as they are written, and lines."""
+    is_there = ~np.isnan([each.numbers for each in columns]).any(axis=0)
+    t = table.values(columns[0])[is_there]
+    lines = table.lines[is_there]
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(f"{table.name}: {len(t)} lines of a track are too few")
+    steps = np.diff(t)
+    table.refuse(steps < 0, "the time is not after the one before: sort the lines", lines=lines[1:])
+    gap = steps > 20 * np.mean(steps)
+    table.refuse(gap, "a gap in the time: one recording of positions is read", lines=lines[1:])
+    return t, columns[1].numbers[is_there], lines
 
 
 def _even(t: Array) -> Array:
@@ -375,24 +302,9 @@ def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
     return flights, bottoms
 
 
-def _samples(
-    table: Table, columns: list[Column], rows: NDArray[np.bool_]
-) -> tuple[Array, Array, Lines]:
-    """Return times in s, values as they are written, and lines."""
-    t = values_of(table, columns[0])[rows]
-    lines = table.lines[rows]
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{table.name}: {len(t)} lines of a track or a signal are too few; {TIMES}")
-    table.refuse(np.diff(t) < 0, lines[1:], f"the time is not after {_UNSORTED}")
-    gap = np.diff(t) > 20 * np.mean(np.diff(t))
-    table.refuse(gap, lines[1:], "a gap in the time: one recording of positions or signals is read")
-    return t, columns[1].numbers[rows], lines
-
-
-def _of_track(table: Table, columns: list[Column], rows: NDArray[np.bool_]) -> Recording:
+def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the speeds at impacts; gravity gives their scale."""
-    name = table.name
-    t, y, lines = _samples(table, columns, rows)
+    t, y, lines = _samples(table, columns)
     unit = columns[1].unit
     # Impacts bend a track upwards, which skews second differences. Over the time from frame to
     # frame noise may hide that: of the times, that counts over which they are skewed the most.
@@ -401,172 +313,156 @@ def _of_track(table: Table, columns: list[Column], rows: NDArray[np.bool_]) -> R
     turn = -1 if max(skewness, key=abs) < 0 else 1
     flights, bottoms = _flights_of_track(turn * y)
     even = _even(t)
-    long = [each for each in flights if len(each) >= _FEWEST]
-    lasting = np.array([np.ptp(even[each]) for each in long])
-    check(table, "interval", bool(columns[0].unit), lasting, lines[[each[0] for each in long]])
+    lasting = np.array([np.ptp(even[each]) if len(each) else 0.0 for each in flights])
+    first = lines[[each[0] if len(each) else 0 for each in flights]]
+    said = "a flight of {} s is too long: is it in ms, or of slow motion?"
+    table.refuse(lasting > 9, said, lasting, lines=first)
     impacts = {}
     for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
-        both = np.concatenate([before, after])
-        track = np.column_stack([even[both], turn * y[both], np.isin(both, after)])
         if min(len(before), len(after)) < _FEWEST:
             continue
+        both = np.concatenate([before, after])
+        track = np.column_stack([even[both], turn * y[both], np.isin(both, after)])
         down, up, gravity, misfit = impact_of(track)
         # What misses the positions by more than a twentieth of the height is no flight.
         lowest = min(down, up) ** 2 / (2 * gravity)
         if min(down, up, gravity) > 0 and misfit < 0.05 * lowest:
             impacts[bottom] = track, down, up, gravity
     if not impacts:
-        raise Refused(f"{name}: no impact between two flights of four positions in the track")
+        raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
     tracks, downs, ups, gravities = zip(*impacts.values(), strict=True)
+    mean = float(np.mean(gravities))
     # Without a scale, as of pixels, nothing contradicts gravity.
     scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
-    gravity = scale * float(np.mean(gravities))
-    slow = math.sqrt(STANDARD_GRAVITY / gravity)
+    slow = math.sqrt(STANDARD_GRAVITY / (scale * mean))
     further = {
         f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
-        f"gravity, {np.mean(gravities):.4g} {unit or 'units'}/s² in this track, is the scale": True,
+        f"gravity, {mean:.4g} {unit or 'units'}/s² in this track, is the scale": True,
         "the positions grow downwards, as in a picture: they were turned": turn < 0,
-        f"gravity is {gravity:.3g} m/s² by the heights and times: the times are {slow:.3g} times "
-        "the true ones, as in slow motion, and so are the speeds, or the heights have another "
-        "unit": max(slow, 1 / slow) > math.sqrt(2),
+        f"gravity is {scale * mean:.3g} m/s² by the heights and times: the times are {slow:.3g} "
+        "times the true ones, as in slow motion, or the heights have another unit": (
+            max(slow, 1 / slow) > math.sqrt(2)
+        ),
     }
+    pairs = np.column_stack([downs, ups]) * STANDARD_GRAVITY / np.array(gravities)[:, None]
+    _refuse_growth(table, "speeds", pairs, lines[list(impacts)])
     notes = tuple(text for text, holds in further.items() if holds)
-    metres = STANDARD_GRAVITY / np.array(gravities)
-    pairs = np.column_stack([downs, ups]) * metres[:, None]
-    _check_pairs(table, "speeds", pairs, lines[list(impacts)])
-    return Recording(name, "track", tracks, notes=notes)
-
-
-def _of_signal(table: Table, columns: list[Column], rows: NDArray[np.bool_]) -> Recording:
-    """Return the flights between impacts that stand out of a signal.
-
-    An impact lasts from where a twentieth of its peak is exceeded until it is no longer.
-    """
-    t, y, lines = _samples(table, columns, rows)
-    size = np.abs(y - np.median(y))
-    noise = 1.5 * float(np.median(size))
-    loud = np.flatnonzero(size > max(0.1 * size.max(), 8 * noise))
-    firsts = loud[np.diff(t[loud], prepend=-math.inf) > _QUIET]
-    if len(firsts) < 3:
-        raise Refused(
-            f"{table.name}: {len(firsts)} impacts stand out of the signal: three are needed"
-        )
-    starts = []
-    ends = []
-    for first, until in itertools.pairwise([*firsts, len(t)]):
-        peak = first + int(np.argmax(size[first:until]))
-        quiet = np.flatnonzero(size <= max(size[peak] / 20, 4 * noise))
-        starts.append(int(quiet[quiet < first].max(initial=-1)) + 1)
-        ends.append(int(quiet[quiet > peak].min(initial=len(t) - 1)))
-    if np.median(np.subtract(ends, starts)) < 2:
-        raise Refused(
-            f"{table.name}: impacts have one sample each, so that others may lie between two: "
-            "sample faster"
-        )
-    found = _of_series(table, columns[:1], [(t[starts], lines[starts])])
-    lasts = t[ends] - t[starts]
-    # A force that lasts longer rings on.
-    shows_contact = columns[1].role == "force" and lasts.max() < 0.1 * found.chains[0].min()
-    notes = (f"{len(starts)} impacts were found in the signal",)
-    return replace(found, durations=lasts if shows_contact else None, notes=notes)
+    return Recording(table.name, "track", tracks, notes=notes)
 
 
 # What was measured.
 
 
-def _are_counted(columns: list[Column]) -> bool:
-    """Return whether headings are alike but for counts, as h1 and h2, or first and second."""
-    count = r"\d+(st|nd|rd|th)?|first|second|third|fourth|fifth"
-    alike = {re.sub(count, "#", each.name, flags=re.I) for each in columns}
-    steps = np.diff([sum(map(int, re.findall(r"\d+", each.name))) for each in columns])
-    return len(alike) == 1 and ((steps == 1).all() or (steps == 0).all())
-
-
-def _vertical(columns: list[Column]) -> list[Column]:
-    """Return that of the columns x, y, z of a quantity that changes most sharply, as at impacts."""
-    columns = [each for each in columns if not re.search("absolut", each.name, re.I)] or columns
-    names = {each.name for each in columns}
-    if len(names) < len(columns) or len({re.sub(r"[xyzXYZ]\b", "", name) for name in names}) > 1:
-        return columns
-    bends = [np.nan_to_num(np.abs(np.diff(each.numbers, 2))).max(initial=0) for each in columns]
-    return [columns[int(np.argmax(bends))]]
-
-
-def _layout(
-    table: Table, roles: dict[str, list[Column]], intervals: bool
-) -> tuple[str, list[Column]]:
+def _layout(table: Table, intervals: bool) -> tuple[str, list[Column]]:
     """Return what was measured, and the columns with that."""
+    roles = {each.role for each in table.columns}
     # An r beside times was computed of these.
-    computed = {"coefficient"} if {"time", "interval"} & roles.keys() else set()
-    layouts = _PAIRS if (_HALVES - computed) & roles.keys() else _PAIRS + _SERIES
-    if intervals:
-        layouts = (("flights", ("interval",)),)
-    found = next((each for each in layouts if roles.keys() >= set(each[1])), None)
+    computed = {"restitution"} if {"time", "interval"} & roles else set()
+    is_half = bool(roles & set(_HALVES) - computed)
+    layouts = LAYOUTS[:6] if is_half else LAYOUTS
+    layouts = (("flights", ("interval",)),) if intervals else layouts
+    found = next((each for each in layouts if roles >= set(each[1])), None)
     if found is None:
-        said = {
-            "": "not known",
-            "unused": "not used",
-            "count": "a count",
-            "frame": "a time with a line '# fps: 240' only",
-            "error": "an error",
-            "derived": "no reading, but derived",
-        }
         there = ", ".join(
-            f"{column.name!r} is {said.get(role, role)}"
-            for role, columns in roles.items()
-            for column in columns
-            if column.name
+            f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
         wanted = "no column of intervals" if intervals else f"no bounces, as {there}"
         raise Refused(f"{table.name}: {wanted}: {HEADINGS}")
     kind, needed = found
     columns = []
     for role in needed:
-        same = _vertical(roles[role]) if kind in ("track", "signal") else roles[role]
-        # Counted columns are rebounds of a drop, or those of several balls.
-        may_be_several = len(needed) == 1 or role == "height after"
-        if len(same) > 1 and not (may_be_several and _are_counted(same)):
-            raise Refused(
-                f"{table.name}: two columns are both taken as {role}, {same[0].name!r} and "
-                f"{same[1].name!r}: leave one out, as of several balls, or {HEADINGS}"
+        same = table.of(role)
+        is_counted = all(re.search(r"\d$", each.name) for each in same)
+        if len(same) > 1 and not (role in ("trial", "height") and is_counted):
+            ways = (
+                "successive bounces are named h0, h1, h2, and repeated drops trial 1, trial 2"
+                if role == "rebound height"
+                else "write one table for each, or one below the other with a column 'ball'"
             )
+            named = f"{same[0].name!r} and {same[1].name!r}"
+            raise Refused(f"{table.name}: two columns are both {role}, {named}: {ways}")
         columns += same
     heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
-    falls = -np.diff(heights)
-    # Tops fall by less and less, and a ball by more and more.
-    are_tops = len(falls) > 1 and falls[-1] < falls[0] and (-falls <= 0.02 * heights[:-1]).all()
-    return (
-        ("heights", columns[1:]) if needed == ("time", "height") and are_tops else (kind, columns)
+    # Tops fall, and a ball in flight rises as well.
+    if needed == ("time", "height") and (np.diff(heights) < 0).all():
+        return "heights", columns[1:]
+    return kind, columns
+
+
+def _names(column: Column | None, size: int) -> list[str]:
+    """Return the names in a column; an empty cell has the name above it."""
+    name = ""
+    return [name := cell or name for cell in column.cells] if column else [""] * size
+
+
+def _recording(table: Table, intervals: bool) -> Recording:
+    """Return the recording of one ball."""
+    drop = table.head.get("drop height")
+    if drop is not None and not table.of("drop height"):
+        height = np.full(len(table.lines), in_si("drop height", drop, "m"))
+        table.columns.append(Column("drop height", "m", "drop height", [], height))
+    kind, columns = _layout(table, intervals)
+    is_missing = np.isnan([each.numbers for each in columns]).any(axis=0)
+    if kind in ("drops", "speeds", "coefficients"):
+        recording = _of_pairs(table, kind, columns)
+    elif kind == "track":
+        recording = _of_track(table, columns)
+    else:
+        names = _names(next(iter(table.of("recording")), None), len(table.lines))
+        digit = min(each.digit for each in columns)
+        recording = _of_series(table, kind, digit, _series(table, columns, names))
+    if not sum(map(len, recording.chains)):
+        named = ", ".join(each.name for each in columns)
+        raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
+    used = list(columns)
+    found: dict[str, Array] = {}
+    for role in ("uncertainty", "duration") if kind != "track" else ():
+        for each in table.of(role)[:1]:
+            # Without a unit an uncertainty has that of the coefficients.
+            unit = columns[-1].unit if role == "uncertainty" else ""
+            values = table.values(replace(each, unit=each.unit or unit))
+            is_known = ~np.isnan(values)
+            is_each = kind == "coefficients" and bool(is_known.all())
+            if role == "uncertainty" and not is_each:
+                continue
+            known = values[is_known]
+            found[role] = known if is_each else known.mean(keepdims=True)
+            used.append(each)
+    durations = found.get("duration", recording.durations)
+    if "contact time" in table.head:
+        durations = np.array([positive("contact time", table.head["contact time"], "s")])
+    grouping = ("ball", "recording", "count")
+    ignored = [
+        each.name for each in table.columns if each not in used and each.role not in grouping
+    ]
+    unused = [
+        f"'{key}: {value}'"
+        for key, value in table.head.items()
+        if key not in _KEYS and " uncertainty" not in key and re.fullmatch(_QUANTITY, value)
+    ]
+    gaps = ", ".join(map(str, table.lines[is_missing]))
+    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
+    further = {
+        f"columns not used: {', '.join(map(repr, ignored))}": bool(ignored),
+        f"a number is missing in line {gaps}, which is left out{divides}": bool(gaps),
+        f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),
+    }
+    return replace(
+        recording,
+        head=table.head,
+        uncertainty=found.get("uncertainty"),
+        durations=durations,
+        is_free=columns[0].role == "flight",
+        notes=recording.notes + tuple(text for text, holds in further.items() if holds),
     )
 
 
-def _uncertainty_and_durations(
-    table: Table, roles: dict[str, list[Column]], columns: list[Column], rows: NDArray[np.bool_]
-) -> tuple[Array | None, Array | None]:
-    """Return the uncertainties of r and contact times of rows, or the mean of these."""
-    uncertainty = None
-    durations = None
-    if "uncertainty" in roles and columns[-1].role == "coefficient":
-        # Without a unit it has that of the coefficients.
-        found = values_of(table, roles["uncertainty"][0], columns[-1].unit)[rows]
-        uncertainty = None if np.isnan(found).all() else found
-        if np.isnan(found).any() and uncertainty is not None:
-            raise Refused(f"{table.name}: each impact needs an uncertainty, or none has one")
-    if "duration" in roles:
-        found = values_of(table, roles["duration"][0])[rows]
-        known = found[~np.isnan(found)]
-        is_each = columns[-1].role == "coefficient" and len(known) == len(found)
-        if len(known):
-            durations = known if is_each else known.mean(keepdims=True)
-    return uncertainty, durations
-
-
-def read(
+def read_all(
     source: str | Path | Mapping[str, Any],
     leave_out: Sequence[int] = (),
     intervals: bool = False,
-) -> Recording:
-    """Return the recording of a file, of a published experiment by its name, or of columns.
+) -> dict[str, Recording]:
+    """Return the recordings of a file, an experiment or columns, by the names of their balls.
 
     Parameters
     ----------
@@ -577,95 +473,55 @@ def read(
     intervals : bool
         Whether a file with times and intervals is read by its intervals, and not by its times.
 
+    Returns
+    -------
+    dict
+        One recording for each name in a column ``ball``, or a single one with an empty name.
+
     Raises
     ------
     Refused
-        If the file has no bounces, or numbers that are no bounces.
+        If there are no bounces, numbers that are no bounces, or columns that are not understood.
     """
-    name, text, tables = text_of(source)
-    table = table_of(name, text, leave_out)
-    roles = columns_of(table)
-    # A mass in each line is that of the ball, if all are alike.
-    stated = {
-        key: each
-        for each in [*roles.get("unused", []), *roles.get("", [])]
-        for key, words in KEYS.items()
-        if each.unit and re.fullmatch(words, each.name.lower())
-        if len(np.unique(each.numbers[~np.isnan(each.numbers)])) == 1
-    }
-    of_ball = {key: f"{np.nanmean(each.numbers):g} {each.unit}" for key, each in stated.items()}
-    head = of_ball | table.head
-    kind, columns = _layout(table, roles, intervals)
-    is_missing = np.any(np.isnan([each.numbers for each in columns]), axis=0)
-    is_complete = np.logical_not(is_missing)
-    if kind == "signal":
-        recording = _of_signal(table, columns, is_complete)
-    elif kind == "track":
-        recording = _of_track(table, columns, is_complete)
-    elif kind in ("flights", "heights") or _are_successive(table, columns):
-        runs = _series(table, columns, _groups(roles, is_missing))
-        recording = _of_series(table, columns, runs)
-    else:
-        recording = _of_pairs(table, kind, columns)
-    if not sum(map(len, recording.chains)):
-        raise Refused(
-            f"{name}: no line that is not left out has numbers in "
-            + ", ".join(each.name for each in columns)
-            + (f"; {TIMES}" if columns[0].role == "time" else "")
-        )
-    uncertainty, durations = _uncertainty_and_durations(table, roles, columns, is_complete)
-    durations = durations if recording.durations is None else recording.durations
-    if "contact time" in head:
-        durations = np.array([positive("contact time", head["contact time"], "s")])
-    is_free = bool(re.search("flight|flug|air ?time|hang", columns[0].name, re.I))
-    gaps = is_missing & ~np.isin(table.lines, leave_out)
-    missing = ", ".join(map(str, table.lines[gaps]))
-    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-    unused = [
-        repr(f"{key}: {value}")
-        for key, value in head.items()
-        if key not in KEYS and " uncertainty" not in key and re.fullmatch(QUANTITY, value)
-    ]
-    unread = [
-        each.name
-        for role, group in roles.items()
-        for each in group
-        if role not in ("count", "frame", "recording", "duration")
-        and not (role == "uncertainty" and uncertainty is not None)
-        and each not in [*columns, *stated.values()]
-        and not np.isnan(each.numbers).all()
-    ]
-    # A column of texts that recur has names, as of balls or surfaces.
-    kinds = {
-        each.name: set(each.texts) - {""}
-        for each in itertools.chain(*roles.values())
-        if np.isnan(each.numbers).all()
-    }
-    pooled = "; ".join(
-        f"{name} has {', '.join(sorted(texts))}"
-        for name, texts in kinds.items()
-        if 1 < len(texts) <= len(table.lines) / 2
-    )
-    further = {
-        f"{pooled}: one r is fitted to all of them": bool(pooled),
-        f"columns not used: {', '.join(map(repr, unread))}": bool(unread),
-        "errors of readings in columns are not used: give their size by --resolution": (
-            "error" in roles or ("uncertainty" in roles and uncertainty is None)
-        ),
-        "no heading: taken as times in s": table.is_bare,
-        "errors in cells are not used: give a column of errors, or --resolution": any(
-            "±" in text for each in columns for text in each.texts
-        ),
-        f"{tables} sheets have numbers: the first one of them is read": tables > 1,
-        f"a number is missing in line {missing}, which is left out{divides}": gaps.any(),
-        f"the head has {', '.join(unused)}, but only {', '.join(KEYS)} are used": bool(unused),
-    }
-    notes = recording.notes + tuple(text for text, holds in further.items() if holds)
-    return replace(
-        recording,
-        head=head,
-        uncertainty=uncertainty,
-        durations=durations,
-        is_free=is_free,
-        notes=notes,
-    )
+    table = table_of(source, leave_out)
+    for each in table.columns:
+        texts = set(filter(None, each.cells))
+        if not each.role and np.isnan(each.numbers).all() and 1 < len(texts) <= len(each.cells) / 2:
+            raise Refused(
+                f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
+                "'ball' for one result each, or leave it out for one of all"
+            )
+    of_balls = table.of("ball")
+    names = _names(of_balls[0] if of_balls else None, len(table.lines))
+    found = {}
+    for name in dict.fromkeys(names):
+        rows = np.flatnonzero(np.array(names) == name)
+        columns = [
+            replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
+            for each in table.columns
+        ]
+        of_ball = Table(table.name, table.head, columns, table.lines[rows])
+        found[name] = _recording(of_ball, intervals)
+    return found
+
+
+def read(
+    source: str | Path | Mapping[str, Any],
+    leave_out: Sequence[int] = (),
+    intervals: bool = False,
+    ball: str | None = None,
+) -> Recording:
+    """Return the recording of one ball; the parameters are those of :func:`read_all`.
+
+    Raises
+    ------
+    Refused
+        Also if there are several balls, and none or no known one is named.
+    """
+    found = read_all(source, leave_out, intervals)
+    if ball is None and len(found) == 1:
+        return next(iter(found.values()))
+    if ball not in found:
+        known = ", ".join(filter(None, found)) or "no column of balls"
+        raise Refused(f"{next(iter(found.values())).name} has {known}: name one, --ball")
+    return found[ball]

@@ -12,7 +12,7 @@ DATA = Path(__file__).resolve().parents[1] / "data"
 
 
 def main():
-    found = {name: fit(name) for name in experiments()}
+    found = {name: fit(name, laws=True) for name in experiments()}
     print("| experiment | impacts | r, 95 % | at, m/s | " + " | ".join(LAWS) + " |")
     print("| --- | --- | --- | --- |" + " --- |" * len(LAWS))
     for name, one in found.items():

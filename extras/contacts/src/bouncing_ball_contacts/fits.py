@@ -392,7 +392,7 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
     products = np.exp(log_u)[:, None] * factors / np.abs(factors).max()
     angle = np.sum(np.arctan(products), axis=1) / 2
     decay = np.exp(-np.sum(np.log1p(products**2), axis=1) / 4)
-    return float(0.5 + np.trapezoid(np.sin(angle) * decay, log_u) / math.pi)
+    return float(0.5 + integrate.trapezoid(np.sin(angle) * decay, log_u) / math.pi)
 
 
 def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:

@@ -14,7 +14,6 @@ which they agree for a drag of 1e-30/m.
 import math
 
 import numpy as np
-from scipy.optimize import elementwise
 
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
@@ -41,16 +40,15 @@ def heights_of(durations: Array, drag: float) -> Array:
     """Return the heights of flights that last for some time in s.
 
     A ball that starts with b √(g/D) rises for atan(b)/√(g D) to ln(1 + b²)/(2 D), and falls for
-    asinh(b)/√(g D). The sum of both functions is below 2 b and above asinh(b).
+    asinh(b)/√(g D). Newton's method comes from below, because both functions are concave.
     """
     drag = max(drag, _NO_DRAG)
     lasts = math.sqrt(STANDARD_GRAVITY * drag) * durations
-    found = elementwise.find_root(
-        lambda b, wanted: np.arctan(b) + np.arcsinh(b) - wanted,
-        (lasts / 2, np.sinh(lasts)),
-        args=(lasts,),
-    )
-    return np.log1p(found.x**2) / (2 * drag)
+    b = lasts / 2
+    for _ in range(20):
+        slope = 1 / (1 + b**2) + 1 / np.sqrt(1 + b**2)
+        b = b + (lasts - np.arctan(b) - np.arcsinh(b)) / slope
+    return np.log1p(b**2) / (2 * drag)
 
 
 def speeds_of(heights: Array, drag: float) -> tuple[Array, Array]:

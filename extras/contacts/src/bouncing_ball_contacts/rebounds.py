@@ -725,7 +725,10 @@ class Rebound(Page):
         step = f"time step {show(self.time_step, 's', 4)}"
         lines = [repr(self)]
         if self.change is not None:
-            lines.append(f"Least change: {self.change.gives}.")
+            of_both = (
+                " (of both bodies)" if self.other is not None and self.change.other is None else ""
+            )
+            lines.append(f"Least change: {self.change.gives}{of_both}.")
         if self.shorter is not None:
             step_of = show(self.shorter.time_step, "s", 4)
             lines.append(f"At a step of {step_of} {self.shorter.gives}.")
@@ -874,6 +877,10 @@ def rebound(
     if bounce.restitution is None or found.deviation <= TOLERANCE:
         return found
     change = _wanted(engine, bounce, step, threshold, beside)
+    if beside is not None and change.deviation > TOLERANCE:
+        # The number of one body may not be enough.
+        alike = _wanted(engine, bounce, step, threshold, None)
+        change = min(change, alike, key=lambda each: each.deviation)
     return replace(found, change=change, shorter=_shorter(change, engine))
 
 

@@ -372,7 +372,7 @@ def test_a_failed_step_does_not_hide_the_others(tmp_path, ci, root):
     assert called[:7] == first
     extras = [line for line in called[7:] if line != "apt-get"]
     assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in extras)
-    assert len(extras) == 8
+    assert len(extras) == 9
     assert ("apt-get" in called) == (ci == "true" and root)
     assert ("the tests in a browser are skipped" in done.stdout) == ("apt-get" in called)
     assert "The replication: red in test." in done.stdout

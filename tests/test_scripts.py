@@ -16,7 +16,6 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from scipy.optimize import least_squares
 from snakemake.iocontainers import Namedlist
 from tests import independent
 
@@ -26,6 +25,7 @@ from bouncing_ball.datasets import parameters, printed_table, read
 from bouncing_ball.history import contents
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.verdicts import against_print
 
 ROOT = Path(__file__).parents[1]
 SCRIPTS = ROOT / "workflow" / "scripts"
@@ -181,13 +181,13 @@ def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
     assert ends.values == pytest.approx(np.full((3, 2), 2.0))
 
 
-READINGS = module("table1_readings")
+READINGS = module("readings")
 
 
 @pytest.fixture(scope="module")
 def readings():
-    """Table 1 under other readings, computed from what is printed."""
-    return READINGS.table1_readings(printed_table(PRINTED).astype(float))
+    """The printed numbers under other readings, computed from what is printed."""
+    return READINGS.readings(printed_table(PRINTED))
 
 
 def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
@@ -230,11 +230,12 @@ def saddle_node(n, ratio, zeta, release):
 )
 def test_a_reading_has_the_saddle_nodes_of_its_release(readings, reading, release):
     zeta = independent.restitution_to_damping(0.85)
-    found = readings.computed.sel(reading=reading, bound="saddle-node")
+    found = readings.found.sel(reading=reading)
     for n in (1, 2):
         for ratio in (10.0, 2.0):
             expected = saddle_node(n, ratio, zeta, release)[0]
-            assert float(found.sel(n=n, frequency_ratio=ratio)) == pytest.approx(expected, abs=1e-9)
+            end = found.sel(number=f"Table 1: {ratio:g}, {n}, saddle-node")
+            assert float(end) == pytest.approx(expected, abs=1e-9)
 
 
 @pytest.mark.parametrize("release", ["displacement", "force"])
@@ -257,59 +258,67 @@ def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     assert data.ball[-1] == pytest.approx(float(data.ball[0]), abs=1e-8)
 
 
-def test_a_tolerance_is_needed_where_the_printed_amplitude_is_below_every_orbit(readings):
-    """Orbits exist from the saddle-node on."""
-    nodes = readings.sel(reading="equations as they stand", bound="saddle-node")
-    below = nodes.printed < nodes.computed
-    assert ((readings.needed_tolerance > 0) == below).all()
-    assert below.any() and not below.all()
+def test_the_numbers_of_a_reading_are_those_of_its_contact(readings):
+    """The equations as they stand, and damping to first order by orbits of the closed form."""
+    printed = {claim.name: claim.printed for claim in claims.CLAIMS if claim.printed}
+    texts = readings.printed_text.to_series().to_dict()
+    assert printed.items() <= texts.items()
+    judged = read(REFERENCE / "claims.nc").set_index(claim="claim")
+    plain = readings.sel(reading="equations as they stand")
+    for name in readings.number.values:
+        found = float(judged.found.sel(claim=name))
+        assert float(plain.found.sel(number=name)) == pytest.approx(found, rel=1e-8)
 
-
-def unknowns_at(n, ratio, zeta, y):
-    """The unknowns of Eqs. 21 to 26 at an orbit, of which A and B are solutions of Eqs. 21, 22."""
-    amplitude, phase, impact, angle = y
-    flight = 2 * np.pi * n - angle / ratio
-    unknowns = np.array([phase, impact, impact + flight, angle, 0.0, 0.0, amplitude])
-
-    # Both are linear in A and B.
-    def defects(a, b):
-        moved = unknowns + np.array([0, 0, 0, 0, a, b, 0])
-        return READINGS.paper_equations(n, ratio, zeta, moved)[:2]
-
-    none = defects(0.0, 0.0)
-    columns = np.stack([defects(1.0, 0.0) - none, defects(0.0, 1.0) - none], axis=-1)
-    unknowns[4:6] = np.linalg.solve(columns, -none)
-    return unknowns
-
-
-@pytest.mark.parametrize(("n", "ratio", "r"), [(1, 2.0, 0.85), (2, 10.0, 0.85), (3, 30.0, 0.2)])
-def test_orbits_of_the_integrated_motion_solve_equations_21_to_26(n, ratio, r):
-    zeta = independent.restitution_to_damping(r)
+    zeta = -np.log(0.65) / np.pi
+    ratio = float(readings.found.sel(reading="damping to first order", number="height threshold"))
     half = np.pi / ratio / np.sqrt(1 - zeta**2)
-    y = independent.orbit(n, ratio, zeta, "displacement", 0.99 * half)
-    unknowns = unknowns_at(n, ratio, zeta, y)
-    defects = READINGS.paper_equations(n, ratio, zeta, unknowns)
-    # Rounding of numbers of the size of a flight.
-    assert defects == pytest.approx(np.zeros(6), abs=1e-11 * n)
+    x = np.pi * 0.35 / 1.65
+    highest = np.sqrt(1 - x**2) + np.pi**2 / 2
+
+    def excess(duration):
+        return independent.orbit(1, ratio, zeta, "displacement", duration)[0] - 1
+
+    found = independent.roots(excess, half * np.linspace(0.97, 1.03, 601))
+    orbits = [independent.orbit(1, ratio, zeta, "displacement", each) for each in found]
+    (y,) = (each for each in orbits if 0 < each[1] < np.pi / 2 and each[2] < 0)
+    moved = independent.cycle(ratio, zeta, "displacement", y[0], y[1], y[2])
+    assert abs(moved.greatest_height() / highest - 1) == pytest.approx(0.01, abs=1e-9)
 
 
-@pytest.mark.parametrize(("n", "ratio"), [(1, 2.0), (1, 10.0), (2, 10.0)])
-def test_the_needed_tolerance_is_the_least_norm_of_the_defects(n, ratio):
-    zeta = independent.restitution_to_damping(0.85)
-    node = saddle_node(n, ratio, zeta, "displacement")
-    start = unknowns_at(n, ratio, zeta, node)
-    for below in (1e-3, 1e-4):
-        amplitude = node[0] - below
+def test_readings_are_in_the_order_of_the_numbers_that_they_reproduce(readings):
+    printed = readings.printed_text.values
+    for line in (readings.isel(reading=k) for k in range(readings.sizes["reading"])):
+        pairs = zip(line.found.values, printed, strict=True)
+        verdicts = [against_print(found, text).verdict for found, text in pairs]
+        assert int(line.reproduced) == verdicts.count("reproduced")
+    assert (readings.reproduced.diff("reading") <= 0).all()
 
-        def defects(unknowns, amplitude=amplitude):
-            return READINGS.paper_equations(n, ratio, zeta, np.append(unknowns, amplitude))
 
-        least = least_squares(defects, start[:6], xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        norm = np.linalg.norm(least.fun)
-        needed = READINGS.needed_tolerance(n, ratio, zeta, node, amplitude)
-        # What it neglects is smaller by the distance from the saddle-node.
-        assert needed == pytest.approx(norm, rel=below)
-    assert READINGS.needed_tolerance(n, ratio, zeta, node, node[0] + 1e-3) == 0
+def test_the_damping_of_82_has_thresholds_that_round_to_it(readings):
+    for zeta, ratio in zip(readings.damping_of_82.values, (81.5, 82.5), strict=True):
+        impact = READINGS.Impact(lambda r, zeta=zeta: zeta)
+        assert READINGS.other_numbers(impact)[0] == pytest.approx(ratio, rel=1e-9)
+
+
+def test_a_row_that_a_contact_explains_is_found_and_any_other_fits_as_chance_has_it():
+    slope = np.array([[14.0, 4600.0], [-2.0, 1300.0], [13.0, 9600.0], [1.0, 4500.0]])
+    shift = np.array([0.1, -0.002])
+    explained = -(slope @ shift)
+    most = READINGS.most_reproduced(np.stack([explained, explained[[1, 0, 2, 3]] + 3]), slope)
+    assert most[0] == 4
+    assert most[1] < 4
+    # A contact that is far away is not asked.
+    far = READINGS.most_reproduced(10 * explained[np.newaxis], slope)
+    assert far[0] < 4
+
+
+def test_the_means_of_groups_are_chance_unless_they_differ():
+    n = np.array([1, 2, 3])
+    units = np.array([[[5.0, 5.1], [0.1, 0.2], [-5.0, -5.1]], [[5.2, 5.3], [0, 0.3], [-5.2, -5.3]]])
+    apart = READINGS.chances(n, np.array([10.0, 2.0]), units)
+    # Of the 34650 ways to deal twelve numbers to three groups of four, six have these groups.
+    assert float(apart.mean_chance) == pytest.approx(6 / 34650)
+    assert apart.mean_difference.values == pytest.approx([5.15, 0.15, -5.15])
 
 
 # Where a frequency ratio is enough

@@ -1,4 +1,4 @@
-"""Table 1, the thresholds and the readings of Table 1 as texts."""
+"""Table 1, the thresholds and the readings of the printed numbers as texts."""
 
 import csv
 import io
@@ -90,23 +90,24 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
 
 
 def test_the_readings_have_their_distances_and_counts():
-    by_rows = ("reading", "rows")
+    over = ("reading", "number")
     data = xr.Dataset(
         {
-            "largest_difference": (by_rows, [[6.304, 5.441], [67.718, np.nan]]),
-            "rms_difference": (by_rows, [[3.3, 2.9], [28.6, np.nan]]),
-            "reproduced": (by_rows, [[4, 1], [6, 0]]),
-            "entries": ("rows", [18, 12]),
-            "unreachable": ("reading", [3, 6]),
-            "rank": ("reading", [1, 2]),
+            "found": (over, [[0.2547, 1.0383, 82.177], [0.2552, np.nan, np.nan]]),
+            "deviation_units": (over, [[-0.3, 6.3, 0.177], [0.2, np.nan, np.nan]]),
+            "rms_difference": ("reading", [2.884, np.nan]),
+            "printed_text": ("number", ["0.255", "1.032", "82"]),
         },
-        {"reading": ["equations as they stand", "other"], "rows": ["all rows", "compliant rows"]},
+        {
+            "reading": ["equations as they stand", "other"],
+            "number": ["Table 1: 2, 1, saddle-node", "Table 1: 2, 1, period doubling", "height"],
+        },
     )
-    header, first, second = tables.table1_readings(data)
-    assert header[2:4] == ["largest, all rows", "rms, all rows"]
-    assert first[:4] == ["1", "equations as they stand", "6.30", "3.30"]
-    assert first[-3:] == ["4 of 18", "1 of 12", "3"]
-    assert second[4:6] == ["–", "–"]
+    assert tables.readings(data) == [
+        ["reading", "Table 1, ϖ = 2", "rms, compliant rows", "82", "reproduced"],
+        ["equations as they stand", "1 of 2", "2.88", "82.18 (+0.2)", "2 of 3"],
+        ["other", "1 of 2", "–", "–", "1 of 3"],
+    ]
 
 
 def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():

@@ -80,7 +80,7 @@ def test_a_stage_makes_its_datasets_and_pictures(stubs, stage, names):
         ("fig14", {"compute_error_thresholds", "error_thresholds"}),
         ("table1", {"compute_continuation", "table"}),
         ("three_balls", {"compute_restitution_model"}),
-        ("table1_readings", {"compute_table1_readings", "table"}),
+        ("readings", {"compute_readings", "table"}),
     ],
 )
 def test_a_figure_a_table_and_a_dataset_need_their_stage_only(stubs, name, rules):

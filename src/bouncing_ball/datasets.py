@@ -192,33 +192,26 @@ VARIABLES = {
     "computed": Variable("end of the stability range, this replication", "Λ"),
     "printed": Variable("end of the stability range, as printed", "Λ", "Table 1"),
     "restitution_range": Variable("end of the stability range, restitution model", "Λ"),
-    # Table 1 under other readings. Differences are in units of the last printed digit, 0.001, and
-    # subtract two numbers of the size of 1, so that they are known less well than these.
-    "difference": Variable(
-        "computed less printed value, in units of the last digit", tolerance=1e-6
-    ),
-    "largest_difference": Variable(
-        "largest difference, in units of the last digit", tolerance=1e-6
-    ),
+    # Printed numbers under other readings. Differences in units of the last printed digit subtract
+    # two numbers of the same size, so that they are known less well than these.
+    "number": Variable("printed number, as the claims name it"),
+    "exponent": Variable("exponent of the largest frequency ratio"),
+    "reproduced": Variable("number of printed numbers within half a unit of the last digit"),
+    "compliant_reproduced": Variable("number of these among the ends on the compliant contacts"),
+    "largest_difference": Variable("largest distance of these ends, in units", tolerance=1e-6),
+    "below_orbits": Variable("number of saddle-nodes printed below every orbit of the equations"),
     "rms_difference": Variable(
-        "root mean square difference, in units of the last digit", tolerance=1e-6
+        "root mean square distance of the ends of Table 1 on the compliant contacts, in units",
+        tolerance=1e-6,
     ),
-    "reproduced": Variable("number of entries within half a unit of the last digit"),
-    "entries": Variable("number of entries compared"),
-    "unreachable": Variable("number of saddle-nodes printed below every computed orbit"),
-    "rank": Variable("place of the reading, the closest to the printed table first"),
-    "stable_width": Variable(
-        "√(Λ_PD² - Λ_SN²) of a range of stable orbits, which is 1 by Eqs. 7 and 8 for every n"
+    "damping_of_82": Variable("ζ with which the height threshold is 81.5 and 82.5", "ζ"),
+    "stiff_reproduced": Variable("number of ends of the stiffest row that are reproduced"),
+    "mean_difference": Variable(
+        "mean distance of the ends on the compliant contacts, in units", tolerance=1e-6
     ),
-    "needed_tolerance": Variable(
-        "norm of the residual of Eqs. 21-26 that a continuation must accept to reach the printed "
-        "saddle-node; 0 where orbits exist",
-        equation="Eqs. 21-26",
-    ),
-    "printed_stable_width": Variable("√(Λ_PD² - Λ_SN²) of the printed ends"),
-    "printed_stable_width_rounding": Variable(
-        "largest change of √(Λ_PD² - Λ_SN²) by rounding of the printed ends"
-    ),
+    "mean_chance": Variable("share of the orders of these distances whose means differ as much"),
+    "free_reproduced": Variable("number of ends of a row that any contact reproduces"),
+    "free_chance": Variable("share of the orders of the row's distances that fit as well"),
     # Three balls
     "impact": Variable("number of the impact"),
     "impact_time": Variable("time of the impact", "τ", "Eq. 5"),

@@ -1,4 +1,4 @@
-"""Table 1, the thresholds, Table 1 under other readings and the claims, as Markdown and as CSV.
+"""Table 1, the thresholds, readings of the printed numbers and the claims, as Markdown and CSV.
 
 Each table is a function of its dataset that returns rows of texts, the header first.
 """
@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims import PAPER, QUANTITIES
-from bouncing_ball.verdicts import VERDICTS, against_print, other_parameters
+from bouncing_ball.verdicts import ROUNDING, VERDICTS, against_print, other_parameters
 
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
 
@@ -92,29 +92,32 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     return rows
 
 
-def table1_readings(data: xr.Dataset) -> list[list[str]]:
-    """Table 1 under other readings of what the authors computed, the closest first.
+def readings(data: xr.Dataset) -> list[list[str]]:
+    """All printed numbers under each reading of what the authors computed.
 
-    Distances from the printed ends, the largest and the root mean square (rms), are in units of the
-    last printed digit. The last column counts the saddle-nodes that are printed below every orbit.
+    Each row of Table 1 has the number of its ends that are reproduced, and the rows of the
+    compliant contacts together the root mean square (rms) of their distances in units of the last
+    printed digit. Each other number is followed by its distance in these units.
     """
-    groups = [str(name) for name in data["rows"].values[:2]]
-    measures = [(measure, name) for name in groups for measure in ("largest", "rms")]
-    header = ["rank", "reading", *(f"{measure}, {name}" for measure, name in measures)]
-    header += [f"reproduced, {name}" for name in groups]
-    rows = [[*header, "printed below every orbit"]]
+    # The ends of Table 1 are named by its row, n and the end.
+    row_of = [name.partition(",")[0] for name in data["number"].values.tolist()]
+    rows = [row for row in dict.fromkeys(row_of) if row.startswith("Table 1")]
+    single = data["number"].values[~np.isin(row_of, rows)]
+    printed = data["printed_text"].sel(number=single).values.tolist()
+    heads = [row.replace(": ", ", ϖ = ") for row in rows]
+    found = [["reading", *heads, "rms, compliant rows", *printed, "reproduced"]]
     for line in each(data, "reading"):
-        distances = [
-            number(line[f"{measure}_difference"].sel(rows=name), ".2f")
-            for measure, name in measures
-        ]
-        counts = [
-            f"{int(line['reproduced'].sel(rows=name))} of {int(line['entries'].sel(rows=name))}"
-            for name in groups
-        ]
-        place = [str(int(line["rank"])), line["reading"].item()]
-        rows.append([*place, *distances, *counts, str(int(line["unreachable"]))])
-    return rows
+        near = abs(line["deviation_units"].values) <= 0.5 + ROUNDING
+        ends = [near[np.equal(row_of, row)] for row in rows]
+        numbers = []
+        for text, one in zip(printed, each(line.sel(number=single), "number"), strict=True):
+            value = computed_text(float(one["found"]), text)
+            units = number(one["deviation_units"], "+.1f")
+            numbers.append(value if value == units else f"{value} ({units})")
+        cells = [f"{hits.sum()} of {hits.size}" for hits in ends]
+        cells += [number(line["rms_difference"], ".2f"), *numbers]
+        found.append([line["reading"].item(), *cells, f"{near.sum()} of {near.size}"])
+    return found
 
 
 def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
@@ -125,7 +128,7 @@ def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
     return parts
 
 
-TABLES = {"table1": table1, "thresholds": thresholds, "table1_readings": table1_readings}
+TABLES = {"table1": table1, "thresholds": thresholds, "readings": readings}
 """The tables by name."""
 
 

@@ -23,7 +23,7 @@ SETTINGS = {
     "time_histories": ["release"],
 }
 PRINTED = {"printed": checkout("config/table1_printed.csv")}
-READS = {"continuation": PRINTED, "table1_readings": PRINTED, "claims": PRINTED}
+READS = {"continuation": PRINTED, "readings": PRINTED, "claims": PRINTED}
 
 # The claims follow from all datasets.
 KINDS["claims"] = ["nc", "md", "csv"]

@@ -2,7 +2,7 @@
 
 
 rule table:
-    """Writes Table 1, the thresholds, or Table 1 under other readings as text"""
+    """Writes a table as text, from its dataset"""
     input:
         data=["results/figures/{table}.nc"],
         code=code("tables"),

@@ -1,0 +1,331 @@
+"""Stage: all printed numbers under readings of what the authors may have computed.
+
+A reading is a hypothesis: another damping ratio, another release, no gravity in contact, another
+stability, digits that were cut off, or the formulas of the restitution model. Each is judged by all
+23 printed numbers, in units of their last digits. Most of Table 1 fits none of them, so that two
+questions are asked about its compliant rows: whether the distances have a pattern, and whether a
+row would fit some other contact; both beside the same distances in other orders.
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import combinations, permutations, product
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.optimize.elementwise import find_root
+from scipy.stats import permutation_test
+
+from bouncing_ball import restitution
+from bouncing_ball.continuation import at_amplitude, at_bifurcation, bifurcations, correct, walk
+from bouncing_ball.datasets import printed_table, save
+from bouncing_ball.errors import (
+    enough_from,
+    orbits_along,
+    permanent_contact_error,
+    relative_error,
+    threshold,
+)
+from bouncing_ball.orbits import Family
+from bouncing_ball.spring_damper import (
+    RELEASES,
+    Contact,
+    damping_ratio,
+    force_release_restitution,
+)
+from bouncing_ball.verdicts import ROUNDING
+
+BOUNDS = ("saddle-node", "period doubling")
+DIGIT = 0.001
+"""The last digit of Table 1."""
+R_OF_TABLE_1 = 0.85
+R_OF_THRESHOLDS = 0.65
+PRINTED_DAMPING = {R_OF_TABLE_1: 0.052, R_OF_THRESHOLDS: 0.136}
+"""ζ as the captions of Figs. 8 to 15 round it."""
+OTHER_NUMBERS = {
+    "height threshold": "82",
+    "permanent contact threshold": "6",
+    "compliant end of 1.2": "0.81",
+    "damping of 0.85": "0.052",
+    "damping of 0.65": "0.1359",
+}
+"""The printed numbers beside Table 1, as `claims` names them."""
+TOLERANCE = 0.01
+SCAN = np.geomspace(2.0, 500.0, 25)
+EXPONENTS = (1, 2, 3, 4, 5, 6)
+"""Exponents that the largest frequency ratio may have."""
+AS_THEY_STAND = "equations as they stand"
+
+
+def reproduced(units: NDArray) -> NDArray[np.bool_]:
+    """Whether numbers round to the printed ones, from their distances in units of the digit."""
+    return abs(units) <= 0.5 + ROUNDING
+
+
+def equal_damping(r: float) -> float:
+    """ζ with which a free impact with the force release has the restitution r."""
+    return brentq(lambda zeta: force_release_restitution(zeta) - r, 1e-3, 0.9, xtol=1e-15)
+
+
+@dataclass(frozen=True)
+class Impact:
+    """A contact by its damping ratio as a function of r, its release, and the weight in contact."""
+
+    damping: Callable[[float], float] = damping_ratio
+    release: str = "displacement"
+    weight: float = 1.0
+
+    def contact(self, r: float, ratios: NDArray) -> Contact:
+        """The contact at frequency ratios, for impacts with the restitution r."""
+        return Contact(ratios, np.array([[float(self.damping(r))]]), self.release, self.weight)
+
+
+IMPACTS = {
+    AS_THEY_STAND: Impact(),
+    "damping as printed": Impact(PRINTED_DAMPING.__getitem__),
+    "damping to first order": Impact(lambda r: -np.log(r) / np.pi),
+    "force release": Impact(release="force"),
+    "force release, equal r": Impact(equal_damping, "force"),
+    "no gravity in contact": Impact(weight=0.0),
+}
+"""The readings that differ in the contact. With "equal r" it has the damping with which a free
+impact has the restitution r.
+"""
+
+
+# Table 1
+
+
+def ends_of_ranges(n: NDArray, ratios: NDArray) -> dict[str, NDArray]:
+    """Both ends of the ranges of Table 1 for each of `IMPACTS`, shape (ϖ, n, 2)."""
+    found = {}
+    for release in RELEASES:
+        impacts = {name: each for name, each in IMPACTS.items() if each.release == release}
+        # One walk along the contacts has the families of all of them.
+        damping = np.array([float(each.damping(R_OF_TABLE_1)) for each in impacts.values()])
+        weight = np.array([each.weight for each in impacts.values()])
+        contact = Contact(
+            ratios,
+            np.repeat(damping, n.size)[:, np.newaxis],
+            release,
+            np.repeat(weight, n.size)[:, np.newaxis],
+        )
+        families = np.tile(n, len(impacts))
+        kinds = [bifurcations(families, kind, ratios, contact)[0] for kind in BOUNDS]
+        ends = np.stack(kinds, axis=-1).reshape(len(impacts), n.size, ratios.size, 2)
+        found |= dict(zip(impacts, ends.swapaxes(1, 2), strict=True))
+    return found
+
+
+def high_bounce_doublings(n: NDArray, ratios: NDArray) -> NDArray:
+    """The period doublings by the stability of the high-bounce approximation, shape (ϖ, n)."""
+    family = Family(n[:, np.newaxis], IMPACTS[AS_THEY_STAND].contact(R_OF_TABLE_1, ratios))
+    x = restitution.saddle_node(family.n, R_OF_TABLE_1)
+    return walk(family, ratios, at_bifurcation(high_bounce_test), x, np.ones_like(x))[0].T
+
+
+def high_bounce_test(family: Family, y: NDArray) -> NDArray:
+    """1 + trace + determinant of a return map whose flight ends at the height at which it began.
+
+    This is the neglect of Holmes' map: a flight of duration L obeys z′_b L - L²/2 = 0 in place of
+    Eq. 25, so that L changes by -L/z′_i times the change of z′_b.
+    """
+    x, lift, _ = family.start(y)
+    end = family.contact_end(y)
+    by_gap, by_rate = family.linearised_contact(y)
+    rows = []
+    for phase, change in ((1, (-lift, x, lift)), (0, (0 * x, 0 * x, 1 + 0 * x))):
+        gap = sum(one * other for one, other in zip(by_gap, change, strict=True))
+        rate = sum(one * other for one, other in zip(by_rate, change, strict=True))
+        longer = -gap / end.gap_velocity
+        later = phase + longer
+        velocity = rate + end.gap_acceleration * longer - end.table_height * later
+        flight = -end.flight / y[2] * velocity
+        rows.append((later + flight, velocity - flight))
+    # The map is from phase and relative velocity to these; in flight the velocity of the table
+    # changes by -Y times the phase.
+    (phase_by_phase, velocity_by_phase), (phase_by_velocity, velocity_by_velocity) = rows
+    determinant = phase_by_phase * velocity_by_velocity - phase_by_velocity * velocity_by_phase
+    return 1 + phase_by_phase + velocity_by_velocity + determinant
+
+
+def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:
+    """How many ends of the stiffest row each of `EXPONENTS` reproduces, with the stability of the
+    high-bounce approximation.
+    """
+    ratios = 10.0 ** np.array(EXPONENTS)
+    contact = IMPACTS[AS_THEY_STAND].contact(R_OF_TABLE_1, ratios)
+    nodes = bifurcations(n, "saddle-node", ratios, contact)[0].T
+    found = np.stack([nodes, high_bounce_doublings(n, ratios)], axis=-1)
+    return reproduced((found - printed) / DIGIT).sum(axis=(1, 2))
+
+
+# The other printed numbers
+
+
+def other_numbers(impact: Impact) -> list[float]:
+    """The numbers `OTHER_NUMBERS` for a contact."""
+    r = np.array([[R_OF_THRESHOLDS]])
+    amplitude = np.ones((1, 1))
+    family = Family(np.ones((1, 1)), impact.contact(R_OF_THRESHOLDS, SCAN))
+    orbits = orbits_along(family, amplitude)
+    enough = enough_from(family, orbits, r, amplitude, TOLERANCE)
+    zeta = float(impact.damping(R_OF_THRESHOLDS))
+    resting = threshold(SCAN, permanent_contact_error(SCAN, zeta, impact.release), TOLERANCE)
+    # Without weight there is no permanent contact.
+    from_rest = resting.ratio if impact.weight else np.nan
+    compliant = Family(1, impact.contact(R_OF_THRESHOLDS, np.ones(1)))
+    bounce = compliant.apparent_restitution(orbits_along(compliant, 1.2 * amplitude))
+    return [enough[0, 0], from_rest, bounce[0, 0], float(impact.damping(R_OF_TABLE_1)), zeta]
+
+
+def damping_of_82() -> NDArray:
+    """The ζ with which the height threshold is 81.5 and 82.5, between which it is printed as 82."""
+    ratios = np.array([81.5, 82.5])
+    contact = Contact(ratios, damping_ratio(R_OF_THRESHOLDS))
+    highest = restitution.max_height(1, R_OF_THRESHOLDS, 1.0)
+    orbits = orbits_along(Family(1, contact), np.ones((1, 1)))[:, 0]
+
+    def excess(zeta, which):
+        family = Family(1, Contact(ratios[which], zeta))
+        y = correct(family, orbits[:, which], at_amplitude(1.0))
+        return relative_error(family.summit(y), highest) - TOLERANCE
+
+    return find_root(excess, (0.13, 0.14), args=(np.arange(2),)).x
+
+
+# All of them
+
+
+def readings(printed: xr.DataArray) -> xr.Dataset:
+    """All printed numbers under each reading, the readings that reproduce most of them first."""
+    n = printed.n.values
+    ratios = printed.frequency_ratio.values
+    table = ends_of_ranges(n, ratios)
+    others = {name: other_numbers(impact) for name, impact in IMPACTS.items()}
+    plain = table[AS_THEY_STAND]
+    approximate = np.stack([plain[..., 0], high_bounce_doublings(n, ratios)], axis=-1)
+    first = restitution.saddle_node(n, R_OF_TABLE_1)
+    last = restitution.holmes_period_doubling(n, R_OF_TABLE_1)
+    formulas = np.broadcast_to(np.stack([first, last], axis=-1), plain.shape)
+    known = others[AS_THEY_STAND]
+    further = {
+        "high-bounce stability": (approximate, known),
+        "high-bounce stability of the stiff row": (
+            np.concatenate([approximate[:1], plain[1:]]),
+            known,
+        ),
+        "Eqs. 7 and 8 in all rows": (formulas, np.full(len(known), np.nan)),
+    }
+    found = {name: np.append(table[name], others[name]) for name in IMPACTS}
+    found |= {name: np.append(*both) for name, both in further.items()}
+
+    places = printed.stack(number=printed.dims).number.values
+    names = [f"Table 1: {ratio:g}, {family}, {bound}" for ratio, family, bound in places]
+    texts = [*printed.values.ravel().tolist(), *OTHER_NUMBERS.values()]
+    digits = np.array([10.0 ** -len(text.partition(".")[2]) for text in texts])
+    found["digits cut off"] = np.floor(found[AS_THEY_STAND] / digits) * digits
+    computed = np.stack(list(found.values()))
+    units = (computed - np.array(texts, dtype=float)) / digits
+    # The rows of the compliant contacts, in which most readings differ.
+    compliant = units[:, plain[0].size : plain.size]
+    over = ("reading", "number")
+    data = xr.Dataset(
+        {
+            "found": (over, computed),
+            "deviation_units": (over, units),
+            "reproduced": ("reading", reproduced(units).sum(axis=1)),
+            "compliant_reproduced": ("reading", reproduced(compliant).sum(axis=1)),
+            "rms_difference": ("reading", np.sqrt((compliant**2).mean(axis=1))),
+            "largest_difference": ("reading", abs(compliant).max(axis=1)),
+            "printed_text": ("number", texts),
+            "damping_of_82": ("end", damping_of_82()),
+        },
+        {"reading": list(found), "number": [*names, *OTHER_NUMBERS]},
+    )
+    data["stiff_reproduced"] = "exponent", stiff_reproduced(n, printed.values[0].astype(float))
+    data["exponent"] = list(EXPONENTS)
+    nodes = (plain - printed.values.astype(float))[..., 0] / DIGIT
+    data["below_orbits"] = int((nodes > 0.5 + ROUNDING).sum())
+    rows = (plain[1:] - printed.values[1:].astype(float)) / DIGIT
+    return data.sortby([-data.reproduced, data.rms_difference]).merge(chances(n, ratios[1:], rows))
+
+
+# Whether a pattern or another contact behind the compliant rows beats chance
+
+
+def chances(n: NDArray, ratios: NDArray, units: NDArray) -> xr.Dataset:
+    """The mean distance of the ends of each n, how many ends of each row any contact reproduces,
+    and how often the same distances in other orders do as well.
+
+    `units` are the distances of the computed ends from the printed ones, shape (ϖ, n, 2).
+    """
+    by_n = units.swapaxes(0, 1).reshape(n.size, -1)
+
+    def spread(*groups, axis):
+        return np.var([group.mean(axis=axis) for group in groups], axis=0)
+
+    dealt = permutation_test(
+        tuple(by_n), spread, n_resamples=np.inf, alternative="greater", vectorized=True
+    )
+    most = []
+    for ratio, row in zip(ratios, units, strict=True):
+        orders = np.array(list(permutations(row.ravel())))
+        most.append(most_reproduced(orders, slopes(n, ratio)))
+    # The first order is the row itself.
+    return xr.Dataset(
+        {
+            "mean_difference": ("n", by_n.mean(axis=1)),
+            "mean_chance": float(dealt.pvalue),
+            "free_reproduced": ("frequency_ratio", [counts[0] for counts in most]),
+            "free_chance": ("frequency_ratio", [np.mean(counts >= counts[0]) for counts in most]),
+        },
+        {"n": n, "frequency_ratio": ratios},
+    )
+
+
+def slopes(n: NDArray, ratio: float) -> NDArray:
+    """Derivatives of the ends of a row by ln ϖ and by ζ in printed units, shape (ends, 2)."""
+    zeta = float(damping_ratio(R_OF_TABLE_1))
+    step = 1e-4
+    damping = np.repeat([zeta, zeta + step], n.size)[:, np.newaxis]
+    ratios = ratio * np.exp([0, step])
+    families = np.tile(n, 2)
+    kinds = [bifurcations(families, kind, ratios, Contact(ratio, damping))[0] for kind in BOUNDS]
+    # By ζ, n, ϖ and end.
+    found = np.stack(kinds, axis=-1).reshape(2, n.size, 2, 2)
+    changes = np.stack([found[0, :, 1] - found[0, :, 0], found[1, :, 0] - found[0, :, 0]], axis=-1)
+    return changes.reshape(-1, 2) / step / DIGIT
+
+
+def most_reproduced(units: NDArray, slope: NDArray) -> NDArray:
+    """How many ends any ϖ and ζ reproduce at most, shape (rows,), for rows with distances `units`,
+    shape (rows, ends), from the printed ends.
+
+    The ends are taken as linear in ln ϖ and ζ, with ϖ within a fifth and ζ within 0.003 of the
+    given ones. If several ends can be reproduced at all, they also are where two of them are off by
+    just half a unit.
+    """
+    pairs = np.array(list(combinations(range(len(slope)), 2)))
+    edges = np.array(list(product([-0.5, 0.5], repeat=2)))
+    wanted = edges - units[:, pairs][:, :, np.newaxis]
+    # The shifts of ln ϖ and ζ, shape (rows, pairs, edges, 2).
+    shifts = np.linalg.solve(slope[pairs][:, np.newaxis], wanted[..., np.newaxis])[..., 0]
+    near = (abs(shifts) <= [np.log(1.2), 0.003]).all(axis=-1)
+    moved = shifts @ slope.T + units[:, np.newaxis, np.newaxis]
+    counts = reproduced(moved).sum(axis=-1)
+    return np.where(near, counts, 0).max(axis=(1, 2))
+
+
+if __name__ == "__main__":
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+    save(
+        readings(printed_table(snakemake.input.printed)),
+        snakemake.output.readings,
+        snakemake.params.entries["readings"]["title"],
+        {},
+        snakemake.input.code,
+    )

@@ -95,6 +95,7 @@ def test_the_readings_have_their_distances_and_counts():
         {
             "found": (over, [[0.2547, 1.0383, 82.177], [0.2552, np.nan, np.nan]]),
             "deviation_units": (over, [[-0.3, 6.3, 0.177], [0.2, np.nan, np.nan]]),
+            "agrees": (over, [[True, False, True], [True, False, False]]),
             "rms_difference": ("reading", [2.884, np.nan]),
             "printed_text": ("number", ["0.255", "1.032", "82"]),
         },
@@ -105,7 +106,7 @@ def test_the_readings_have_their_distances_and_counts():
     )
     assert tables.readings(data) == [
         ["reading", "Table 1, ϖ = 2", "rms, compliant rows", "82", "reproduced"],
-        ["equations as they stand", "1 of 2", "2.88", "82.18 (+0.2)", "2 of 3"],
+        ["equations as they stand", "1 of 2", "2.88", "82.18 (+0.18)", "2 of 3"],
         ["other", "1 of 2", "–", "–", "1 of 3"],
     ]
 

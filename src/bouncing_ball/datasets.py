@@ -196,6 +196,7 @@ VARIABLES = {
     # two numbers of the same size, so that they are known less well than these.
     "number": Variable("printed number, as the claims name it"),
     "exponent": Variable("exponent of the largest frequency ratio"),
+    "agrees": Variable("whether the number found rounds to the printed one"),
     "reproduced": Variable("number of printed numbers within half a unit of the last digit"),
     "compliant_reproduced": Variable("number of these among the ends on the compliant contacts"),
     "largest_difference": Variable("largest distance of these ends, in units", tolerance=1e-6),

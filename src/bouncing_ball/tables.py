@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.claims import PAPER, QUANTITIES
-from bouncing_ball.verdicts import ROUNDING, VERDICTS, against_print, other_parameters
+from bouncing_ball.verdicts import VERDICTS, against_print, other_parameters
 
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
 
@@ -107,16 +107,16 @@ def readings(data: xr.Dataset) -> list[list[str]]:
     heads = [row.replace(": ", ", ϖ = ") for row in rows]
     found = [["reading", *heads, "rms, compliant rows", *printed, "reproduced"]]
     for line in each(data, "reading"):
-        near = abs(line["deviation_units"].values) <= 0.5 + ROUNDING
-        ends = [near[np.equal(row_of, row)] for row in rows]
+        agrees = line["agrees"].values
+        ends = [agrees[np.equal(row_of, row)] for row in rows]
         numbers = []
         for text, one in zip(printed, each(line.sel(number=single), "number"), strict=True):
             value = computed_text(float(one["found"]), text)
-            units = number(one["deviation_units"], "+.1f")
+            units = number(one["deviation_units"], "+.2f")
             numbers.append(value if value == units else f"{value} ({units})")
         cells = [f"{hits.sum()} of {hits.size}" for hits in ends]
         cells += [number(line["rms_difference"], ".2f"), *numbers]
-        found.append([line["reading"].item(), *cells, f"{near.sum()} of {near.size}"])
+        found.append([line["reading"].item(), *cells, f"{agrees.sum()} of {agrees.size}"])
     return found
 
 

@@ -237,6 +237,7 @@ def readings(printed: xr.DataArray) -> xr.Dataset:
         {
             "found": (over, computed),
             "deviation_units": (over, units),
+            "agrees": (over, reproduced(units)),
             "reproduced": ("reading", reproduced(units).sum(axis=1)),
             "compliant_reproduced": ("reading", reproduced(compliant).sum(axis=1)),
             "rms_difference": ("reading", np.sqrt((compliant**2).mean(axis=1))),

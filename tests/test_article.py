@@ -62,6 +62,8 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers |= {article.percent(move, 1).removesuffix(" %") for move in moves.values}
     parameters = "".join(each.attrs["parameters"] for each in data.values())
     numbers |= set(re.findall(r"\d+\.\d+", parameters))
+    # The reading of the printed damping is off by nothing.
+    numbers |= {"0.00"}
     # Formulas of parameters: tolerances in per cent, an impact at rest, a doubling by Eq. 8.
     return numbers | {"0.5", "0.2", "0.1", "0.0022", "0.0227", "3.1"}
 

@@ -17,15 +17,9 @@ from functools import partial
 
 import numpy as np
 
-from bouncing_ball_contacts.fits import (
-    LAWS,
-    curves_of,
-    estimates,
-    impacts_of,
-    judge,
-    rounding_of,
-)
-from bouncing_ball_contacts.recordings import Recording
+from bouncing_ball_contacts.intervals import curves_of, estimates, impacts_of
+from bouncing_ball_contacts.laws import LAWS, judge
+from bouncing_ball_contacts.recordings import Recording, rounding_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
 
 

@@ -9,15 +9,8 @@ import pytest
 from scipy.special import chdtrc
 
 from bouncing_ball_contacts import Refused, fit
-from bouncing_ball_contacts.fits import (
-    LAWS,
-    ContactLaw,
-    curves_of,
-    estimates,
-    impacts_of,
-    judge,
-    without_scatter,
-)
+from bouncing_ball_contacts.intervals import curves_of, estimates, impacts_of, without_scatter
+from bouncing_ball_contacts.laws import LAWS, ContactLaw, judge
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 
 SPEC = importlib.util.spec_from_file_location(
@@ -48,7 +41,6 @@ def test_the_croquet_ball():
     assert low < 0.8216 < high and high - low < 0.005
     first = found.laws[0]
     assert first.law.startswith("Hertz") and first.rms == pytest.approx(0.0041, abs=1e-4)
-    assert first.left_out == pytest.approx(0.0045, abs=1e-4)
     assert "deviates" in str(found) and "errors needed" in str(found)
     assert "errors needed" in found._repr_html_()
 
@@ -331,24 +323,6 @@ def test_two_impacts_contradict_nothing(known):
     curves = curves_of(impacts, known, 2.0)
     assert without_scatter(impacts, curves) == 1
     assert {law.verdict for law in judge(impacts, curves, 2.0)} == {"undecided"}
-
-
-def test_impacts_that_are_left_out_are_those_of_a_shorter_recording():
-    """The errors of flights are correlated, for which their number was off by a tenth."""
-    rng = np.random.default_rng(4)
-    impacts = impacts_of(heard(rng, 1e-3, 0.0))
-    curves = curves_of(impacts, 1e-3, 2.0)
-    constant = next(law for law in judge(impacts, curves, 2.0) if law.law.startswith("constant"))
-    ratio = int(np.argmax(np.exp(curves.posterior - curves.posterior.max()).sum(axis=(1, 2))))
-    covariance = curves.basis * curves.variances[ratio] @ curves.basis.T
-    missed = []
-    for i in range(len(impacts.log_r)):
-        kept = np.delete(np.arange(len(impacts.log_r)), i)
-        weights = np.linalg.inv(covariance[np.ix_(kept, kept)]).sum(axis=0)
-        mean = weights @ impacts.log_r[kept] / weights.sum()
-        missed.append(math.exp(mean) - impacts.restitution[i])
-    # The law is followed to first order in its parameter.
-    assert constant.left_out == pytest.approx(np.sqrt(np.mean(np.square(missed))), rel=1e-3)
 
 
 @pytest.mark.parametrize("r", [0.015, 0.05, 0.3, 0.9])

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from bouncing_ball_contacts.fits import LAWS, fit
+from bouncing_ball_contacts import fit
+from bouncing_ball_contacts.laws import LAWS
 from bouncing_ball_contacts.tables import experiments
 
 DATA = Path(__file__).resolve().parents[1] / "data"

@@ -1,0 +1,388 @@
+"""From the readings of a recording to its impacts, and to r at a speed with its interval.
+
+The impacts of a recording have restitution coefficients rᵢ at speeds vᵢ. Their logarithms are::
+
+    ln rᵢ = β + c (e^(q xᵢ) - 1)/q + eᵢ,   xᵢ = ln(vᵢ/v₀)
+    cov e = τ² M Mᵀ + s² I,                M Mᵀ in units of the median of its diagonal
+
+The exponent q is between -1/2 and 5/4: 0 for an r that is a power of the speed, about 1/5 for a law
+of Kuwabara and Kono, 1 for one of Hunt and Crossley, more for r = 1 - b v, and negative for an r
+that changes at low speeds only. The slope c has a normal prior of the width 0.25, because measured
+slopes lie between 0 and about -0.3; β has none. M says how readings enter: an error of a time
+enters the flights on both of its sides. τ is the size of errors of readings, and s that of the
+scatter between impacts. Both have log-normal priors. That of the errors is about what instruments
+have, 1 ms, 2 mm or 0.02 m/s, with a factor of 7 either way; beside it readings have an error of
+rounding, 0.29 frames or units of the last digit (`rounding_of`). If the errors of the readings are
+given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
+published experiments have 0.0004 to 0.04.
+
+The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
+covariance is a row of variances, and every question below is one of weighted sums of squares.
+
+Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
+does. So there are two intervals of 95 %. If impacts do not scatter, it is that of the posterior of
+β for s = 0. If they do, a posterior would hold r too often where scatter is hidden below the
+errors, and too seldom where it is large. In its place, τ and q have their posterior, but for each
+of these s has its confidence distribution: the squares of the deviations, over their variances and
+weighted by the share of scatter in these, have a sum whose distribution is known for each s, and
+the probability of a scatter below s is that of a larger sum than the one at s (`_below`). So s = 0
+has a probability of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004)
+1060, have such intervals for laboratories that measure the same.) Above its middle the prior of
+scatter multiplies this distribution. Two impacts leave no deviation, and have the posterior for all
+s > 0. The interval without scatter is left out if both are alike or if a test of s = 0 at 5 %
+rejects it (`without_scatter`).
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import integrate, linalg, optimize, special
+
+from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
+from bouncing_ball_contacts.recordings import Recording
+from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
+
+ACCEPTED = 0.05
+"""The probability above which a law is compatible, and an absence of scatter possible."""
+
+# Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
+# the readings with which the speeds before and after an impact go. Those of series are alike; of a
+# coefficient the speed is taken as exact.
+KINDS = {
+    "flights": ("s", 1e-3, (1.0, 1.0)),
+    "heights": ("m", 2e-3, (0.5, 0.5)),
+    "drops": ("m", 2e-3, (0.5, 0.5)),
+    "speeds": ("m/s", 2e-2, (1.0, 1.0)),
+    "track": ("m/s", 2e-2, (1.0, 1.0)),
+    "coefficients": ("", 1.1e-2, (0.0, 1.0)),
+}
+# The priors: the width of the logarithm of errors, the middle of scatter and the width of its
+# logarithm, and the width of c.
+_WIDTH_OF_ERRORS = 2.0
+_SCATTER = 0.011
+_WIDTH_OF_SCATTER = 1.5
+_SLOPE = 0.25
+# 1e-6 stands for 0, which would be divided by.
+_EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
+
+
+# Readings to impacts.
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """Impacts of a recording.
+
+    ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
+    heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
+    ``arithmetic`` has the errors of ln r if numbers of the size of the sum of readings, as times
+    are, have errors of 2⁻⁵² of it, which do not cancel.
+    """
+
+    speed: Array
+    log_r: Array
+    readings: Array
+    usual: float
+    arithmetic: Array
+
+    @property
+    def restitution(self) -> Array:
+        """r of each impact."""
+        return np.exp(self.log_r)
+
+
+def _derivatives(kind: str, values: Array) -> Array:
+    """Return the part of a chain in M, which is that of ln v after minus that before an impact."""
+    power = np.array(KINDS[kind][2])
+    n = len(values)
+    if values.ndim == 2:
+        # The readings of a pair are independent, and enter as one.
+        return np.diag(np.linalg.norm(power / values, axis=1))
+    # A flight is the difference of two readings.
+    each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
+    return np.diff(power[0] * each / values[:, None], axis=0)
+
+
+def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
+    """Return the impacts of a recording; drag is ρ C A/(2 m) in 1/m.
+
+    Raises
+    ------
+    Refused
+        If there is no impact between two flights.
+    """
+    kind = recording.kind
+    chains = recording.chains
+    if kind == "track":
+        found = np.array([impact_of(each, drag) for each in chains])
+        chains = (found[:, :2] * STANDARD_GRAVITY / found[:, 2:3],)
+    pairs = np.concatenate(
+        [
+            values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
+            for values in chains
+        ]
+    )
+    if not len(pairs):
+        raise Refused(
+            f"{recording.name}: no impact lies between two flights: three times or two heights are "
+            "needed"
+        )
+    before, after = pairs.T
+    if kind == "coefficients":
+        after = before * after
+    if kind == "flights":
+        before, after = heights_of(pairs, drag).T
+    if kind in ("flights", "heights", "drops"):
+        before, _ = speeds_of(before, drag)
+        _, after = speeds_of(after, drag)
+    readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
+    size = sum(float(values.sum()) for values in chains)
+    arithmetic = np.finfo(float).eps * size * np.linalg.norm(readings, axis=1)
+    return Impacts(before, np.log(after / before), readings, KINDS[kind][1], arithmetic)
+
+
+def without_contacts(recording: Recording, durations: Array) -> Recording:
+    """Return a recording of flights from release to touch, in place of from touch to touch.
+
+    Raises
+    ------
+    Refused
+        If a contact would last longer than half of the flights, or than two touches are apart.
+    """
+    # A recording with a duration for each touch has one chain.
+    lasting = durations if len(durations) == 1 else durations[:-1]
+    chains = tuple(flights - lasting for flights in recording.chains)
+    rest = np.concatenate(chains)
+    if rest.min() <= 0 or rest.sum() < np.concatenate(recording.chains).sum() / 2:
+        longest = show(float(np.max(durations)), "s")
+        raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
+    return replace(recording, chains=chains)
+
+
+# Impacts to r at one speed.
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
+
+    ``basis`` has the eigenvectors of M Mᵀ, in which ``columns`` (exponent, n, 2) are the ones and
+    the bends of which curves are the sums, and ``variances`` (ratio, n) those of ln r over τ²;
+    ``sizes`` are the τ, and ``rounded`` is what rounding has of them. The logarithm of the
+    posterior, the weights by the confidence distribution of the scatter, the means of β, ``value``,
+    and of c, ``slope``, and the standard deviation of β, ``spread``, have the shape (ratio, size,
+    exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
+    ``is_known`` says whether the errors of readings are given.
+    """
+
+    is_known: bool
+    basis: Array
+    columns: Array
+    variances: Array
+    sizes: Array
+    rounded: float
+    posterior: Array
+    confidence: Array
+    value: Array
+    slope: Array
+    spread: Array
+    scatter: float
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The median of β, the ends of its interval of 95 %, and the mean of c."""
+
+    value: float
+    low: float
+    high: float
+    slope: float
+
+
+def deviations(weights: Array, columns: Array, y: Array) -> tuple[Array, Array]:
+    """Return what the best sums of columns leave, over its standard deviation, and their basis.
+
+    ``weights`` (ratio, n) are one over the variances, ``columns`` are (curve, n, k); the deviations
+    (ratio, curve, n, 1) are y less its projection Q Qᵀ on the columns.
+    """
+    size = np.sqrt(weights)[:, None, :, None]
+    q, r = np.linalg.qr(size * columns)
+    # Impacts of one speed tell nothing of a slope, and those of two nothing of a bend.
+    left = np.abs(np.diagonal(r, axis1=-2, axis2=-1))
+    q *= (left > 1e-9 * left[..., :1])[..., None, :]
+    u = size * y[:, None]
+    return u - q @ (q.swapaxes(-1, -2) @ u), q
+
+
+def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
+    """Return the probability that the scatter is below each one: (ratio, size, exponent).
+
+    The statistic is the derivative of the logarithm of the likelihood by s², Σ w u² of the
+    `deviations` u. It has nearly a χ² distribution with its mean and variance (F. E.
+    Satterthwaite, Biometrics Bulletin 2 (1946) 110).
+    """
+    u, q = deviations(weights, columns, y)
+    # The weights of no scatter are those of the smallest one, against rounding errors.
+    w = np.concatenate([weights[1:2], weights[1:]])[:, None, :, None]
+    weighted = w * q
+    both = q.swapaxes(-1, -2) @ weighted
+    mean = np.sum(w, axis=(2, 3)) - np.trace(both, axis1=2, axis2=3)
+    variance = np.sum(w**2, axis=(2, 3)) - 2 * np.sum(weighted**2, axis=(2, 3))
+    variance += np.sum(both**2, axis=(2, 3))
+    # There are between 1 and n - 1 degrees of freedom.
+    degrees = 1 / np.clip(variance / mean**2, 1 / (len(y) - 1), 1.0)
+    statistic = degrees / mean * np.sum(w * u**2, axis=(2, 3))
+    return special.chdtrc(degrees[:, None], statistic[:, None] / sizes[:, None] ** 2)
+
+
+def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
+    """Return the weights by the confidence distribution of the scatter."""
+    # No scatter has a weight of its own, and each other one what is nearest to it.
+    ends = (below[1:-1] + below[2:]) / 2
+    ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
+    weights = np.diff(ends, axis=0)
+    above = np.maximum(np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER, 0.0)
+    weights[1:] *= np.exp(-(above**2) / 2)[..., None]
+    return weights / weights.sum(axis=0) * posterior.sum(axis=0)
+
+
+def curves_of(
+    impacts: Impacts, known: float | Array | None, at: float, rounding: float = 0.0
+) -> Curves:
+    """Return the smooth curves about a speed in m/s.
+
+    ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
+    Then readings are multiples of ``rounding``, if it is not 0.
+    """
+    n = len(impacts.log_r)
+    errors = impacts.readings * (impacts.usual if known is None else known)
+    covariance = errors @ errors.T
+    error = math.sqrt(float(np.median(np.diag(covariance))))
+    eigenvalues, basis = np.linalg.eigh(covariance / error**2)
+    # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n). Steps of 1/20 are
+    # enough, because an error of 5 % in scatter is one of 5 % in the width.
+    step = float(np.clip(math.sqrt(2 / n), 0.05, 0.25))
+    # A scatter of 0.5 is more than enough, beside any errors.
+    most = 7.5 if known is None else max(7.5, math.log(0.5 / error))
+    ratio = np.exp(np.arange(-3.5, most, 0.25 if known is None else step))
+    # Readings that are nearly redundant have eigenvalues of about 0.
+    variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
+    if known is None:
+        unrounded = np.exp(np.arange(-7.0, 7.0, step))
+        rounded = rounding / math.sqrt(12) / impacts.usual
+        sizes = error * np.hypot(unrounded, rounded)
+    else:
+        rounded = 0.0
+        unrounded = np.ones(1)
+        sizes = np.array([error])
+    scatter = np.outer(ratio, sizes)
+    # The logarithms of the priors.
+    prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
+    prior[1:] -= (np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER) ** 2 / 2
+    # With the weights w, e for the ones, b for the bends and means m = Σ w e y/Σ w e² and
+    # d = Σ w e b/Σ w e², the slope is (Σ w b y - d m Σ w e²)/(Σ w b² - d² Σ w e² + 1/0.25²), and β
+    # is m - d c. The middle of ln r is subtracted against rounding errors.
+    bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
+    middle = float(np.mean(impacts.log_r))
+    one = basis.sum(axis=0)
+    bend = bends @ basis
+    y = (impacts.log_r - middle) @ basis
+    weights = 1 / variances
+    ones = (weights @ one**2)[:, None]
+    both = weights @ (one * bend).T / ones
+    mean = (weights @ (one * y))[:, None] / ones
+    precision = (1 / sizes**2)[:, None]
+    of_bends = (weights @ (bend**2).T - ones * both**2)[:, None] * precision + _SLOPE**-2
+    pull = (weights @ (bend * y).T - ones * both * mean)[:, None] * precision
+    slope = pull / of_bends
+    squares = ((weights @ y**2)[:, None] - ones * mean**2)[:, None] * precision - pull * slope
+    logarithms = np.sum(np.log(variances), axis=1)[:, None] + 2 * (n - 1) * np.log(sizes)
+    volume = (logarithms + np.log(ones))[..., None] + np.log(of_bends)
+    posterior = prior[..., None] - (squares + volume) / 2
+    value = middle + mean[:, None] - both[:, None] * slope
+    shares = special.softmax(posterior)
+    curve = np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
+    errors_of_r = np.exp(curve) - impacts.restitution
+    columns = np.stack([np.broadcast_to(one, bend.shape), bend], axis=-1)
+    # Two impacts leave no deviation, and have the posterior of all s > 0.
+    confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
+    if n > 2:
+        confidence = _confidence(confidence, _below(weights, columns, y, sizes), scatter)
+    return Curves(
+        is_known=known is not None,
+        basis=basis,
+        columns=columns,
+        variances=variances,
+        sizes=sizes,
+        rounded=error * rounded,
+        posterior=posterior,
+        confidence=confidence,
+        value=value,
+        slope=slope,
+        spread=np.sqrt(1 / (ones[:, None] * precision) + both[:, None] ** 2 / of_bends),
+        # A curve has two parameters.
+        scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 2, 1)),
+    )
+
+
+def _estimate(curves: Curves, weights: Array) -> Estimate:
+    """Return what a recording says; the weights begin with the first ratio."""
+    n = len(weights)
+    # What is left out changes probabilities by less than 1e-6.
+    matters = weights > 1e-6 / weights.size
+    weights = weights[matters]
+    value = curves.value[:n][matters]
+    spread = curves.spread[:n][matters]
+    ends = np.min(value - 9 * spread), np.max(value + 9 * spread)
+    low, middle, high = (
+        optimize.brentq(
+            lambda x, p=level: special.ndtr((x - value) / spread) @ weights - p, *ends, xtol=1e-9
+        )
+        for level in (0.025, 0.5, 0.975)
+    )
+    slope = np.sum(curves.slope[:n][matters] * weights)
+    return Estimate(middle, low, high, float(slope))
+
+
+def without_scatter(impacts: Impacts, curves: Curves) -> float:
+    """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
+
+    The deviations from a power of the speed are sums of independent uᵢ with variances τ² λᵢ. If τ
+    is known, Σ u²/(τ² λ) has the χ² distribution. Otherwise the statistic is q = (Σ u²/λ)/(Σ u²):
+    it is larger than the measured one if a sum of squares of normal numbers with the factors
+    1 - q λᵢ is positive, whose probability is an integral of J. P. Imhof, Biometrika 48 (1961) 419.
+    """
+    # Sums of ln r in which powers of the speed vanish.
+    free = linalg.null_space(np.vander(np.log(impacts.speed), 2).T)
+    turned = free.T @ curves.basis
+    eigenvalues, turn = np.linalg.eigh((turned * curves.variances[0]) @ turned.T)
+    squares = (impacts.log_r @ free @ turn) ** 2
+    statistic = float(np.sum(squares / eigenvalues))
+    if curves.is_known:
+        # Two impacts leave no deviations, which any number of degrees of freedom allows.
+        return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
+    # A single deviation has no pattern, and neither have errors of the arithmetic.
+    if len(squares) < 2 or squares.sum() <= np.sum(impacts.arithmetic**2):
+        return 1.0
+    factors = 1 - statistic / squares.sum() * eigenvalues
+    # The integrand is smooth in ln u, and vanishes on both sides.
+    log_u = np.linspace(-40.0, 60.0, 2001)
+    products = np.exp(log_u)[:, None] * factors / np.abs(factors).max()
+    angle = np.sum(np.arctan(products), axis=1) / 2
+    decay = np.exp(-np.sum(np.log1p(products**2), axis=1) / 4)
+    return float(0.5 + integrate.trapezoid(np.sin(angle) * decay, log_u) / math.pi)
+
+
+def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:
+    """Return what a recording says if impacts scatter, and if they do not.
+
+    The second one is None if the impacts contradict it, or if it says the same.
+    """
+    scattering = _estimate(curves, curves.confidence)
+    still = _estimate(curves, special.softmax(curves.posterior[:1]))
+    # An interval of nearly the same width says the same.
+    says_more = still.high - still.low < 0.8 * (scattering.high - scattering.low)
+    is_possible = still.low <= 0 and without_scatter(impacts, curves) >= ACCEPTED
+    return scattering, still if says_more and is_possible else None

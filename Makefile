@@ -25,7 +25,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup test test-cluster test-processors lint diff replication accept report release newest lock clean ci everything test-everything
+.PHONY: all setup test test-cluster test-processors lint diff replication accept report release newest lowest lock clean ci everything test-everything
 
 all: setup
 	$(SNAKEMAKE)
@@ -84,6 +84,16 @@ newest:
 	.venv-newest/bin/python -m pip install --quiet --editable '.[test]'
 	touch .venv-newest/.installed
 	$(MAKE) --keep-going replication test VENV=.venv-newest
+
+# The lowest versions that it allows of what numbers and pictures depend on. Pictures of another
+# matplotlib are not compared, and the verdict says so.
+LOWEST := numpy scipy xarray netCDF4 matplotlib
+lowest:
+	$(PYTHON) -m venv --clear .venv-lowest
+	.venv-lowest/bin/python -m pip install --quiet --editable '.[test]' \
+	  $(foreach name,$(LOWEST),"$(shell sed -n 's/^ *"\($(name)\)>=\([0-9.]*\).*/\1==\2/p' pyproject.toml)")
+	touch .venv-lowest/.installed
+	$(MAKE) --keep-going replication VENV=.venv-lowest
 
 # For maintainers, with uv.
 lock:

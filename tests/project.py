@@ -11,7 +11,8 @@ import yaml
 
 from bouncing_ball import datasets
 from bouncing_ball.accept import accept
-from bouncing_ball.compare import Comparison, Product, text
+from bouncing_ball.artifacts import Product, text
+from bouncing_ball.compare import Comparison
 
 FILES = {
     "src/study.py": """

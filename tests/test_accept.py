@@ -9,7 +9,7 @@ from tests.repository import commit, git
 
 from bouncing_ball import datasets
 from bouncing_ball.accept import accept
-from bouncing_ball.compare import Product
+from bouncing_ball.artifacts import Product
 
 
 def made_at(project, name):

@@ -1,5 +1,7 @@
 """What a reviewer reads first after an edit: the line on what changed, and why."""
 
+import shutil
+
 import pytest
 from tests.repository import commit, git
 
@@ -148,3 +150,27 @@ def test_a_reference_that_was_edited_is_named(project):
     assert line.endswith(f"; {NOTHING} (on this branch, {edited})")
     project.edit("paper.md", "greatest", "largest")
     assert project.lines()[-2].endswith("changed: paper.md (not committed)")
+
+
+def test_a_reference_elsewhere_has_the_same_causes(project, tmp_path):
+    shutil.copytree(project.top, tmp_path / "elsewhere", ignore=shutil.ignore_patterns(".git"))
+    project.edit(*EDITS["drawing"])
+    project.edit(*EDITS["code"])
+    committed = commit(project.top, "edit")[:7]
+    project.run()
+    project.edit("src/table.py", "heights", "greatest heights")
+    lines = project.lines(reference=tmp_path / "elsewhere")
+    told = " ".join(lines)
+    assert f"changed: src/study.py (on this branch, {committed})" in lines[0]
+    assert "changed: src/table.py (not committed)" in told
+
+
+def test_of_a_copy_without_git_the_files_are_known_and_not_when_they_changed(project):
+    shutil.rmtree(project.top / ".git")
+    project.edit(*EDITS["code"])
+    project.edit(*EDITS["drawing"])
+    project.run()
+    told = " ".join(project.lines())
+    assert "; follows from fig14: changed: src/study.py " in told
+    assert "fig02.md of the reference: line 1" in told
+    assert "changes of the code are unknown without git" in told

@@ -118,6 +118,11 @@ def test_the_comparison_knows_what_else_is_requested(stubs, rule):
     assert len(inputs()) == len(set().union(*map(files, [*FIGURES, *DATASETS]))) + 3
 
 
+def test_a_comparison_and_an_acceptance_are_two_commands(stubs):
+    line = "diff and accept are two commands: compare, look at the page, then accept"
+    assert stubs.run("--dry-run", "fig14", "accept", "diff")[0] == line
+
+
 # Reruns
 
 
@@ -189,7 +194,13 @@ def test_a_failed_figure_does_not_stop_other_stages(fresh):
     draw = fresh.path / "workflow/scripts/draw.py"
     condition = "if 'fig16' in snakemake.output.png[-1]:\n    raise SystemExit('no figure')\n"
     draw.write_text(condition + draw.read_text("utf-8"), "utf-8")
+    # What an earlier comparison said is not said of this run.
+    said = [fresh.path / "results" / file for file in ("diff/index.html", "logs/diff.log")]
+    for path in said:
+        path.parent.mkdir(parents=True)
+        path.write_text("All files agree.", "utf-8")
     assert fresh.run("--cores", "1", "permanent_contact", "fig01")[0] == 1
+    assert not any(path.exists() for path in said)
     datasets = {"figures/fig11.nc", "figures/fig16.nc"}
     assert made(fresh.path) == datasets | files("fig01") | files("fig04")
 

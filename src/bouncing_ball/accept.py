@@ -14,7 +14,8 @@ import netCDF4
 import xarray as xr
 
 from bouncing_ball import datasets
-from bouncing_ball.compare import Comparison, Product
+from bouncing_ball.artifacts import Product
+from bouncing_ball.compare import Comparison
 from bouncing_ball.differences import dataset_differences, file_differences
 from bouncing_ball.history import CHECKOUT
 

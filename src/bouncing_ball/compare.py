@@ -22,7 +22,7 @@ import io
 import os
 import sys
 import tempfile
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -31,17 +31,15 @@ from typing import Any
 
 import jinja2
 import matplotlib
-import netCDF4
 import xarray as xr
 import yaml
-from matplotlib.figure import Figure
 
-from bouncing_ball import datasets, drawing
-from bouncing_ball.datasets import PACKAGES, Datasets
+from bouncing_ball import datasets
+from bouncing_ball.artifacts import Product, Side, code_of, needed, read_side, staleness
+from bouncing_ball.datasets import PACKAGES
 from bouncing_ball.differences import (
     DESCRIPTIVE,
     KINDS,
-    PICTURES,
     Finding,
     changes,
     dataset_differences,
@@ -49,184 +47,7 @@ from bouncing_ball.differences import (
     record,
     same_bits,
 )
-from bouncing_ball.history import CHECKOUT, History, commit, contents
-
-# Files, and the datasets that they follow from
-
-Code = tuple[str | Path, ...]
-"""Files of code, templates and numbers that a product is made by."""
-
-
-@dataclass(frozen=True)
-class Product:
-    """Files that follow from the datasets `needs`; `make` writes them into a folder by `code`."""
-
-    files: tuple[str, ...]
-    needs: tuple[str, ...]
-    make: Callable[[Datasets, Path], None]
-    code: Code
-
-    @property
-    def artifact(self) -> str:
-        """The name of the figure, table or text."""
-        return Path(self.files[0]).stem
-
-    @property
-    def is_dataset(self) -> bool:
-        """Whether it is a dataset, which follows from others."""
-        return self.files[0].endswith(".nc")
-
-    @property
-    def is_picture(self) -> bool:
-        """Whether it is drawn, which another version of matplotlib does otherwise."""
-        return self.files[0].endswith(PICTURES)
-
-
-def picture(
-    name: str, needs: tuple[str, ...], draw: Callable[[Datasets], Figure], code: Code
-) -> Product:
-    """A figure as SVG and as PNG.
-
-    The SVG comes first, because a difference of its lines tells more than one of pixels.
-    """
-    files = (f"figures/{name}.svg", f"figures/{name}.png")
-
-    def make(data: Datasets, folder: Path) -> None:
-        svg, png = (folder / file for file in files)
-        drawing.save_picture(draw(data), png, svg, commit(code))
-
-    return Product(files, needs, make, code)
-
-
-def text(
-    file: str, needs: tuple[str, ...], write: Callable[[Datasets], str], code: Code = ()
-) -> Product:
-    """A file of text."""
-
-    def make(data: Datasets, folder: Path) -> None:
-        (folder / file).write_text(write(data), encoding="utf-8", newline="\n")
-
-    return Product((file,), needs, make, code)
-
-
-def table(
-    file: str,
-    rows: Callable[[xr.Dataset], list[list[str]]],
-    write: Callable[[list[list[str]]], str],
-    code: Code,
-) -> Product:
-    """A table of the dataset with the name of its file."""
-    name = Path(file).stem
-    return text(f"figures/{file}", (name,), lambda data: write(rows(data[name])), code)
-
-
-def needed(products: Collection[Product]) -> list[str]:
-    """The datasets that some products follow from."""
-    return list(dict.fromkeys(name for product in products for name in product.needs))
-
-
-# Both sides
-
-
-@dataclass(frozen=True)
-class Side:
-    """The folder of the results or of the reference, with the datasets that could be read, and why
-    others could not.
-    """
-
-    name: str
-    folder: Path
-    data: dict[str, xr.Dataset]
-    unread: dict[str, str]
-
-    def matplotlib(self, product: Product) -> str:
-        """The version of matplotlib that drew a picture, as its dataset says; that of a picture
-        without dataset is that of any.
-        """
-        made = [self.data[name] for name in product.needs or self.data if name in self.data]
-        return record(made[0], "versions")["matplotlib"] if made else matplotlib.__version__
-
-    def drawn_elsewhere(self, product: Product) -> bool:
-        """Whether a picture was drawn by another version of matplotlib than that of today."""
-        return product.is_picture and self.matplotlib(product) != matplotlib.__version__
-
-
-def side(name: str, folder: Path, names: Collection[str]) -> Side:
-    """A side with the datasets that are there."""
-    data = {}
-    unread = {}
-    for each in names:
-        path = folder / "figures" / f"{each}.nc"
-        # A pipe would be read for ever.
-        if path.is_file():
-            try:
-                data[each] = read(path)
-            except Exception as error:  # Whatever readers of damaged files raise.
-                unread[each] = f"{type(error).__name__}: {error}"
-    return Side(name, folder, data, unread)
-
-
-def read(path: Path) -> xr.Dataset:
-    """The dataset of a file that records how it was made, and has nothing else in it.
-
-    Raises ValueError, or whatever the reader raises, for another file.
-    """
-    with netCDF4.Dataset(path) as file:
-        if file.data_model != "NETCDF4" or file.groups:
-            raise ValueError(f"it has the format {file.data_model} and {len(file.groups)} groups")
-        unlimited = [name for name, each in file.dimensions.items() if each.isunlimited()]
-        if unlimited:
-            raise ValueError(f"the dimension {', '.join(unlimited)} is unlimited")
-    data = datasets.read(path)
-    missing = {*PACKAGES} - record(data, "versions").keys()
-    if missing:
-        raise ValueError(f"it does not record the versions of {', '.join(sorted(missing))}")
-    record(data, "parameters")
-    return data
-
-
-def code_of(data: xr.Dataset) -> dict[str, str]:
-    """The files of code that a dataset records, with their contents; none without a record."""
-    try:
-        return record(data, "code")
-    except ValueError:
-        return {}
-
-
-WORDS = ("title", "caption", "table")
-"""What a configuration says of a dataset beside its parameters."""
-
-
-def configured(config: Mapping, name: str, recorded: Collection[str]) -> dict:
-    """The parameters of a dataset in a configuration.
-
-    Its sections are stages with their datasets, and everything else is a setting of the whole run,
-    which counts where a dataset records it.
-    """
-    found = {key: value for key, value in config.items() if key in recorded}
-    for stage in config.values():
-        if isinstance(stage, Mapping) and isinstance(stage.get(name), Mapping):
-            found |= {key: value for key, value in stage[name].items() if key not in WORDS}
-    return datasets.plain(found)
-
-
-def staleness(new: xr.Dataset, name: str, config: Mapping, top: Path) -> Iterator[str]:
-    """Why a result is not that of a configuration and of today's code, in the checkout `top`."""
-    recorded = record(new, "parameters")
-    changed = changes(recorded, configured(config, name, recorded))
-    if changed:
-        yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
-    code = code_of(new)
-    today = contents([top / name for name in code if (top / name).is_file()])
-    edited = [name for name in code if today.get(name) != code[name]]
-    if edited:
-        words = f"stale: it was made by other code than today's: {', '.join(edited)}"
-        yield f"{words}; remove it, and run again"
-    if not code:
-        yield "stale: it does not record the code that made it; remove it, and run again"
-
-
-# The comparison
+from bouncing_ball.history import CHECKOUT, History
 
 
 @dataclass(frozen=True)
@@ -287,8 +108,8 @@ class Comparison:
         files = [f"figures/{name}.nc" for name in self.names]
         self.files = list(dict.fromkeys([*files, *(f for each in self.made for f in each.files)]))
         refuse(Path(results), Path(reference), self.files)
-        self.new = side("results", Path(results), needed(products))
-        self.old = side("reference", Path(reference), needed(products))
+        self.new = read_side("results", Path(results), needed(products))
+        self.old = read_side("reference", Path(reference), needed(products))
         self.derived = {product.artifact for product in products if product.is_dataset}
         self.differences = {
             name: compared(self.new.data[name], self.old.data[name])
@@ -541,12 +362,10 @@ def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
 
 def declarations(data: xr.Dataset) -> dict[str, list[str]]:
     """The datasets that each claim declares to decide it."""
-    if "decided_by" not in data:
+    if "decided_by" not in data or data.decided_by.dims != ("claim",):
         return {}
-    claims = data[str(data.decided_by.dims[0])].values
-    return {
-        claim: text.split(", ") for claim, text in zip(claims, data.decided_by.values, strict=True)
-    }
+    pairs = zip(data.claim.values, data.decided_by.values, strict=True)
+    return {claim: str(text).split(", ") for claim, text in pairs}
 
 
 def fewest(decides: Mapping[str, Collection[str]]) -> list[str]:

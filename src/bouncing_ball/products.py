@@ -14,7 +14,7 @@ from bouncing_ball import (
     tables,
     verdicts,
 )
-from bouncing_ball.compare import Code, Product, picture, table, text
+from bouncing_ball.artifacts import Code, Product, picture, table, text
 from bouncing_ball.datasets import Datasets
 from bouncing_ball.differences import record
 

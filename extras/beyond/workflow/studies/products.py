@@ -4,7 +4,7 @@ from functools import partial
 
 from bouncing_ball import accept, drawing
 from bouncing_ball import tables as replicated_tables
-from bouncing_ball.compare import Code, Product, picture, table, text
+from bouncing_ball.artifacts import Code, Product, picture, table, text
 from studies import article, explorer, figures, tables
 
 CODE = (*accept.CODE, "../../src", "../../workflow")

@@ -396,6 +396,7 @@ def computed_on() -> str:
     return f"{platform.platform()}, {blas['name']} {blas['version']}"
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions of Python and of the packages that numbers and pictures depend on."""
     return {"python": platform.python_version()} | {

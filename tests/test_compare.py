@@ -670,6 +670,17 @@ def test_another_chunk_of_a_png_is_different(original, tmp_path, lie):
     assert file_differences(original / "figures" / "fig14.png", path) != []
 
 
+def test_a_damaged_chunk_of_a_png_is_different(original, tmp_path):
+    """Of the pixels, which are read all the same."""
+    made = original / "figures" / "fig14.png"
+    data = bytearray(made.read_bytes())
+    start = data.index(b"IDAT")
+    data[start + 4 + int.from_bytes(data[start - 4 : start], "big")] ^= 1
+    (tmp_path / "fig14.png").write_bytes(data)
+    (finding,) = file_differences(made, tmp_path / "fig14.png")
+    assert finding.text == "it cannot be read: ValueError('the chunk IDAT is damaged')"
+
+
 # The page, the log and the terminal
 
 

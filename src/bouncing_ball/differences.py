@@ -13,6 +13,7 @@ import io
 import json
 import re
 import struct
+import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import takewhile, zip_longest
@@ -370,6 +371,8 @@ def png_chunks(data: bytes) -> list[tuple[str, bytes]]:
     while start < len(data):
         length, kind = struct.unpack_from(">I4s", data, start)
         content = data[start + 8 : start + 12 + length]
+        if zlib.crc32(kind + content[:-4]).to_bytes(4, "big") != content[-4:]:
+            raise ValueError(f"the chunk {kind.decode('latin-1')} is damaged")
         start += 12 + length
         described = rb"Description\0" + COMMIT.encode() + rb"[\0-\xff]{4}"
         # The same pixels may be compressed otherwise, and be cut into several chunks.

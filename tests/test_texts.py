@@ -125,9 +125,8 @@ def test_each_extra_has_a_readme_a_changelog_and_a_citation(extra):
     assert f'version = "{cited["version"]}"' in text(f"{folder}/pyproject.toml")
     date = cited.get("date-released", "unreleased")
     assert f"## {cited['version']} ({date})\n" in text(f"{folder}/CHANGELOG.md")
-    assert {"CHANGELOG.md", "CITATION.cff"} <= {
-        *re.findall(r"\((.*?)\)", text(f"{folder}/README.md"))
-    }
+    readme = text(f"{folder}/README.md")
+    assert "CHANGELOG.md" in readme and "CITATION.cff" in readme
 
 
 def test_a_release_needs_a_date(tmp_path):

@@ -239,6 +239,7 @@ MISTAKES = {
     "fit croquet --resolution 1ms": "resolution",
     'fit croquet --mass "a lot"': "does not begin",
     "engines --all": "No such option",
+    "design --mass 1e-300 --restitution 0.8": "too large or too small",
 }
 
 

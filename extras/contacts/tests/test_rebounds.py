@@ -206,6 +206,9 @@ MISTAKES = {
     f"diagnose {RAPIER} threshold=1": "rapier does not use 'threshold': it has restitution",
     "diagnose --engine jolt mRestitution=1 gravity=1 --time-step 1/60": "it has mRestitution and",
     f"diagnose {RAPIER} restitution=1 --drop-height 1mm": "is longer than the fall",
+    "design --engine jolt --speed 1e200 --restitution 0.8 --time-step 1ms": "are computed",
+    "design --engine jolt --restitution 0.8 --time-step 1ns": "moves 4.43 nm in a step of 1 ns",
+    f"design {RAPIER} --gravity 1e300 --restitution 0.8": "are computed",
     "fit croquet --engine godot": "Godot has two engines: take godot-jolt",
 }
 

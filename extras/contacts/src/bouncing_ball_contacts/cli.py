@@ -357,5 +357,10 @@ def run() -> None:
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
         click.echo(f"bounce: {' '.join(str(text).split())}", err=True)
         sys.exit(2)
+    except ArithmeticError as too_far:
+        click.echo(
+            f"bounce: a quantity is too large or too small to be computed: {too_far}", err=True
+        )
+        sys.exit(2)
     except click.Abort:
         sys.exit(130)

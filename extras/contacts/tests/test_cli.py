@@ -203,6 +203,7 @@ MISTAKES = {
     f"{BALL} extra": "unexpected extra argument",
     "designn": "No such command",
     "diagnose": "mass is missing",
+    "diagnose --engine nothing": "engine 'nothing' is not known",
     "diagnose --mass 1": "time step is missing",
     "diagnose solref --mass 1": "is not NAME=VALUE",
     "diagnose =3 --mass 1": "is not NAME=VALUE",

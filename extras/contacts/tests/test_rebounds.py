@@ -113,7 +113,9 @@ def test_a_threshold_is_in_the_way():
     low = falling(drop_height="15 cm", restitution=0.8)
     found = rebound(low, BY_NUMBER["unity"], {"bounciness": 0.8}, "1/50")
     assert found.restitution[1] < 0.1
-    assert found.notes[0].startswith("it does not bounce: 1.72 m/s is below the threshold of 2 m/s")
+    assert found.notes[0].startswith(
+        "it does not bounce: 1.72 m/s is not above the threshold of 2 m/s"
+    )
     assert "Physics.bounceThreshold = 0.43" in str(found)
     lowered = rebound(low, BY_NUMBER["unity"], {"restitution": 0.8, "bounceThreshold": 0.4}, "1/50")
     assert lowered.restitution[1] > 0.8
@@ -130,6 +132,21 @@ def test_two_bodies_are_combined_as_the_engine_does():
     assert dart.number == 0.4
     # With 0 on the ground no number of the ball is enough.
     assert found.change.other is None and "(of both bodies)" in str(found)
+
+
+def test_a_ground_of_0_multiplies_everything_away():
+    found = rebound(falling(**BALL), BY_NUMBER["gazebo-sim"], {"restitution": 0.8}, "1ms", other={})
+    assert found.notes == ("nothing bounces: the other body has 0, and the numbers are multiplied",)
+    assert found.change.other is None
+
+
+def test_an_impact_at_the_threshold_does_not_bounce():
+    """Godot 4.6 with Jolt: 1 m/s does not bounce off a ceiling, and 2 m/s does."""
+    for speed, r in (("1 m/s", 0.0), ("2 m/s", 1.0)):
+        ball = falling(speed=speed, gravity=0)
+        found = rebound(ball, BY_NUMBER["godot-jolt"], {"bounce": 1}, "1/60")
+        assert found.restitution[1] == pytest.approx(r)
+        assert any("not above the threshold of 1 m/s" in note for note in found.notes) == (r == 0)
 
 
 def test_without_gravity_r_is_the_ratio_of_speeds():

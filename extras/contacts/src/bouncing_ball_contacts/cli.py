@@ -11,7 +11,7 @@ import click
 
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
 from bouncing_ball_contacts.diagnosis import diagnose
-from bouncing_ball_contacts.engines import ENGINES
+from bouncing_ball_contacts.engines import ENGINES, engine_named
 from bouncing_ball_contacts.rebounds import (
     BY_NUMBER,
     Rebound,
@@ -149,9 +149,10 @@ def design_command(
                 raise Refused(f"{option} has no place where the restitution is a number")
         _print(number_for(falling(**bounce), row, time_step), as_json)
         return
+    known = engine_named(engine)
     found = design(
         Bounce(**bounce),
-        engine,
+        known,
         time_step,
         tolerance=tolerance or TOLERANCE,
         one_body=one_body,
@@ -220,7 +221,8 @@ def diagnose_command(
     if row is not None and (engine not in ENGINES or (has_numbers and typed)):
         _print(rebound(falling(**bounce), row, typed, time_step, beside), as_json)
         return
-    _print(diagnose(Bounce(**bounce), engine, typed, time_step, other=beside), as_json)
+    known = engine_named(engine)
+    _print(diagnose(Bounce(**bounce), known, typed, time_step, other=beside), as_json)
 
 
 def _lines(text: str | None) -> tuple[int, ...]:

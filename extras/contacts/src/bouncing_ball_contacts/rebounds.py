@@ -686,12 +686,16 @@ class Rebound(Page):
         mean = self.restitution[1]
         limit = f"{show(self.threshold, 'm/s')}" + (f", {row.set_by}" if row.set_by else "")
         slowest = self.threshold / (max(self.number, 1e-9) if row.is_of_rebound else 1.0)
-        is_slow = self.threshold > 0 and speed < slowest
+        is_slow = self.number > 0 and 0 < speed <= slowest
         lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
         way = speed * self.time_step
         said = {
-            f"it does not bounce: {show(speed, 'm/s')} is below the threshold of {limit}": is_slow
-            and mean < 0.1,
+            f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}": (
+                self.number == 0 < self.written
+            ),
+            f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of {limit}": (
+                is_slow and mean < 0.1
+            ),
             f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold of "
             f"{limit}": self.restitution[0] == 0 < mean and slowest < speed < 2 * slowest,
             f"r is up to {self.restitution[2]:.3f}: at some instants the ball gains energy": (
@@ -700,7 +704,7 @@ class Rebound(Page):
             f"at a third of the speed r is {_around(self.slower)}": speed / 3 > slowest
             and abs(self.slower[1] - mean) > TOLERANCE / 2,
             f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
-                not is_slow and lowest > 0
+                not is_slow and lowest > 0 and self.number > 0
             ),
             f"no number keeps r within {TOLERANCE:g} at this step": self.shorter is not None,
             f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "

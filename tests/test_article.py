@@ -358,6 +358,18 @@ def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
         assert np.array_equal(beyond.sel(measure=measure), least)
 
 
+def test_what_the_article_says_of_the_readings(data):
+    """Those that give 82 and 0.81 differ in the stability alone, and none explains Table 1."""
+    readings = data["readings"]
+    both = readings.deviation_units.sel(number=["height threshold", "compliant end of 1.2"])
+    given = readings.reading[(abs(both) <= 0.5).all("number")].values.tolist()
+    assert "equations as they stand" in given
+    numbers = readings.found[:, 18:]
+    own = numbers.sel(reading="equations as they stand")
+    assert all((numbers.sel(reading=name) == own).all() for name in given)
+    assert readings.compliant_reproduced.max() < 12 / 2
+
+
 def test_what_the_article_says_of_the_map(data):
     found = data["validity_map"]
     assert found.not_reached.sum() == 0

@@ -176,6 +176,9 @@ def test_names_without_an_answer_are_refused_with_the_reason(name, typed):
     ("typed_name", "name"),
     [
         ("Rapier3D", "rapier"),
+        ("Box2D v3", "box2d"),
+        ("PhysX 5", "physx"),
+        ("gz-sim8", "gazebo-sim"),
         ("gz-sim", "gazebo-sim"),
         ("matter.js", "matter-js"),
         ("Box2D", "box2d"),
@@ -197,7 +200,10 @@ def test_the_command(typed):
     # PhysX has springs as well, and these stay with --engine physx.
     assert "bounceThresholdVelocity" in typed(line.replace("rapier", "physx"))[1]
     springs = "compliantContactStiffness=1e4 compliantContactDamping=1 --mass 1"
-    assert "The contact has k" in typed(f"diagnose --engine physx {springs} --time-step 1ms")[1]
+    for name in ("physx", "isaac-lab"):
+        assert (
+            "The contact has k" in typed(f"diagnose --engine {name} {springs} --time-step 1ms")[1]
+        )
     assert "restitution(0.8" in typed("fit croquet --engine rapier --time-step 1/60")[1]
     assert "multiplied" in typed("engines")[1]
 

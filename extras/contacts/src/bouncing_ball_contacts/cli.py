@@ -143,13 +143,13 @@ def design_command(
 ) -> None:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
     row = engine_by_number(engine)
-    if row is not None and engine not in ENGINES:
+    if row is not None and row.name not in ENGINES:
         for option, value in {"--one-body": one_body, "--pick": pick, "--script": script}.items():
             if value:
                 raise Refused(f"{option} has no place where the restitution is a number")
         _print(number_for(falling(**bounce), row, time_step), as_json)
         return
-    known = engine_named(engine)
+    known = engine_named(row.name if row else engine)
     found = design(
         Bounce(**bounce),
         known,
@@ -216,9 +216,11 @@ def diagnose_command(
         typed = _own_of_ode(typed, time_step)
     beside = _assigned(other) if other or one_body else None
     row = engine_by_number(engine)
-    # PhysX has springs as well.
-    has_numbers = row is not None and {name.lower() for name in typed} <= row.names.keys()
-    if row is not None and (engine not in ENGINES or (has_numbers and typed)):
+    names = {name.lower() for name in typed}
+    if row is not None and row.springs and (not names or names - row.names.keys()):
+        engine = row.springs
+        row = None
+    if row is not None:
         _print(rebound(falling(**bounce), row, typed, time_step, beside), as_json)
         return
     known = engine_named(engine)
@@ -314,7 +316,7 @@ def fit_command(
     given = [name for name, value in (contact | of_design).items() if value is not None]
     written: Design | Rebound | None = None
     row = None if engine is None else engine_by_number(engine)
-    if row is not None and engine not in ENGINES:
+    if row is not None and row.name not in ENGINES:
         of_ball = {"mass": found.mass, "radius": found.diameter and found.diameter / 2}
         wanted = {"restitution": found.restitution, "speed": found.speed}
         written = number_for(falling(**of_ball, **wanted, **contact), row, time_step)

@@ -314,6 +314,7 @@ class ByNumber:
     ``is_of_rebound``, bodies that would leave more slowly; ``set_by`` is its setting, empty if
     there is none that can be changed. ``sinks`` is by how many times g h² a body falls farther in a
     step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
+    ``springs`` is the row of the same engine in :data:`.ENGINES`, if it takes a stiffness as well.
     ``written`` is the line to paste.
     """
 
@@ -329,6 +330,7 @@ class ByNumber:
     set_by: str = ""
     sinks: float = 1.0
     remembers: int = 2
+    springs: str = ""
     notes: tuple[str, ...] = ()
 
     @property
@@ -358,6 +360,7 @@ _PHYSX = ByNumber(
     written="material->setRestitution({number}f);  // of both shapes",
     threshold=2.0,
     set_by="bounceThresholdVelocity",
+    springs="physx",
 )
 _BOX2D_2 = ByNumber(
     name="box2d-2",
@@ -407,6 +410,7 @@ BY_NUMBER = {
             written="material.bounciness = {number}f;  // of both colliders, combined by Average",
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
+            springs="",
             notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
         ),
         replace(
@@ -510,21 +514,24 @@ BY_NUMBER = {
 }
 """The engines, and products on top of one, by their names."""
 _OTHER_NAMES = {
-    "box2d-3": "box2d",
+    "box2d3": "box2d",
     "cannon": "cannon-es",
+    "chipmunk2d": "chipmunk",
     "dartpy": "dart",
+    "dartsim": "dart",
+    "gazeboharmonic": "gazebo-sim",
     "gz": "gazebo-sim",
-    "gz-sim": "gazebo-sim",
+    "gzsim": "gazebo-sim",
     "ignition": "gazebo-sim",
+    "ignitiongazebo": "gazebo-sim",
     "isaac": "isaac-sim",
-    "joltphysics": "jolt",
-    "jolt-physics": "jolt",
     "matter": "matter-js",
-    "planck-js": "planck",
+    "nvidiaphysx": "physx",
     "pybox2d": "box2d-2",
     "pymunk": "chipmunk",
     "rapier2d": "rapier",
     "rapier3d": "rapier",
+    "ue": "unreal",
     "unity3d": "unity",
     "xpbd": "newton-xpbd",
 }
@@ -548,15 +555,17 @@ def engine_by_number(name: str) -> ByNumber | None:
     Refused
         If the name is known, but nothing is known of its bounce.
     """
-    plain = name.strip().lower().replace("_", "-").replace(" ", "-").removesuffix(".js")
-    plain = _OTHER_NAMES.get(plain, plain)
-    for known, why in WITHOUT_ANSWER.items():
-        if plain.removesuffix("-5").removesuffix("-engine").removesuffix("physics") == known:
-            raise Refused(f"{name}: {why}")
-    near = difflib.get_close_matches(plain, BY_NUMBER, 1, 0.8)
-    if plain not in BY_NUMBER and near:
-        raise Refused(f"engine {name!r} is not known; did you mean {near[0]}?")
-    return BY_NUMBER.get(plain)
+    known = {re.sub(r"\W", "", each): each for each in (*BY_NUMBER, *WITHOUT_ANSWER)} | _OTHER_NAMES
+    plain = re.sub(r"[\W_]", "", name.lower())
+    # A version at the end, and words such as "engine", belong to no name.
+    bare = re.sub(r"(physics|engine|js)*(v?\d+)?$", "", plain)
+    found = known.get(plain) or known.get(bare)
+    if found in WITHOUT_ANSWER:
+        raise Refused(f"{name}: {WITHOUT_ANSWER[found]}")
+    near = difflib.get_close_matches(plain, known, 1, 0.85)
+    if found is None and near:
+        raise Refused(f"engine {name!r} is not known; did you mean {known[near[0]]}?")
+    return BY_NUMBER.get(found or "")
 
 
 def _first_rebound(engine: ByNumber, at: Fall, height: float, speed: float) -> float:

@@ -208,6 +208,23 @@ def test_a_failed_step_skips_none_of_the_others():
     jobs = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text("utf-8"))["jobs"]
     steps = jobs["replication"]["steps"]
     runs = [step for step in steps if "run" in step]
-    assert [step["run"] for step in runs] == ["make lint", "make replication", "make test"]
+    commands = [step["run"] for step in runs if step["run"].startswith("make")]
+    assert commands == ["make lint", "make replication", "make test"]
     later = itertools.dropwhile(lambda step: step.get("run") != "make replication", steps)
     assert all("!cancelled()" in step["if"] for step in later)
+
+
+@pytest.mark.parametrize(
+    "log, said", [("All files agree.", "All files agree."), (None, "There was no")]
+)
+def test_the_summary_of_a_run_has_the_verdict(tmp_path, log, said):
+    """On GitHub, between the marks of a text that is shown as it is."""
+    (tmp_path / ".ci").mkdir()
+    shutil.copy(ROOT / ".ci/summary", tmp_path / ".ci")
+    if log:
+        (tmp_path / "results/logs").mkdir(parents=True)
+        (tmp_path / "results/logs/diff.log").write_text(f"{log}\n", "utf-8")
+    environment = os.environ | {"GITHUB_STEP_SUMMARY": str(tmp_path / "page")}
+    subprocess.run([tmp_path / ".ci/summary"], env=environment, capture_output=True, check=True)
+    first, line, last = (tmp_path / "page").read_text("utf-8").splitlines()
+    assert first == last == "```" and line.startswith(said)

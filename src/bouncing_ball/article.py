@@ -91,7 +91,7 @@ def fixed(value: float, digits: int, to: str = "nearest", shift: int = 0) -> str
     number = Decimal(repr(float(value))).scaleb(shift)
     last = Decimal(1).scaleb(-digits)
     nearest = number.quantize(last, rounding=ROUND_HALF_EVEN)
-    if abs(number - nearest) > NOISE * max(abs(number), 1):
+    if abs(number - nearest) > NOISE * max(abs(number), Decimal(1)):
         nearest = number.quantize(last, rounding=ROUNDINGS[to])
     # Zero has no sign.
     return str(nearest + 0).replace("-", "−")

@@ -236,6 +236,8 @@ def enough_from(
     """
     ratios = np.asarray(family.contact.frequency_ratio)
     logarithms = np.log(ratios)
+    n = np.asarray(family.n)
+    zeta = np.asarray(family.contact.damping_ratio)
     outside = ~(errors_of_orbits(family, orbits, r, amplitude) <= tolerance)
     last = ratios.size - 1 - np.argmax(outside[..., ::-1], axis=-1)
     crossed = outside.any(axis=-1) & (last < ratios.size - 1)
@@ -248,9 +250,9 @@ def enough_from(
         contact = replace(
             family.contact,
             frequency_ratio=np.exp(logarithm),
-            damping_ratio=family.contact.damping_ratio[orbit, 0],
+            damping_ratio=zeta[orbit, 0],
         )
-        one = Family(family.n[orbit, 0], contact)
+        one = Family(n[orbit, 0], contact)
         at = amplitude[orbit, 0]
         found = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
         return found[quantity, np.arange(quantity.size)] - tolerance

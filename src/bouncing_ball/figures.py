@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 
 from bouncing_ball.datasets import parameters
@@ -538,7 +539,7 @@ def validity_map(data: xr.Dataset) -> Figure:
     panel[0, 0].set_ylabel("place of $\\Lambda$ between\nsaddle-node and period doubling")
     body: Look = {"edgecolor": "black", "facecolor": "white", "linewidth": 0.6}
     advised = number(given["advised"])
-    entries = {
+    entries: dict[str, Patch | Line2D] = {
         rf"$\varpi={advised}$ is not enough: {name}": Patch(**body | look)
         for name, look in FAILURES.values()
     }

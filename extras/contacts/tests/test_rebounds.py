@@ -11,13 +11,13 @@ import pytest
 from bouncing_ball_contacts.rebounds import (
     BY_NUMBER,
     WITHOUT_ANSWER,
-    Fall,
     engine_by_number,
     falling,
     number_for,
     rebound,
     restitutions,
 )
+from bouncing_ball_contacts.step_rules import Fall
 
 G = 9.81
 FILE = Path(__file__).with_name("engine_drops.csv")

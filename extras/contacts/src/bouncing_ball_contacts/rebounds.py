@@ -1,11 +1,7 @@
 """Engines whose restitution is a number, and the bounce that they make of it.
 
-Such an engine reverses the velocity of a body within one step. Which velocity it takes, whether the
-step's gravity belongs to it, and where the body is at the end of that step, differ from engine to
-engine, and so r = √(h′/h) is not the number. The rules below have one step of each engine for a
-ball over a surface: its height z and velocity v, both upwards, before and after the step. They were
-found in the source of the engines and by dropping balls in them; ``tests/engine_drops.csv`` has the
-drops, with which ``tests/test_rebounds.py`` compares the rules.
+Such an engine reverses the velocity of a body within one step, by a rule of its own
+(:mod:`.step_rules`), and so r = √(h′/h) is not the number.
 
 r depends on where in a step the ball meets the surface, by about g h/v, the speed that a step h of
 gravity adds over that of the impact. It is given as its least, mean and greatest value over all
@@ -15,7 +11,7 @@ instants.
 import difflib
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
@@ -23,9 +19,11 @@ from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import step_rules
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Page, Quantity
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, Rule
 from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si, within
 
 LARGER = Rule("the larger of both counts", max, lambda x: x, lambda x, other: x)
@@ -36,273 +34,6 @@ INSTANTS = 24
 """Of the impact within a step; a sixth of them in short steps, where r hardly depends on them."""
 # Where a body flies freely: no engine finds its contact farther away, in m.
 _REACH = 0.06
-
-
-@dataclass(frozen=True)
-class Fall:
-    """A ball on its way down: what the rule of an engine depends on, in SI units.
-
-    ``number`` is the restitution coefficient of both bodies together. Impacts slower than
-    ``threshold`` have none.
-    """
-
-    number: float
-    step: float
-    gravity: float
-    threshold: float
-    radius: float
-
-    @property
-    def added(self) -> float:
-        """The speed that gravity adds in a step."""
-        return self.gravity * self.step
-
-
-Steps = Iterator[tuple[float, float]]
-"""Height and velocity after each step, without an end."""
-
-
-def _jolt(at: Fall, z: float, v: float) -> Steps:
-    """Contacts are found 20 mm ahead; the velocity before the step's gravity is reversed.
-
-    What is deeper than 20 mm is taken back by a fifth, twice in a step.
-    """
-    while True:
-        u = v - at.added
-        deepest = math.inf
-        if z <= 0.02:
-            deepest = 0.02
-            touches = u < -max(z, 0.0) / at.step
-            u = max(u, -at.number * v if touches and u < -at.threshold else -max(z, 0.0) / at.step)
-        z += at.step * u
-        for _ in range(2):
-            z += 0.2 * max(-z - deepest, 0.0)
-        v = u
-        yield z, v
-
-
-def _physx(at: Fall, z: float, v: float, ahead: float) -> Steps:
-    """Within both contact offsets, the velocity with the step's gravity is reversed.
-
-    A body that is too slow for that is stopped at the surface, or put out of it by 0.8 of its depth
-    in a step.
-    """
-    while True:
-        v -= at.added
-        touches = z < ahead and z + at.step * v < 0
-        if touches and v < -at.threshold:
-            v *= -at.number
-            z += at.step * v
-        elif touches and z > 0:
-            v = -z / at.step
-            z = 0.0
-        elif touches:
-            z = max(z + at.step * v, 0.2 * z)
-            v = max(v, 0.0)
-        else:
-            z += at.step * v
-        yield z, v
-
-
-# Rapier and Box2D 3 make a step of four substeps, and a contact with a fixed body is a spring of
-# 60 Hz with a damping ratio of 10 that pushes a body out with at most 3 m/s.
-_SUBSTEPS = 4
-_DAMPING_RATIO = 10.0
-_PUSH = 3.0
-_PREDICTION = 0.02
-_SLOP = 0.005
-
-
-def _fly(at: Fall, z: float, v: float) -> tuple[float, float]:
-    """Return height and velocity after a step of free flight."""
-    z += at.step * (v - at.added * (_SUBSTEPS + 1) / (2 * _SUBSTEPS))
-    return z, v - at.added
-
-
-def _soft_contact(
-    at: Fall, z: float, v: float, impulse: float, frequency: float
-) -> tuple[float, float, float, bool]:
-    """Return height, velocity and impulse after a step, and whether the contact pushed at all.
-
-    Impulses are per unit of mass. Each substep solves the contact twice: with the spring that takes
-    back a penetration, and then without.
-    """
-    h = at.step / _SUBSTEPS
-    omega = 2 * math.pi * frequency
-    softness = omega * h * (2 * _DAMPING_RATIO + omega * h)
-    share = softness / (1 + softness)
-    pushed = False
-    for _ in range(_SUBSTEPS):
-        v += impulse - at.gravity * h
-        bias = z / h if z > 0 else max(omega * z / (2 * _DAMPING_RATIO + omega * h), -_PUSH)
-        soft = max(impulse - v - bias, 0.0) * (1 if z > 0 else share)
-        v += soft - impulse
-        z += v * h
-        impulse = max(soft - v - max(z, 0.0) / h, 0.0)
-        v += impulse - soft
-        pushed |= max(soft, impulse) > 0
-    return z, v, impulse, pushed
-
-
-def _rebounding(at: Fall, before: float, v: float, impulse: float) -> tuple[float, float]:
-    """Return velocity and impulse after a step at whose end v is r times that before it."""
-    kick = max(impulse - v - at.number * before, 0.0)
-    return v + kick - impulse, kick
-
-
-def _box2d(at: Fall, z: float, v: float) -> Steps:
-    """The velocity before the step is reversed at its end."""
-    impulse = 0.0
-    # At low rates the spring is made softer.
-    frequency = 2 * min(30.0, _SUBSTEPS / at.step / 8)
-    while True:
-        if z < _PREDICTION:
-            before = v
-            z, v, impulse, pushed = _soft_contact(at, z, v, impulse, frequency)
-            if before < -at.threshold and pushed:
-                v, impulse = _rebounding(at, before, v, impulse)
-        else:
-            impulse = 0.0
-            z, v = _fly(at, z, v)
-            # A ball that is faster than half a radius per step is held where it is 5 mm deep.
-            z = max(z, -_SLOP) if abs(v) * at.step > at.radius / 2 else z
-        yield z, v
-
-
-def _rapier(at: Fall, z: float, v: float) -> Steps:
-    """As Box2D, but a contact is looked for again only after a way of 20 mm, or 50 mm in contact.
-
-    Before, the ball has to be near: it has a box in a tree, which is made anew with a margin of
-    40 mm when the ball leaves it. A contact that pushed in the step before does not bounce.
-    """
-    impulse = 0.0
-    in_contact = False
-    box = z
-    margin = 0.0
-    looked = math.inf
-    while True:
-        if abs(z - box) > margin:
-            box = z
-            margin = 0.04
-        if box - margin > 0.02:
-            in_contact = False
-            looked = math.inf
-        elif abs(z - looked) > (0.05 if in_contact else _PREDICTION):
-            looked = z
-            in_contact = z < _PREDICTION
-        if in_contact:
-            before = v
-            is_new = impulse == 0
-            z, v, impulse, pushed = _soft_contact(at, z, v, impulse, 60.0)
-            if before < 0 and pushed and at.number > 0 and (is_new or at.number >= 1):
-                v, impulse = _rebounding(at, before, v, impulse)
-        else:
-            impulse = 0.0
-            above = z
-            z, v = _fly(at, z, v)
-            z = max(z, -_SLOP) if above - z > at.radius / 2 else z
-        yield z, v
-
-
-# Box2D 2 and planck have a skin around polygons.
-_SKIN = 2 * _SLOP
-
-
-def _out(z: float) -> float:
-    """Return where a ball at the time of its impact is put, in iterations with a factor of 3/4."""
-    for _ in range(20):
-        apart = z - _SKIN
-        z += min(max(-0.75 * (apart + _SLOP), 0.0), 0.2)
-        if apart >= -1.5 * _SLOP:
-            break
-    return z
-
-
-def _box2d_2(at: Fall, z: float, v: float) -> Steps:
-    """The velocity with the step's gravity is reversed, in the step that begins in the skin.
-
-    A ball that would be deeper than 6 mm is stopped where it is 5 mm deep, and moves on from there.
-    """
-    touches = False
-    while True:
-        u = v - at.added
-        v = u if u > 0 else -at.number * u * (u < -at.threshold)
-        if touches and abs(z + _SLOP) <= _SLOP / 4 and v > 0:
-            z = _out(z) + at.step * v
-        elif touches:
-            z += at.step * v
-            for _ in range(3):
-                apart = z - _SKIN
-                z += min(max(-0.2 * (apart + _SLOP), 0.0), 0.2)
-                if apart >= -3 * _SLOP:
-                    break
-        elif z + at.step * u < -1.25 * _SLOP:
-            rest = 1 + (z + _SLOP) / (at.step * u)
-            z = _out(-_SLOP) + rest * at.step * v
-        else:
-            v = u
-            z += at.step * v
-        touches = z < _SKIN
-        yield z, v
-
-
-def _chipmunk(at: Fall, z: float, v: float) -> Steps:
-    """The body moves first; below the surface the velocity before the step's gravity counts."""
-    while True:
-        z += at.step * v
-        u = v - at.added
-        v = max(u, -at.number * v) if z < 0 and v < 0 else u
-        yield z, v
-
-
-def _dart(at: Fall, z: float, v: float) -> Steps:
-    """A body below the surface is reversed, if it then leaves faster than the threshold."""
-    while True:
-        v -= at.added
-        if z < 0 and v < 0:
-            back = min(-0.01 * z / at.step, 1e-3)
-            v = -at.number * v if -at.number * v > at.threshold else back
-        z += at.step * v
-        yield z, v
-
-
-def _xpbd(at: Fall, z: float, v: float) -> Steps:
-    """Two iterations that take back 0.8 of the penetration each; then v is reversed."""
-    while True:
-        v -= at.added
-        z += at.step * v
-        if z < 0 and v < 0:
-            z *= 0.04
-            v *= -at.number
-        yield z, v
-
-
-def _matter(at: Fall, z: float, v: float) -> Steps:
-    """The body is put back to the surface, and its velocity with gravity is reversed."""
-    while True:
-        v -= at.added
-        z += at.step * v
-        if z < 0 and v < 0:
-            z = 0.0
-            v *= -at.number
-        yield z, v
-
-
-def _cannon(at: Fall, z: float, v: float) -> Steps:
-    """A spring of 10⁷ N/m that is relaxed over three steps, with (1 + r) v beside it.
-
-    The body has 1 kg; heavier ones sink deeper.
-    """
-    a = 4 / (at.step * 13)
-    b = 12 / 13
-    softness = 4 / (at.step**2 * 1e7 * 13)
-    while True:
-        impulse = 0.0
-        if z < 0:
-            impulse = max((at.added - z * a - (1 + at.number) * v * b) / (1 + softness), 0.0)
-        v += impulse - at.added
-        z += at.step * v
-        yield z, v
 
 
 @dataclass(frozen=True)
@@ -345,7 +76,7 @@ class ByNumber:
 
 _JOLT = ByNumber(
     name="jolt",
-    rule=_jolt,
+    rule=step_rules.jolt,
     ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
     written="bodySettings.mRestitution = {number}f;  // of both bodies",
     parameter="mRestitution",
@@ -355,7 +86,7 @@ _JOLT = ByNumber(
 )
 _PHYSX = ByNumber(
     name="physx",
-    rule=partial(_physx, ahead=0.04),
+    rule=partial(step_rules.physx, ahead=0.04),
     ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
     written="material->setRestitution({number}f);  // of both shapes",
     threshold=2.0,
@@ -364,7 +95,7 @@ _PHYSX = ByNumber(
 )
 _BOX2D_2 = ByNumber(
     name="box2d-2",
-    rule=_box2d_2,
+    rule=step_rules.box2d_2,
     ran="Box2D 2.3.10 of Python",
     written="fixtureDef.restitution = {number}f;  // of one of both fixtures",
     pair=LARGER,
@@ -373,7 +104,7 @@ _BOX2D_2 = ByNumber(
 )
 _DART = ByNumber(
     name="dart",
-    rule=_dart,
+    rule=step_rules.dart,
     ran="DART 6.20 (dartpy)",
     written="dynamicsAspect->setRestitutionCoeff({number});  // of both bodies",
     pair=PRODUCT,
@@ -382,10 +113,10 @@ _DART = ByNumber(
 )
 _RAPIER = ByNumber(
     name="rapier",
-    rule=_rapier,
+    rule=step_rules.rapier,
     ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
     written="ColliderBuilder::ball(radius).restitution({number})  // and the ground",
-    sinks=(_SUBSTEPS + 1) / (2 * _SUBSTEPS),
+    sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
     remembers=2000,
     notes=("Before 0.35 Rapier had another rule",),
 )
@@ -406,7 +137,7 @@ BY_NUMBER = {
         replace(
             _PHYSX,
             name="unity",
-            rule=partial(_physx, ahead=0.02),
+            rule=partial(step_rules.physx, ahead=0.02),
             written="material.bounciness = {number}f;  // of both colliders, combined by Average",
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
@@ -417,7 +148,7 @@ BY_NUMBER = {
             _PHYSX,
             name="isaac-lab",
             written="RigidBodyMaterialCfg(restitution={number})  # of both bodies",
-            rule=partial(_physx, ahead=math.inf),
+            rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
             notes=(
@@ -429,7 +160,7 @@ BY_NUMBER = {
             _PHYSX,
             name="isaac-sim",
             written="PhysicsMaterial(restitution={number})  # of both bodies",
-            rule=partial(_physx, ahead=math.inf),
+            rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.2,
             set_by="physxScene:bounceThreshold",
             notes=(
@@ -440,7 +171,7 @@ BY_NUMBER = {
         _RAPIER,
         ByNumber(
             name="box2d",
-            rule=_box2d,
+            rule=step_rules.box2d,
             ran="Box2D 3 (box2d3-wasm 5.2.0)",
             written="shapeDef.material.restitution = {number}f;  // of one of both shapes",
             pair=LARGER,
@@ -460,7 +191,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="chipmunk",
-            rule=_chipmunk,
+            rule=step_rules.chipmunk,
             ran="Chipmunk 7 (pymunk 7.3.1)",
             written="shape.elasticity = {number}  # of both shapes",
             parameter="elasticity",
@@ -481,7 +212,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="matter-js",
-            rule=_matter,
+            rule=step_rules.matter,
             ran="matter-js 0.20.0",
             written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // one of both",
             pair=LARGER,
@@ -494,14 +225,14 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="newton-xpbd",
-            rule=_xpbd,
+            rule=step_rules.xpbd,
             ran="Newton 1.8.0",
             written="ShapeConfig(restitution={number})  # SolverXPBD(model, "
             "enable_restitution=True)",
         ),
         ByNumber(
             name="cannon-es",
-            rule=_cannon,
+            rule=step_rules.cannon,
             ran="cannon-es 0.20.0",
             written="new ContactMaterial(a, b, {{restitution: {number}}})",
             pair=PAIR,
@@ -605,8 +336,8 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     Without gravity it is the ratio of the speeds.
 
     >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
-    >>> restitutions(BY_NUMBER["jolt"], at, speed=1.4).round(2).mean()
-    np.float64(0.83)
+    >>> round(float(restitutions(BY_NUMBER["jolt"], at, speed=1.4).mean()), 2)
+    0.83
     """
     way = speed * at.step
     if not 1e-7 < way < 1e3:

@@ -400,7 +400,8 @@ def _recording(table: Table, intervals: bool) -> Recording:
     drop = table.head.get("drop height")
     if drop is not None and not table.of("drop height"):
         height = np.full(len(table.lines), in_si("drop height", drop, "m"))
-        table.columns.append(Column("drop height", "m", "drop height", [], height))
+        above = Column("drop height", "m", "drop height", [], height)
+        table = replace(table, columns=[*table.columns, above])
     kind, columns = _layout(table, intervals)
     is_missing = np.isnan([each.numbers for each in columns]).any(axis=0)
     if kind in ("drops", "speeds", "coefficients"):

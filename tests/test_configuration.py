@@ -414,11 +414,11 @@ def test_an_unknown_key_without_parameters_is_no_new_figure(value):
 
 def test_a_new_figure_has_a_title_and_may_have_any_parameters():
     new = {"title": "Figure 17: another", "n": -1, "frequency_ratio": {"min": 2, "max": 1}}
-    read_workflow(nested("continuation.fig17", new))
+    read_workflow(nested("continuation.further", new))
     line = refusal({"chaos": {"title": "A stage", "attractor": new}})
     assert line.startswith("configuration: chaos: there is no workflow/scripts/chaos.py")
-    line = refusal(nested("continuation.fig17", {"n": 2}))
-    assert line.startswith("configuration: unknown key continuation.fig17, allowed: fig")
+    line = refusal(nested("continuation.further", {"n": 2}))
+    assert line.startswith("configuration: unknown key continuation.further, allowed: fig")
     assert line.endswith(", or a new one with a title")
 
 

@@ -19,14 +19,17 @@ from bouncing_ball import datasets, drawing, figures, restitution
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
-SCHEMATICS = ("fig01", "fig04")
+SCHEMATICS = figures.SCHEMATICS
 DOMAINS = ("fig08", "fig09", "fig15")
 PHASES = ("phase", "release_phase")
 
 
 @cache
 def reference(name):
-    return datasets.read(REFERENCE / f"{name}.nc")
+    path = REFERENCE / f"{name}.nc"
+    if not path.exists():
+        pytest.skip(f"{name} is not in the reference yet: snakemake --cores 2 {name} accept")
+    return datasets.read(path)
 
 
 def data_of(name):
@@ -126,10 +129,10 @@ LABELS = {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
-def test_labels(name):
+@pytest.mark.parametrize("name, expected", LABELS.items())
+def test_labels(name, expected):
     found = words(of_reference(name))
-    assert set(LABELS[name]) <= set(found)
+    assert set(expected) <= set(found)
 
 
 @pytest.mark.parametrize("name", [name for name in NAMES if name not in SCHEMATICS])

@@ -24,9 +24,16 @@ include: "workflow/rules/targets.smk"
 
 
 rule all:
-    """Figures 1 to 16, the tables, the claims and the article"""
+    """Figures, tables, claims and the article, and a page of them: results/index.html"""
     default_target: True
     localrule: True
     input:
         [files(name) for name in KINDS],
         rules.article.output,
+        page=rules.article.output.index,
+    log:
+        "results/logs/all.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    shell:
+        "echo Look at {input.page} | tee {log}"

@@ -21,7 +21,7 @@ from bouncing_ball.drawing import style
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ["README.md", "CONTRIBUTING.md", "paper.md", "supplement.md", "figures/README.md"]
 PAGES += [f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))]
-TEMPLATES = [f"workflow/templates/{name}.md.j2" for name in ("paper", "supplement", "figures")]
+TEMPLATES = [f"workflow/templates/{path.name}" for path in ROOT.glob("workflow/templates/*.j2")]
 
 
 def text(page: str) -> str:

@@ -1,4 +1,4 @@
-"""The article, its supplement and the list of figures: templates filled in from datasets.
+"""The article and its supplement: templates filled in from datasets.
 
 A template has text and names of numbers, and no numbers; `filters` below are what it can do with a
 number. Numbers are rounded to the nearest, and a bound away from what it bounds (`to="up"` for an
@@ -10,6 +10,7 @@ from collections.abc import Iterable
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import jinja2
 import numpy as np
@@ -30,6 +31,7 @@ def environment(templates: Path) -> jinja2.Environment:
     found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
+        autoescape=jinja2.select_autoescape(["html.j2"], default=False),
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
@@ -38,12 +40,13 @@ def environment(templates: Path) -> jinja2.Environment:
     return found
 
 
-def filled_in(name: str, datasets: Datasets) -> str:
-    """The text of a template, "paper", "supplement" or "figures" (the list of all figures and
-    tables), Markdown. It knows the datasets of all figures, tables and claims by their names.
+def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> str:
+    """The text of a template, as "paper" or "supplement", in Markdown or another kind of text.
+
+    It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
     judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
-    template = environment(TEMPLATES).get_template(f"{name}.md.j2")
+    template = environment(TEMPLATES).get_template(f"{name}.{kind}.j2")
     return template.render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
@@ -64,6 +67,7 @@ def filled_in(name: str, datasets: Datasets) -> str:
         crossing=claims.crossing,
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
+        **more,
     )
 
 

@@ -9,6 +9,7 @@ from bouncing_ball import (
     datasets,
     drawing,
     figures,
+    pages,
     restitution,
     spring_damper,
     tables,
@@ -30,9 +31,10 @@ JUDGING: Code = (
 )
 WRITING: Code = (
     article.__file__,
+    pages.__file__,
     tables.__file__,
     *JUDGING,
-    *sorted(article.TEMPLATES.glob("*.md.j2")),
+    *sorted([*article.TEMPLATES.glob("*.md.j2"), article.TEMPLATES / "findings.yaml.j2"]),
 )
 
 
@@ -76,6 +78,6 @@ PRODUCTS = [
     table("claims.csv", tables.all_claims, tables.comma_separated, TABULATING),
     text("paper.md", ALL, partial(article.filled_in, "paper"), WRITING),
     text("supplement.md", ALL, partial(article.filled_in, "supplement"), WRITING),
-    text("figures/README.md", ALL, partial(article.filled_in, "figures"), WRITING),
+    text("figures/README.md", ALL, partial(pages.filled_in, "md"), WRITING),
 ]
 """All files that follow from datasets, and how."""

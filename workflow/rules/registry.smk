@@ -7,6 +7,7 @@
 
 import ast
 import os
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
@@ -130,6 +131,15 @@ def listed(name):
 def files(name):
     """All files of a figure, a table or a dataset."""
     return [f"results/figures/{name}.{kind}" for kind in KINDS[name]]
+
+
+def unknown_target(wildcards):
+    """End the run with a line on a name that is no target."""
+    near = " or ".join(
+        get_close_matches(wildcards.name, [*KINDS, *STAGES, "all", "article", "diff"])
+    )
+    meant = f"did you mean {near}? " if near else ""
+    end(f"{wildcards.name} is no target: {meant}snakemake --list names all of them")
 
 
 def requested(wildcards):

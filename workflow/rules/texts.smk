@@ -36,18 +36,27 @@ rule claims:
 
 
 rule article:
-    """The article, its supplement and the list of figures"""
+    """The article, its supplement, the list of figures and the page results/index.html"""
     input:
         data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims"]),
         templates=[
-            checkout(f"workflow/templates/{name}.md.j2")
-            for name in ("paper", "supplement", "figures")
+            checkout(f"workflow/templates/{name}.j2")
+            for name in (
+                "paper.md",
+                "supplement.md",
+                "findings.yaml",
+                "figures.md",
+                "figures.html",
+            )
         ],
         code=code("article"),
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",
         figures="results/figures/README.md",
+        index="results/index.html",
+    params:
+        entries=ENTRIES,
     log:
         "results/logs/article.log",
     conda:

@@ -225,6 +225,7 @@ const ENGINES = {
   physx: () => physx(2, 0.02),
   unity: () => physx(2, 0.01),
   "isaac-lab": () => physx(0.5, 1),
+  // PhysX wants a threshold above 0; every impact here is faster than this one.
   "isaac-sim": () => physx(0.2, 1),
   box2d,
   planck,

@@ -413,14 +413,12 @@ function sampledAdmissible(orbit, samples = 600) {
   return true;
 }
 
-// The two relative errors of accuracy.errors: the paper's (Eqs. 37 and 38), relative to the simple
-// model, and the deviation of the simple model, relative to the contact.
-const paperError = (exact, simple) => (exact - simple) / simple;
-const deviation = (exact, simple) => (simple - exact) / exact;
+// The paper's error of a simple model (Eqs. 37 and 38): negative where the simple model has too much.
+const relativeError = (exact, simple) => (exact - simple) / simple;
 
 // All that the page shows of one state: of a contact, or of r and ϖ.
 function answer({
-  r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release), errorOf = paperError,
+  r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release),
 }) {
   const own = ownRestitution(contact), signature = signatureOf(contact);
   const models = [contactModel(contact), restitutionModel(own), correctedModel(signature)];
@@ -430,7 +428,7 @@ function answer({
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
     : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
   const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(
-    name => [name, errorOf(value(name, 0), value(name, k))]));
+    name => [name, relativeError(value(name, 0), value(name, k))]));
   return {contact, own, models, orbits, limits, thresholds, signature, errors: errors(1), corrected: errors(2)};
 }
 

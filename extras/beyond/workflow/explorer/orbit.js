@@ -12,15 +12,9 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   return `one that starts beside it ${SAID[end.kind](end)}`;
 }
 
-// By which of the two definitions the errors beside it are, and the other one of the greatest height.
-function definitionOf({physical, tolerance}, exact, simple) {
-  const contact = "relative to the contact", paper = "relative to the simple model, as in Eqs. 37 and 38";
-  const other = (physical ? paperError : deviation)(exact.max_height, simple.max_height);
-  return `Errors here are ${physical ? contact : paper}`
-    + (Number.isFinite(other) ? `; ${physical ? paper : contact}, that of the restitution model is ${signed(other, tolerance)}.` : ".");
-}
+const DEFINITION = "Errors are those of Eqs. 37 and 38, relative to the simple model: negative where it has too much.";
 
-// Whether the restitution model is good enough, the verdict in words, and which errors it is by.
+// Whether the restitution model is good enough, the verdict in words, and what its errors are.
 function verdictOf(found, question) {
   const {n, physical, tolerance} = question;
   const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
@@ -34,19 +28,18 @@ function verdictOf(found, question) {
   const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
   const predicted = `for the greatest height of the ${n}-T orbit it predicts `
     + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
-  const definition = definitionOf(question, exact, simple);
   if (!exact.exists && !simple.exists)
     return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
       + `${shown(found.limits[0].saddle_node, 4)}.`];
   if (exact.exists && !exact.is_stable)
     return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
   if (!wrong && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`, definition];
+    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`, DEFINITION];
   return [false, `The restitution model is not good enough: `
     + `${wrong || `${predicted}, beyond ${percent(tolerance)}`}`
     + (same && Math.abs(found.corrected.max_height) <= tolerance
       ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height, tolerance)}.`
-      : "; nor is the corrected one: simulate the contact."), definition];
+      : "; nor is the corrected one: simulate the contact."), DEFINITION];
 }
 
 function drawBranch(found, {n, amplitude, physical: scales}) {
@@ -170,9 +163,8 @@ function fillTables(found, question) {
       ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
   );
-  $("error-definition").textContent = question.physical
-    ? "(q − q_SD)/q_SD of a model's value q, relative to the contact's q_SD"
-    : "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38";
+  $("error-definition").textContent
+    = "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38";
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
       [`${signed(value, question.tolerance)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,

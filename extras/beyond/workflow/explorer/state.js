@@ -126,9 +126,9 @@ function questionOf(state) {
   if (state.tab === "orbit")
     return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100};
   const one = caseOf(state);
-  // The orbit is that which is stable next to the saddle-node, and its errors are deviations.
+  // The orbit is that which is stable next to the saddle-node.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,
-    errorOf: deviation, tolerance: state.t / 100};
+    tolerance: state.t / 100};
 }
 
 function commandOf(state) {

@@ -37,13 +37,15 @@ if False:
 """
 FILES = {
     **{
-        name: {"nc", "png", "svg"} for name in ("ext_impact", "ext_instant", "ext_map", "ext_phase")
+        name: {"nc", "png", "svg"}
+        for name in ("ext_answers", "ext_impact", "ext_instant", "ext_map", "ext_phase")
     },
     **{name: {"nc", "png", "svg", "md", "csv"} for name in ("ext_orders", "ext_laws")},
-    "ext_event": {"nc"},
+    "ext_basin": {"nc"},
     "explorer": {"nc", "html"},
 }
 STAGES = {
+    "answers": ["ext_answers"],
     "impacts": ["ext_impact", "ext_instant"],
     "error_law": ["ext_orders"],
     "stiffness_map": ["ext_map"],
@@ -138,7 +140,7 @@ def used(complete, tmp_path):
 
 
 def test_a_whole_run_makes_every_file(complete):
-    texts = {"article.md", "appendix.md", "figures/README.md"}
+    texts = {"article.md", "appendix.md", "phase.md", "figures/README.md"}
     assert complete.made() == files(*FILES) | texts
 
 
@@ -156,7 +158,7 @@ def test_a_figure_needs_its_stage_only(complete):
             tables = {"table"} if "md" in FILES[names[0]] else set()
             assert complete.planned(names[0]) == {f"compute_{stage}", stage, names[0]} | tables
         assert complete.planned("explorer") == {"compute_explorer", "explorer"}
-        assert complete.planned("ext_event") == {"compute_events", "ext_event"}
+        assert complete.planned("ext_basin") == {"compute_basins", "ext_basin"}
     finally:
         (complete.path / "aside").rename(fresh)
 

@@ -17,7 +17,7 @@ def package(path):
 SETTINGS = {"impacts": ["release"], "error_law": ["release"]}
 READS = {}
 KINDS["explorer"] = ["nc", "html"]
-TEXTS = ["article", "appendix", "figures"]
+TEXTS = ["article", "appendix", "phase", "figures"]
 
 # The files of the page of the explorer.
 EXPLORER = sorted((PACKAGE / "workflow/explorer").iterdir())

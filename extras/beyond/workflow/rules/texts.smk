@@ -18,7 +18,7 @@ rule table:
 
 
 rule article:
-    """The article, its appendices and the list of figures"""
+    """The article, its appendices, a page on phases and the list of figures"""
     input:
         data=expand("results/figures/{name}.nc", name=DATASETS),
         templates=[package(f"workflow/templates/{name}.md.j2") for name in TEXTS],
@@ -26,6 +26,7 @@ rule article:
     output:
         article="results/article.md",
         appendix="results/appendix.md",
+        phase="results/phase.md",
         figures="results/figures/README.md",
     log:
         "results/logs/article.log",

@@ -1,16 +1,13 @@
 """The figures, each a function of its dataset, in the style of those of the replication."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from itertools import cycle
-from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
-from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
-from matplotlib.path import Path
 
 from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
@@ -18,12 +15,10 @@ from bouncing_ball.drawing import (
     DASHES,
     GUIDE,
     TABLE,
-    WHOLE_WIDTH,
     Look,
     along_ratio,
     label,
     legend_below,
-    name_at_right,
     panels,
     sample,
     style,
@@ -47,6 +42,90 @@ MODELS: Mapping[str, Look] = {
     "corrected": {"color": COLOURS[3], "linestyle": (0, (4, 1.5))},
 }
 """The lines of both models of impacts as instants."""
+
+
+# The three answers
+
+BRANCHES: Mapping[str, Look] = {
+    "restitution": {"color": COLOURS[0], "linewidth": 1.2},
+    "contact": {"color": COLOURS[1], "linewidth": 1.8},
+    "law": {"color": COLOURS[4], "linewidth": 3.6, "alpha": 0.6},
+}
+"""The branches of both models and that by the error law, which is drawn below them."""
+BRANCH_NAMES = {
+    "law": "error law",
+    "restitution": "restitution model",
+    "contact": "contact",
+}
+WAVES: Mapping[str, Look] = {
+    "sine": {"color": COLOURS[0], "linestyle": DASHES[0], "marker": "o"},
+    "third harmonic": {"color": COLOURS[2], "linestyle": DASHES[2], "marker": "D"},
+    "three harmonics": {"color": COLOURS[1], "linestyle": DASHES[1], "marker": "s"},
+    "skewed": {"color": COLOURS[3], "linestyle": DASHES[3], "marker": "^"},
+}
+"""Motions of the table."""
+
+
+def ext_answers(data: xr.Dataset) -> Figure:
+    """A branch of orbits in both models and by the error law; shifts of the period doubling."""
+    figure, (branch, shifts) = panels(3.3, columns=2, width_ratios=(1.2, 1))
+    for model, name in BRANCH_NAMES.items():
+        one = data.sel(branch=model)
+        look = BRANCHES[model]
+        branch.plot(
+            one.branch_amplitude.where(one.branch_stable), one.branch_phase, label=name, **look
+        )
+        if model != "law":
+            unstable = look | {"linestyle": (0, (2, 1.5)), "linewidth": 1.0}
+            branch.plot(
+                one.branch_amplitude.where(~one.branch_stable), one.branch_phase, **unstable
+            )
+        for kind, mark in (("saddle_node", "o"), ("period_doubling", "D")):
+            if model == "law":
+                continue
+            place = float(one[f"{kind}_amplitude"]), float(one[f"{kind}_phase"])
+            filled = "white" if kind == "saddle_node" else look["color"]
+            branch.plot(
+                *place, mark, color=look["color"], markerfacecolor=filled, markersize=5, zorder=5
+            )
+    ends = [
+        float(data.saddle_node_amplitude.sel(branch=each)) for each in ("contact", "restitution")
+    ]
+    branch.axvspan(*ends, facecolor="0.88", zorder=0)
+    high = 1.1 * float(data.period_doubling_phase.max())
+    beside: Look = {"textcoords": "offset points", "fontsize": 7}
+    window = "window:\nonly the contact\nhas orbits"
+    branch.annotate(window, (ends[0], high), (-4, -2), ha="right", va="top", **beside)
+    turned = data.sel(branch="contact")
+    place = float(turned.period_doubling_amplitude), float(turned.period_doubling_phase)
+    branch.annotate("period doubling", place, (-20, -14), **beside)
+    branch.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the touch $\varphi$")
+    branch.set(ylim=(-0.7 * high, high), xlim=(0.3 * ends[1], float(data.branch_amplitude.max())))
+    branch.set_title(title(data, "n", "restitution", "frequency_ratio"))
+    branch.legend(fontsize=7, loc="lower right")
+    for wave, look in WAVES.items():
+        one = data.sel(waveform=wave)
+        line = {key: value for key, value in look.items() if key != "marker"}
+        law = one.doubling_coefficient.where(abs(one.doubling_coefficient) < 1)
+        shifts.plot(data.doubling_restitution, law, linewidth=1.2, label=wave, **line)
+        shifts.plot(
+            data.table_restitution,
+            one.table_shift,
+            look["marker"],
+            color=look["color"],
+            markersize=4,
+        )
+    # The shift on the skewed table has a pole, where its doubling is no longer passed along Λ.
+    middle = data.table_shift
+    shifts.set_ylim(1.3 * float(middle.min()), 2.5 * float(middle.max()))
+    shifts.axhline(0, **GUIDE)
+    shifts.set(
+        xlabel="restitution coefficient $r$",
+        ylabel=r"relative shift of $\Lambda_{PD}$ times $\varpi$",
+    )
+    shifts.set_title("period doubling on four tables")
+    shifts.legend(fontsize=7)
+    return figure
 
 
 # One contact
@@ -183,18 +262,21 @@ def with_zero(x: np.ndarray, size: np.ndarray, zero: float) -> tuple[np.ndarray,
     return np.concatenate([x[:after], left, right, x[after:]]), np.concatenate(sizes)
 
 
+SHOWN = ("max_height", "saddle_node", "period_doubling")
+"""The quantities whose orders are drawn; the others have the same orders."""
+
+
 def ext_orders(data: xr.Dataset) -> Figure:
     """Errors of both models and what the error law leaves, along ϖ, with their orders in 1/ϖ.
 
     The last panel has those of the height at the saddle-node of the restitution model.
     """
-    figure, slots = panels(3.9, rows=2, columns=4, sharex=True, sharey=True)
-    first, second, third, beside, *others, at_node = slots.flat
-    panels_of = first, second, third, *others
+    figure, slots = panels(2.9, columns=4, sharex=True, sharey=True)
+    *panels_of, at_node = slots.flat
     ratio = data.frequency_ratio
     orbit = data.sel(place="orbit")
     zeros = {"restitution": data.error_zero, "corrected": data.corrected_error_zero}
-    for quantity, axes in zip(data["quantity"].values.tolist(), panels_of, strict=True):
+    for quantity, axes in zip(SHOWN, panels_of, strict=True):
         part = orbit.sel(quantity=quantity)
         orders = []
         for order, (model, look) in enumerate(MODELS.items(), 1):
@@ -203,7 +285,7 @@ def ext_orders(data: xr.Dataset) -> Figure:
             axes.plot(*with_zero(ratio.values, error, zero), label=f"{model} model", **look)
             draw_slope(axes, ratio, error, order)
             orders.append((part.order.sel(model=model), look))
-        axes.plot(ratio, part.law_left, label="left by the\nerror law", **LAW)
+        axes.plot(ratio, part.law_left, label="left by the error law", **LAW)
         note_orders(axes, [*orders, (part.law_order, LAW)])
         axes.set_title(TITLES[quantity])
     node = data.sel(place="saddle-node", quantity="max_height")
@@ -213,17 +295,19 @@ def ext_orders(data: xr.Dataset) -> Figure:
         draw_slope(at_node, ratio, left.values, slope)
     note_orders(at_node, [(node.node_order, rigid), (node.law_order, LAW)])
     at_node.set_title(r"height at $\Lambda=C$")
-    for axes in (*panels_of, at_node):
-        axes.set(yscale="log", ylabel="relative error")
+    for axes in slots.flat:
+        axes.set(yscale="log")
         along_ratio(axes, ratio)
         axes.set_xticks([1, 100, 10000])
-        # Errors are below 1 but next to a phase of 0; the orders have the room above.
+        # Errors are below 1; the orders have the room above.
         axes.set_ylim(1e-10, 1e4)
-    beside.set_axis_off()
+    slots.flat[0].set_ylabel("relative error")
     figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
-    lines, names = first.get_legend_handles_labels()
-    slopes = sample(**GUIDE)
-    beside.legend([*lines, slopes], [*names, "slopes of the\norders expected"], loc="center")
+    lines, names = slots.flat[0].get_legend_handles_labels()
+    entries = dict(zip(names, lines, strict=True)) | {
+        "slopes of the orders expected": sample(**GUIDE)
+    }
+    legend_below(figure, entries, columns=4)
     return figure
 
 
@@ -249,15 +333,14 @@ def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
 POSITIONS = (0, 0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1)
 """Positions of Λ in the stable range that are named; p = sin² of the places on the axis."""
 
-BELOW = (0, 0.001, 0.005, 0.02, 0.05, 0.1)
-"""Distances from the saddle-node that are named; the axis is even in their square roots."""
-
 LEVELS = (15, 20, 30, 40, 50, 60, 70, 80, 90)
-"""Contours of the ϖ from which on the height is right, where it leaves the tolerance downwards."""
+STIFFER = (200, 1000)
+"""Contours of the ϖ from which on the height is right, below that of the paper and above it."""
 
 EXACT: Look = {"color": "black", "linewidth": 0.8}
 BY_LAW: Look = {"color": COLOURS[4], "linewidth": 2.6}
-JUMP: Look = {"color": "black", "linewidth": 1.1, "linestyle": (0, (1, 1.5))}
+NOT_ENOUGH: Look = {"facecolor": "0.88", "hatch": "/////", "edgecolor": "0.6", "linewidth": 0}
+"""Where the ϖ of the paper is not enough."""
 ON_LINE: Look = {
     "ha": "center",
     "va": "center",
@@ -265,162 +348,78 @@ ON_LINE: Look = {
     "clip_on": True,
     "bbox": {"facecolor": "white", "edgecolor": "none", "pad": 0.5},
 }
-TOO_HIGH = {200.0: 0.2, 1000.0: 0.13}
-"""The r at which lines of too large heights are named, which are near to each other."""
-
-ROOM = 0.012
-"""The least place of a line with a name, half the height of the name."""
-
-NOT_ENOUGH: Mapping[str, Look] = {
-    "rule of thumb": {"facecolor": "0.86"},
-    "paper": {"facecolor": "0.86", "hatch": "/////", "edgecolor": "0.6"},
-}
-"""Where the ϖ of each judge is not enough."""
 
 
 def places(position: xr.DataArray) -> xr.DataArray:
-    """Places on the axis of positions, arcsin √p, negative below the saddle-node."""
-
-    def place(p: np.ndarray) -> np.ndarray:
-        return np.sign(p) * np.arcsin(np.sqrt(np.minimum(np.abs(p), 1)))
-
-    return xr.apply_ufunc(place, position)
+    """Places on the axis of positions, arcsin √p."""
+    return xr.apply_ufunc(np.arcsin, np.sqrt(position.clip(0, 1)))
 
 
 def ext_map(data: xr.Dataset) -> Figure:
-    """From which ϖ on a contact is stable, as high, and bounces where the restitution model does.
+    """From which ϖ on a contact is stable and as high, exactly and by the error law.
 
-    The rows are in the order of Λ: from the period doubling down to the saddle-node, for the
-    stability and for the height, and below the saddle-node. Narrow lines are exact, wide ones those
-    of the error law. The ϖ of the rule of thumb and of the paper are not enough in shaded places.
+    The stability is above, as lines of one ϖ each above which the contact has doubled; the height
+    is below, as contours.
     """
     columns = data.sizes["n"]
-    options: Look = {"sharex": True, "sharey": "row", "height_ratios": (1, 1.25, 0.8)}
-    figure, slots = panels(7.4, rows=3, columns=columns, squeeze=False, **options)
-    for column, n in zip(slots.T, data.n.values, strict=True):
+    options: Look = {"sharex": True, "sharey": True, "height_ratios": (1, 1.2)}
+    figure, slots = panels(5.6, rows=2, columns=columns, squeeze=False, **options)
+    paper = parameters(data)["paper"]
+    for (stable, high), n in zip(slots.T, data.n.values, strict=True):
         family = data.sel(n=n)
-        draw_stability(column[0], family)
-        draw_height(column[1], family)
-        draw_window(column[2], family)
-        column[0].set_title(label(n=n))
-        column[2].set_xlabel("restitution coefficient $r$")
-    given = parameters(data)
-    percent = f"{100 * given['tolerance']:g} %"
-    ranges = "position of $\\Lambda$ from saddle-node (0)\nto period doubling (1), arcsine scale"
+        draw_stability(stable, family, paper)
+        draw_height(high, family, paper)
+        stable.set_title(label(n=n))
+        high.set_xlabel("restitution coefficient $r$")
+    percent = f"{100 * parameters(data)['tolerance']:g} %"
     answers = "STABLE", f"AS HIGH WITHIN {percent}"
-    for axes, answer in zip(slots[:2, 0], answers, strict=True):
+    for axes, answer in zip(slots[:, 0], answers, strict=True):
         axes.set_yticks(places(xr.DataArray([*POSITIONS])), [f"{each:g}" for each in POSITIONS])
         axes.set_ylim(0, np.pi / 2)
-        axes.set_ylabel(f"{answer}\n{ranges}")
-    below = slots[2, 0]
-    below.set_yticks(np.sqrt(BELOW), [f"{each:g}" for each in BELOW])
-    below.set_ylim(np.sqrt(BELOW[-1]), 0)
-    below.set_ylabel("NO ORBIT EITHER\n$1-\\Lambda/\\Lambda_{SN}$,\nsquare-root scale")
-    rule, paper = NOT_ENOUGH.values()
+        axes.set_ylabel(f"{answer}\nposition of $\\Lambda$")
     entries = {
         r"$\varpi$ from which on, exactly": sample(**EXACT),
         "by the error law": sample(**BY_LAW),
-        "the error of the height changes its sign": sample(**JUMP),
-        r"$\varpi=1/(n\varepsilon)$ is not enough": Patch(linewidth=0, **rule),
-        rf"$\varpi={given['paper']:g}$ of the paper is not enough": Patch(linewidth=0, **paper),
+        rf"$\varpi={paper:g}$ of the paper is not enough": Patch(**NOT_ENOUGH),
     }
     legend_below(figure, entries, columns=3)
     return figure
 
 
-def draw_stability(axes: Axes, family: xr.Dataset) -> None:
+def draw_stability(axes: Axes, family: xr.Dataset, paper: float) -> None:
     """The positions of the period doublings of contacts, above which they are not stable."""
     width = family.period_doubling_amplitude - family.saddle_node_amplitude
     share = family.period_doubling_amplitude / width
     exact = places(1 + family.period_doubling_error * share)
     law = places(1 + family.period_doubling_law * share)
-    shade(axes, family, exact, np.pi / 2)
-    names = dict(zip(family.level.values, cycle((0.12, 0.28, 0.44)), strict=False))
-    draw_levels(axes, exact, law, names)
-
-
-def draw_window(axes: Axes, family: xr.Dataset) -> None:
-    """How far below that of the restitution model the saddle-nodes of contacts are."""
-    exact = np.sqrt(-family.saddle_node_error)
-    shade(axes, family, exact, 0.0)
-    law = np.sqrt(-family.saddle_node_law)
-    names = dict(zip(family.level.values, cycle((0.2, 0.5, 0.8)), strict=False))
-    draw_levels(axes, exact, law, names)
-
-
-def draw_height(axes: Axes, family: xr.Dataset) -> None:
-    """Contours of the ϖ that the height needs, over the position of Λ.
-
-    They end at the line across which the height leaves the tolerance upwards, where ϖ jumps. Below
-    it are the lines up to which the height is too large at one ϖ.
-    """
-    low = family.saddle_node_amplitude
-    width = family.period_doubling_amplitude - low
-
-    def place(lift: xr.DataArray) -> xr.DataArray:
-        position = (xr.apply_ufunc(np.hypot, low, lift) - low) / width
-        return places(xr.where(lift < 0, -position, position))
-
     r = family.restitution
-    jump = place(family.jump_lift)
-    too_high = place(family.too_high_lift)
-    shade(axes, family, too_high, 0.0)
-    edge = np.maximum(jump.fillna(0), 0)
-    above = np.column_stack([np.append(r, [r[-1], r[0]]), np.append(edge, [np.pi / 2, np.pi / 2])])
-    for name, look in {"lower_threshold_by_law": BY_LAW, "lower_threshold": EXACT}.items():
-        needed = finer(family[name].assign_coords(position=places(family.position)), "position")
-        colours: Look = {"colors": look["color"], "linewidths": look["linewidth"]}
-        lines = axes.contour(r, needed.position, needed, levels=LEVELS, **colours)
-        lines.set_clip_path(Path(above), axes.transData)
-    for text in axes.clabel(lines, fontsize=6.5, fmt="%g", manual=[*label_points(lines)]):
-        # The name hides the wide line as well.
-        text.set(bbox=ON_LINE["bbox"], zorder=4)
-    stiff = family.level >= family.jump_ratio
-    law = place(family.too_high_lift_by_law)
-    draw_levels(axes, too_high.where(stiff), law.where(stiff), TOO_HIGH)
-    axes.plot(r, jump, **JUMP)
-
-
-def finer(data: xr.DataArray, dimension: str) -> xr.DataArray:
-    """A smooth variable with four times as many samples along a dimension, by cubic splines, with
-    this dimension first.
-    """
-    count = data.sizes[dimension]
-    numbers = np.linspace(0, count - 1, 4 * count - 3)
-    at = np.interp(numbers, np.arange(count), data[dimension])
-    return data.interp({dimension: at}, method="cubic").transpose(dimension, ...)
-
-
-def label_points(lines: ContourSet) -> Iterator[np.ndarray]:
-    """A point on the longest line of each level, away from the edges and from its neighbours."""
-    longest = [max(of_level, key=len, default=np.empty(0)) for of_level in lines.allsegs]
-    for share, line in zip(cycle((0.4, 0.65)), filter(len, longest), strict=False):
-        height = line[:, 1]
-        wanted = height.min() + share * np.ptp(height)
-        yield line[np.argmin(np.abs(height - wanted))]
-
-
-def shade(axes: Axes, family: xr.Dataset, lines: xr.DataArray, edge: float) -> None:
-    """Shade what lies between an edge and the line of each ϖ that is judged."""
-    for judge, look in NOT_ENOUGH.items():
-        ratio = float(family.judged_ratio.sel(judge=judge))
-        line = lines.sel(level=ratio, method="nearest")
-        axes.fill_between(family.restitution, line, edge, linewidth=0, zorder=0, **look)
-
-
-def draw_levels(
-    axes: Axes, exact: xr.DataArray, law: xr.DataArray, names: Mapping[float, float]
-) -> None:
-    """Lines of one ϖ each over r, exactly and by the law; names are at places r on the lines."""
-    for level in exact.level.values:
+    axes.fill_between(r, exact.sel(level=paper), np.pi / 2, zorder=0, **NOT_ENOUGH)
+    for level, at in zip(family.level.values, cycle((0.12, 0.28, 0.44)), strict=False):
+        axes.plot(r, law.sel(level=level), **BY_LAW)
         line = exact.sel(level=level)
-        axes.plot(exact.restitution, law.sel(level=level), **BY_LAW)
-        axes.plot(exact.restitution, line, **EXACT)
-        if level in names:
-            height = float(line.sel(restitution=names[level], method="nearest"))
-            if height > ROOM:
-                text = f"{level:.4g}" if level >= 100 else f"{level:.3g}"
-                axes.text(names[level], height, text, **ON_LINE)
+        axes.plot(r, line, **EXACT)
+        axes.text(at, float(line.sel(restitution=at, method="nearest")), f"{level:g}", **ON_LINE)
+
+
+def draw_height(axes: Axes, family: xr.Dataset, paper: float) -> None:
+    """Contours of the ϖ that the height needs. Next to the saddle-node the height leaves the
+    tolerance upwards first; the ϖ jumps to a larger one there, where contours end.
+    """
+    r = family.restitution
+    place = places(family.position)
+    exact = family.error_threshold.transpose("position", "restitution")
+    law = family.threshold_by_law.transpose("position", "restitution")
+    axes.contourf(r, place, exact, levels=[paper, np.inf], colors="none", hatches=["/////"])
+    for needed, look in ((law, BY_LAW), (exact, EXACT)):
+        drawn: Look = {"colors": look["color"], "linewidths": look["linewidth"]}
+        jumps = needed.shift(position=-1) < needed / 2
+        before = jumps[::-1].cumsum("position")[::-1] > 0
+        lower = axes.contour(r, place, needed.where(~before), levels=LEVELS, **drawn)
+        upper = axes.contour(r, place, needed.where(before), levels=STIFFER, **drawn)
+    for lines, levels in ((lower, (20, 30, 40, 50, 60, 80)), (upper, STIFFER)):
+        for text in axes.clabel(lines, fontsize=6.5, fmt="%g", levels=levels):
+            # The name hides the wide line as well.
+            text.set(bbox=ON_LINE["bbox"], zorder=4)
 
 
 # Other contact laws
@@ -434,72 +433,24 @@ LAWS: Mapping[str, Look] = {
 }
 
 
-SHORT_TITLES = {
-    "max_height": "height",
-    "bounce_velocity": "velocity",
-    "phase": "phase",
-    "saddle_node": "saddle-node",
-}
-"""The quantities whose errors on other contacts are near to those on the linear one."""
-
-QUANTITIES: Mapping[str, Look] = {
-    "max_height": {"marker": "o"},
-    "bounce_velocity": {"marker": "s"},
-    "phase": {"marker": "^"},
-    "saddle_node": {"marker": "x"},
-}
-"""Marks, because colours tell contacts apart."""
-THIN: Look = {"linewidth": 1.1}
-
-
 def ext_laws(data: xr.Dataset) -> Figure:
-    """Errors of both models on contacts of five laws, over D + κ as a share of the cycle.
-
-    Above they are divided by those on the linear contact. Below are the errors themselves, of the
-    period doubling and of the apparent restitution, which passes through zero, on all contacts,
-    and of the other quantities on the linear one.
-    """
-    figure = Figure(figsize=(WHOLE_WIDTH, 6.0))
-    rows: list[Any] = [
-        [f"{model} {name}" for name in SHORT_TITLES for _ in range(3)] for model in MODELS
-    ]
-    bottom = ("period_doubling", "apparent_restitution", "linear")
-    slots = figure.subplot_mosaic([*rows, [name for name in bottom for _ in range(4)]])
+    """Errors of both models on contacts of five laws, over D + κ as a share of the cycle."""
+    shown = ("max_height", "period_doubling")
+    figure, slots = panels(3.2, columns=2, sharex=True, sharey=True)
     given = parameters(data)
     share = 1 / (2 * given["n"] * data.centroid_ratio)
-    quotients = data.relative_error / data.relative_error.sel(law="linear")
-    for model in MODELS:
-        first = slots[f"{model} max_height"]
-        for quantity, words in SHORT_TITLES.items():
-            axes = slots[f"{model} {quantity}"]
-            for law, look in LAWS.items():
-                line = quotients.sel(model=model, law=law, quantity=quantity)
-                axes.plot(share, line, **THIN | look)
-            if axes is not first:
-                axes.sharey(first)
-                axes.tick_params(labelleft=False)
-            axes.set_title(words if model == "restitution" else "")
-        first.set_ylabel(f"{model} model:\nerror / that on the\nlinear contact")
-    for name in bottom[:2]:
-        draw_on_all(slots[name], data.sel(quantity=name), share)
-    draw_linear(slots["linear"], data, share)
-    for axes in slots.values():
-        axes.set(xscale="log", xlim=(share.min(), share.max()))
-    for name in bottom:
-        slots[name].set_xlabel(r"share $(D+\kappa)/(2\pi n)$")
-        slots[name].set_ylim(1e-7, 1)
-        slots[name].tick_params(labelleft=name == bottom[0])
-    slots[bottom[0]].set_ylabel("relative error")
+    for axes, quantity in zip(slots, shown, strict=True):
+        draw_on_all(axes, data.sel(quantity=quantity), share)
+        axes.set(xscale="log", xlim=(share.min(), share.max()), ylim=(1e-7, 1))
+        axes.set_xlabel(r"share $(D+\kappa)/(2\pi n)$")
+        axes.tick_params(labelleft=axes is slots[0])
+    beside: Look = {"fontsize": 7, "transform": slots[0].transAxes}
+    slots[0].text(0.05, 0.78, "restitution model, constant $r$", **beside)
+    slots[0].text(0.5, 0.2, "corrected model", **beside)
+    slots[0].set_ylabel("relative error")
     figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")
-    # The places of names depend on the layout.
-    figure.draw_without_rendering()
-    for model in MODELS:
-        last = quotients.sel(model=model, quantity="saddle_node").isel(centroid_ratio=0)
-        names = [
-            (LAW_NAMES[law], float(last.sel(law=law)), str(look["color"]))
-            for law, look in LAWS.items()
-        ]
-        name_at_right(slots[f"{model} saddle_node"], names)
+    entries = {LAW_NAMES[law]: sample(**look) for law, look in LAWS.items()}
+    legend_below(figure, entries, columns=3)
     return figure
 
 
@@ -511,34 +462,11 @@ def draw_on_all(axes: Axes, part: xr.Dataset, share: xr.DataArray) -> None:
         known = one.relative_error.notnull().values
         ratio = part.centroid_ratio.values[known]
         ratio, error = with_zero(ratio, one.relative_error.values[known], float(one.law_error_zero))
-        axes.plot(per_cycle / ratio, error, **THIN | LAWS[str(one.law.values)])
+        axes.plot(per_cycle / ratio, error, linewidth=1.1, **LAWS[str(one.law.values)])
     axes.set(yscale="log", title=TITLES[str(part["quantity"].values)])
 
 
-def draw_linear(axes: Axes, data: xr.Dataset, share: xr.DataArray) -> None:
-    """Errors on the linear contact, with slopes 1 and 2 above."""
-    for quantity, look in QUANTITIES.items():
-        for model in MODELS:
-            error = data.relative_error.sel(model=model, law="linear", quantity=quantity)
-            name = SHORT_TITLES[quantity] if model == "restitution" else None
-            apart: Look = {"markersize": 3.5, "markevery": 0.1}
-            axes.plot(share, error, label=name, **THIN | LAWS["linear"] | apart | look)
-    for slope in (1, 2):
-        axes.plot(share, 6 * share**slope, **GUIDE)
-    axes.set(yscale="log", title="linear contact")
-    axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    beside: Look = {"fontsize": 7, "transform": axes.transAxes}
-    axes.text(0.03, 0.93, "restitution model", **beside)
-    axes.text(0.5, 0.12, "corrected model", **beside)
-
-
 # What a phase tells
-
-WAVES: Mapping[str, Look] = {
-    "sine": {"color": COLOURS[0], "marker": "o"},
-    "three harmonics": {"color": COLOURS[1], "marker": "s"},
-    "skewed": {"color": COLOURS[3], "marker": "^"},
-}
 
 
 def ext_phase(data: xr.Dataset) -> Figure:
@@ -567,9 +495,10 @@ def ext_phase(data: xr.Dataset) -> Figure:
     )
     plane.set_title(label(n=1, restitution=given["shown_restitution"]))
     last = data.isel(shown_share=-1)
-    for waveform, look in WAVES.items():
+    for waveform in data.waveform.values:
         one = data.sel(waveform=waveform)
-        mark: Look = {"markersize": 3.5, "linestyle": "none", **look}
+        look = WAVES[waveform]
+        mark: Look = {"markersize": 3.5, **look, "linestyle": "none"}
         level.plot(one.steepness, one.touch_slope, fillstyle="none", **mark)
         level.plot(one.steepness, one.turned_slope, label=waveform, **mark)
     level.axhline(1, color=COLOURS[0])
@@ -589,6 +518,7 @@ def ext_phase(data: xr.Dataset) -> Figure:
 
 
 FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
+    "ext_answers": ext_answers,
     "ext_impact": ext_impact,
     "ext_instant": ext_instant,
     "ext_orders": ext_orders,

@@ -16,7 +16,7 @@ TABULATING: Code = (tables.__file__, replicated_tables.__file__)
 WRITING: Code = (article.__file__, *sorted(article.TEMPLATES.glob("*.md.j2")))
 EXPLORING: Code = (explorer.__file__, *explorer.FILES)
 
-DATASETS = (*figures.FIGURES, "ext_event", "explorer")
+DATASETS = (*figures.FIGURES, "ext_basin", "explorer")
 """All datasets."""
 
 
@@ -42,6 +42,7 @@ PRODUCTS = [
         EXPLORING,
     ),
     text("article.md", DATASETS, partial(article.filled_in, "article"), WRITING),
+    text("phase.md", DATASETS, partial(article.filled_in, "phase"), WRITING),
     text("appendix.md", DATASETS, partial(article.filled_in, "appendix"), WRITING),
     text("figures/README.md", DATASETS, partial(article.filled_in, "figures"), WRITING),
 ]

@@ -60,6 +60,7 @@ PARTS = {
         "extras/beyond/README",
         "extras/beyond/article",
         "extras/beyond/appendix",
+        "extras/beyond/phase",
         "extras/beyond/figures/*",
         "extras/beyond/docs/first-hour",
         "extras/beyond/docs/orbits",

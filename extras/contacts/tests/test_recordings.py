@@ -117,6 +117,10 @@ def test_names_of_another_kind_are_asked_for(tmp_path):
     columns["rebound (m)"] = [0.64, 1.28, 0.49, 0.98]
     with pytest.raises(Refused, match="column 'surface' has grass, wood: name it 'ball' for one"):
         fit(columns)
+    path = tmp_path / "rows.csv"
+    path.write_text(BALLS["in rows"].replace("ball,", "type,"))
+    with pytest.raises(Refused, match="column 'type' has golf, tennis: name it 'ball' for one"):
+        fit(path)
 
 
 TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"

@@ -487,7 +487,7 @@ def read_all(
     table = table_of(source, leave_out)
     for each in table.columns:
         texts = set(filter(None, each.cells))
-        if not each.role and np.isnan(each.numbers).all() and 1 < len(texts) <= len(each.cells) / 2:
+        if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
                 f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
                 "'ball' for one result each, or leave it out for one of all"

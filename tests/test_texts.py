@@ -61,8 +61,8 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"is *not reproduced*: {article.fixed(dataset('fig16').error_threshold, 2)}, printed 6.",
         f"Of the {len(ends)} ends of stability ranges in Table 1, {count['reproduced']} are "
         f"*reproduced*, {count['near']} are *near* and {count['not reproduced']} are *not "
-        f"reproduced*, off by up to {article.fixed(units, 2, 'up')} units of the last digit or "
-        f"{article.percent(share, 2, 'up')}.",
+        f"reproduced*, off by up to {article.fixed(units, 2, 'up')} units of the last digit, and "
+        f"by up to {article.percent(share, 2, 'up')}.",
         f"with n = {article.listed(found.n.values)} and r from {found.restitution.min():g} to "
         f"{found.restitution.max():g}. It does not do so beside the saddle-node, for "
         f"{article.failing(found, 'max_height')}, where up to ϖ = "

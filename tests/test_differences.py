@@ -75,6 +75,13 @@ def test_repeated_or_only_new_labels_do_not_agree():
     assert f"case is {NEW}, the reference has {CASES[1]} at" in " ".join(another)
 
 
+def test_transposed_values_are_different():
+    words = "dimensions of apparent_restitution is {'frequency_ratio': 4, 'case': 3}, in the refer"
+    assert texts(curves().transpose(), curves())[0].startswith(words)
+    square = curves(points=3)
+    assert any("exceeded" in each for each in texts(square.transpose(), square))
+
+
 def test_a_rounded_coordinate_is_no_new_one():
     rounded = curves()
     rounded["frequency_ratio"] = rounded.frequency_ratio * (1 + 1e-15)

@@ -153,7 +153,7 @@ def variables_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     for name in map(str, old.variables):
         if name in new.variables:
             found += unequal(description(name, new), description(name, old))
-            if new[name].sizes == old[name].sizes and same_type(new[name], old[name]):
+            if same_form(new[name], old[name]):
                 found += value_differences(name, new, old)
         else:
             twins = [other for other in added if new[other].variable.equals(old[name].variable)]
@@ -162,9 +162,10 @@ def variables_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     return found + [Finding("content", f"{name} is not in the reference") for name in added]
 
 
-def same_type(first: xr.DataArray, second: xr.DataArray) -> bool:
-    """Whether two variables are of one type; texts may have other lengths."""
-    return first.dtype == second.dtype or {first.dtype.kind, second.dtype.kind} <= {*"UO"}
+def same_form(first: xr.DataArray, second: xr.DataArray) -> bool:
+    """Whether two variables have one shape and type; texts may have other lengths."""
+    texts = {first.dtype.kind, second.dtype.kind} <= {*"UO"}
+    return first.shape == second.shape and (texts or first.dtype == second.dtype)
 
 
 def description(name: str, data: xr.Dataset) -> dict[str, str]:

@@ -259,7 +259,7 @@ class Comparison:
         new, old = self.new.data[name], self.old.data[name]
         reference = [f"figures/{name}.nc"]
         parameters = changes(record(old, "parameters"), record(new, "parameters"))
-        others = [f"changed parameter: {'; '.join(parameters)}"] if parameters else []
+        sure = [f"changed parameter: {'; '.join(parameters)}"] if parameters else []
         libraries = [
             each
             for each in changes(record(old, "versions"), record(new, "versions"))
@@ -273,9 +273,8 @@ class Comparison:
         ]
         if not theirs:
             changed = self.since(mine, [name], reference)
-        if libraries:
-            others.append(f"other versions: {', '.join(libraries)}")
-        return self.cause(changed, reference, others)
+        perhaps = [f"other versions: {', '.join(libraries)}"] if libraries else []
+        return self.cause(changed, reference, sure, perhaps)
 
     def since(
         self, code: Collection[str | Path], needs: Collection[str], reference: Collection[str]
@@ -294,24 +293,25 @@ class Comparison:
         self,
         changed: Collection[str] | None,
         reference: Collection[str],
-        others: Collection[str] = (),
+        sure: Collection[str] = (),
+        perhaps: Collection[str] = (),
     ) -> str:
-        """The cause in words: changed files, among them those of the reference that were edited,
-        and what else has changed.
+        """The cause in words: what surely changes the result, changed files, among them those of
+        the reference that were edited, and what perhaps changes it.
         """
         own = [self.old.folder / file for file in reference]
         files = {*(changed or ()), *self.history.uncommitted(own)}
-        causes = [*others]
+        causes = [*sure]
         if files:
-            causes.insert(0, f"changed: {', '.join(self.history.told(files))}")
+            causes.append(f"changed: {', '.join(self.history.told(files))}")
         elif changed is None:
             unknown = ": git does not know when the reference was made"
             without = unknown if self.history.head else " without git"
             causes.append(f"changes of the code are unknown{without}")
-        elif not causes:
+        elif not sure and not perhaps:
             made = self.history.told(self.history.names(own))[:1]
             causes.append(" since ".join(["no file that it is made from has changed", *made]))
-        return "; ".join(causes)
+        return "; ".join([*causes, *perhaps])
 
     # What else a reader should know
 

@@ -266,7 +266,9 @@ def record(data: xr.Dataset, key: str) -> dict:
 
     Raises ValueError if there is no such record, or if it has a key twice.
     """
-    return dict(json.loads(data.attrs.get(key, ""), object_pairs_hook=once))
+    if key not in data.attrs:
+        raise ValueError(f"it does not record its {key}")
+    return dict(json.loads(data.attrs[key], object_pairs_hook=once))
 
 
 def once(pairs: list[tuple[str, Any]]) -> dict:

@@ -25,7 +25,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup test test-cluster test-processors lint diff replication accept report release newest lowest lock clean ci everything test-everything
+.PHONY: all setup test test-cluster test-processors lint diff replication choices accept report release newest lowest lock clean ci everything test-everything
 
 all: setup
 	$(SNAKEMAKE)
@@ -61,6 +61,9 @@ diff: setup
 	$(SNAKEMAKE) diff
 
 replication: clean diff
+
+choices: setup
+	PYTHONPATH=src:workflow/scripts .venv/bin/python workflow/studies/choices.py
 
 accept: setup
 	$(SNAKEMAKE) accept

@@ -111,6 +111,22 @@ def test_the_readings_have_their_distances_and_counts():
     ]
 
 
+def test_the_choices_are_listed_with_the_verdicts_that_they_change():
+    text = (
+        "choice,instead,changes\n"
+        "axis,from 1,\n"
+        "axis,from 2,dip: reproduced → contradicted\n"
+        'exponent,3,"one: a → b; two: c → d"\n'
+        "ratios,5,\n"
+    )
+    assert tables.choices(text) == [
+        ["choice", "instead", "verdicts that depend on it"],
+        ["axis", "from 1; from 2", "from 2: dip: reproduced → contradicted"],
+        ["exponent", "3", "3: one: a → b; two: c → d"],
+        ["ratios", "5", "none"],
+    ]
+
+
 def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():
     comparison = against_print(1.0383, "1.032")
     assert tables.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"

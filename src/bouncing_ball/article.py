@@ -21,6 +21,8 @@ from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
+CHOICES = Path(__file__).parents[2] / "docs" / "choices.csv"
+"""The verdicts that depend on what cannot be read, from workflow/studies/choices.py."""
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
@@ -65,6 +67,7 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=claims.crossing,
+        choices=tables.markdown(tables.choices(CHOICES.read_text("utf-8"))),
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
         **more,

@@ -34,6 +34,7 @@ WRITING: Code = (
     pages.__file__,
     tables.__file__,
     *JUDGING,
+    article.CHOICES,
     *sorted([*article.TEMPLATES.glob("*.md.j2"), article.TEMPLATES / "findings.yaml.j2"]),
 )
 

@@ -132,6 +132,20 @@ TABLES = {"table1": table1, "thresholds": thresholds, "readings": readings}
 """The tables by name."""
 
 
+def choices(text: str) -> list[list[str]]:
+    """What is chosen, what was tried instead, and the verdicts that change, from the CSV of all
+    other choices.
+    """
+    rows = list(csv.DictReader(io.StringIO(text)))
+    found = [["choice", "instead", "verdicts that depend on it"]]
+    for choice in dict.fromkeys(row["choice"] for row in rows):
+        tried = [row for row in rows if row["choice"] == choice]
+        changes = [f"{row['instead']}: {row['changes']}" for row in tried if row["changes"]]
+        instead = "; ".join(row["instead"] for row in tried)
+        found.append([choice, instead, "<br>".join(changes) or "none"])
+    return found
+
+
 # Claims
 
 

@@ -1,0 +1,161 @@
+"""Study: which verdicts depend on what cannot be read in the paper.
+
+Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12, and the exponent
+of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
+with the other datasets of the reference. Datasets of other choices have fewer points than those of
+the figures. The study takes half a minute, so that it is no stage of the workflow: `make choices`
+writes its result, docs/choices.csv, which the supplement shows, and a test does it again.
+"""
+
+import csv
+import json
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import apparent_restitution
+import continuation
+import error_thresholds
+import numpy as np
+import permanent_contact
+import restitution_model
+import time_histories
+import xarray as xr
+
+from bouncing_ball import claims
+from bouncing_ball.datasets import Datasets, parameters, printed_table, read, whole
+from bouncing_ball.verdicts import answer
+
+ROOT = Path(__file__).parents[2]
+PRINTED = ROOT / "config" / "table1_printed.csv"
+RESULT = ROOT / "docs" / "choices.csv"
+
+ALONG_RATIO = {
+    "fig05": apparent_restitution.cases,
+    "fig06": apparent_restitution.cases,
+    "fig10": apparent_restitution.fig10,
+    "fig13": apparent_restitution.fig13,
+    "fig14": error_thresholds.fig14,
+}
+PERMANENT_CONTACT = {"fig11": permanent_contact.fig11, "fig16": permanent_contact.fig16}
+ALONG_AMPLITUDE = {"fig03": [1.5, 4], "fig08": [1.2, 3], "fig09": [1.2, 3], "fig15": [1.8, 3]}
+"""Other ends of the axes of Λ."""
+EXPONENTS = (2, 3, 6)
+"""Other exponents of the largest frequency ratio."""
+RATIOS_OF_FIG_12 = ([1.0, 2.0, 10.0, 100.0], [2.0, 10.0, 100.0, 1e3], [5.0, 10.0, 100.0, 1e4])
+PER_DECADE = 20
+"""Points of an axis of ϖ, of which 1, 10 and 100 are some."""
+POINTS = 201
+"""Points of a branch."""
+
+
+class Choice(NamedTuple):
+    """Another choice: what is chosen, what it is instead, and the datasets and the printed table
+    that it changes.
+    """
+
+    item: str
+    instead: str
+    datasets: Datasets
+    printed: xr.DataArray | None = None
+
+
+def verdicts(datasets: Datasets, printed: xr.DataArray, names: set[str]) -> list[tuple[str, str]]:
+    """Each claim that some named datasets decide, with its verdict, whatever their parameters."""
+    every = [*claims.CLAIMS, *claims.table1_ends(printed)]
+    decided = [claim for claim in every if names & claim.datasets.keys()]
+    asked = [replace(claim, datasets={name: {} for name in claim.datasets}) for claim in decided]
+    return [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
+
+
+def axis_of(name: str) -> str:
+    """What is chosen of a figure, in words."""
+    return f"axis of Fig. {int(name.removeprefix('fig'))}"
+
+
+def recomputed(data: xr.Dataset, compute: Callable, changes: Mapping, *settings: str) -> xr.Dataset:
+    """A dataset computed with other parameters, which it has in its attributes."""
+    given = {**parameters(data), **changes}
+    found = compute(given, *(given[name] for name in settings))
+    return found.assign_attrs(parameters=json.dumps(given))
+
+
+def other_axes(
+    data: xr.Dataset, compute: Callable, left: list[float], right: list[float]
+) -> Iterator[tuple[str, xr.Dataset]]:
+    """A figure along ϖ with other left or right ends of its axis, after the axis in words.
+
+    Where a curve ends within the axis because its orbits cease, the axis ends there.
+    """
+    now = parameters(data)["frequency_ratio"]
+    first, last = np.round(PER_DECADE * np.log10([min(left), max(right)]))
+    ends = {"min": 10 ** (first / PER_DECADE), "max": 10 ** (last / PER_DECADE)}
+    axis = {"frequency_ratio": ends | {"samples": int(last - first) + 1}}
+    wide = recomputed(data, compute, axis, "release")
+    wide = wide.assign_coords(frequency_ratio=wide.frequency_ratio.round(12))
+    limits = [(end, now["max"]) for end in left] + [(now["min"], end) for end in right]
+    for low, high in limits:
+        part = wide.sel(frequency_ratio=slice(low * (1 - 1e-9), high * (1 + 1e-9)))
+        yield f"ϖ from {low:g} to {high:g}", part.dropna("frequency_ratio")
+
+
+def choices(data: Datasets, printed: xr.DataArray) -> Iterator[Choice]:
+    """All other choices."""
+    for name, compute in ALONG_RATIO.items():
+        for axis, other in other_axes(data[name], compute, [0.5, 2, 5], [100, 200, 1e4]):
+            yield Choice(axis_of(name), axis, {name: other})
+    for name, compute in PERMANENT_CONTACT.items():
+        for axis, other in other_axes(data[name], compute, [0.1, 1, 2], [10, 20, 1e3]):
+            yield Choice(axis_of(name), axis, {name: other})
+    branches = {name: (continuation.branches, "release", "largest_step") for name in data}
+    branches["fig15"] = (continuation.fig15, "release", "largest_step")
+    branches["fig03"] = (restitution_model.fig03,)
+    for name, ends in ALONG_AMPLITUDE.items():
+        compute, *settings = branches[name]
+        for end in ends:
+            changes = {"amplitude_max": end, "points": POINTS}
+            other = recomputed(data[name], compute, changes, *settings)
+            yield Choice(axis_of(name), f"Λ up to {end:g}", {name: other})
+    for ratios in RATIOS_OF_FIG_12:
+        changes = {"frequency_ratio": ratios}
+        other = recomputed(data["fig12"], time_histories.fig12, changes, "release")
+        instead = ", ".join(f"{ratio:g}" for ratio in ratios)
+        yield Choice("ratios of Fig. 12", f"ϖ = {instead}", {"fig12": other})
+    for exponent in EXPONENTS:
+        ratios = [10.0**exponent, *printed.frequency_ratio.values[1:].tolist()]
+        other_table = printed.assign_coords(frequency_ratio=ratios)
+        changes = {"frequency_ratio": ratios, "points": POINTS}
+        others = {
+            name: recomputed(data[name], *branches[name][:1], changes, *branches[name][1:])
+            for name in ("fig08", "fig09")
+        }
+        given = {**parameters(data["table1"]), "frequency_ratio": ratios}
+        ends = continuation.table1(given, given["release"], other_table.astype(float))
+        others["table1"] = ends.assign_attrs(parameters=json.dumps(given))
+        yield Choice("exponent of the largest ϖ", str(exponent), others, other_table)
+
+
+def changed_verdicts(data: Datasets, printed: xr.DataArray) -> list[dict[str, str]]:
+    """Each other choice with the verdicts that it changes, as texts."""
+    rows = []
+    for item, instead, datasets, table in choices(data, printed):
+        names = {*datasets}
+        here = verdicts(data, printed, names)
+        there = verdicts({**data, **datasets}, printed if table is None else table, names)
+        changes = [
+            f"{name}: {before} → {after}"
+            for (name, before), (_, after) in zip(here, there, strict=True)
+            if before != after
+        ]
+        rows.append({"choice": item, "instead": instead, "changes": "; ".join(changes)})
+    return rows
+
+
+if __name__ == "__main__":
+    reference = {path.stem: read(path) for path in (ROOT / "figures").glob("*.nc")}
+    found = changed_verdicts(reference, printed_table(PRINTED))
+    with whole(RESULT) as unfinished, open(unfinished, "w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, found[0], lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(found)

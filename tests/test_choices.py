@@ -51,3 +51,10 @@ def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it(study, referenc
     assert [name for name, _ in judged] == [
         claim.name for claim in CLAIMS if "fig12" in claim.datasets
     ]
+
+
+def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):
+    rows = list(csv.DictReader(study.RESULT.read_text("utf-8").splitlines()))
+    assert not any("dip at 1.2" in row["changes"] for row in rows)
+    grazing = [row["choice"] for row in rows if "one impact per period" in row["changes"]]
+    assert grazing == ["axis of Fig. 3", "axis of Fig. 8"]

@@ -68,6 +68,8 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers |= {article.percent(move, 1).removesuffix(" %") for move in moves.values}
     parameters = "".join(each.attrs["parameters"] for each in data.values())
     numbers |= set(re.findall(r"\d+\.\d+", parameters))
+    # The study of other choices is saved with the texts.
+    numbers |= set(re.findall(r"\d+\.\d+", article.CHOICES.read_text("utf-8")))
     # The reading of the printed damping is off by nothing.
     numbers |= {"0.00"}
     # Formulas of parameters: tolerances in per cent, an impact at rest, a doubling by Eq. 8

@@ -62,11 +62,15 @@ class Choice(NamedTuple):
 
 
 def verdicts(datasets: Datasets, printed: xr.DataArray, names: set[str]) -> list[tuple[str, str]]:
-    """Each claim that some named datasets decide, with its verdict, whatever their parameters."""
+    """Each claim that some named datasets decide, with its verdict, whatever their parameters.
+
+    If an axis does not reach what the claim is about, it is "beyond the axis".
+    """
     every = [*claims.CLAIMS, *claims.table1_ends(printed)]
     decided = [claim for claim in every if names & claim.datasets.keys()]
     asked = [replace(claim, datasets={name: {} for name in claim.datasets}) for claim in decided]
-    return [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
+    found = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
+    return [(name, verdict.replace("not computed", "beyond the axis")) for name, verdict in found]
 
 
 def axis_of(name: str) -> str:
@@ -116,7 +120,7 @@ def choices(data: Datasets, printed: xr.DataArray) -> Iterator[Choice]:
         for end in ends:
             changes = {"amplitude_max": end, "points": POINTS}
             other = recomputed(data[name], compute, changes, *settings)
-            yield Choice(axis_of(name), f"Λ up to {end:g}", {name: other})
+            yield Choice(axis_of(name), f"Λ from 0 to {end:g}", {name: other})
     for ratios in RATIOS_OF_FIG_12:
         changes = {"frequency_ratio": ratios}
         other = recomputed(data["fig12"], time_histories.fig12, changes, "release")

@@ -21,7 +21,7 @@ from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
-CHOICES = Path(__file__).parents[2] / "docs" / "choices.csv"
+CHOICES = TEMPLATES.parent / "studies" / "choices.csv"
 """The verdicts that depend on what cannot be read, from workflow/studies/choices.py."""
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")

@@ -24,7 +24,7 @@ SETTINGS = {
 }
 PRINTED = {"printed": checkout("config/table1_printed.csv")}
 READS = {"continuation": PRINTED, "readings": PRINTED, "claims": PRINTED}
-READS["article"] = {"choices": checkout("docs/choices.csv")}
+READS["article"] = {"choices": checkout("workflow/studies/choices.csv")}
 
 # The claims follow from all datasets.
 KINDS["claims"] = ["nc", "md", "csv"]

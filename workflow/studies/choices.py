@@ -4,7 +4,7 @@ Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12
 of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
 with the other datasets of the reference. Datasets of other choices have fewer points than those of
 the figures. The study takes half a minute, so that it is no stage of the workflow: `make choices`
-writes its result, docs/choices.csv, which the supplement shows, and a test does it again.
+writes its result, choices.csv, which the supplement shows, and a test does it again.
 """
 
 import csv
@@ -29,7 +29,7 @@ from bouncing_ball.verdicts import answer
 
 ROOT = Path(__file__).parents[2]
 PRINTED = ROOT / "config" / "table1_printed.csv"
-RESULT = ROOT / "docs" / "choices.csv"
+RESULT = Path(__file__).with_suffix(".csv")
 
 ALONG_RATIO = {
     "fig05": apparent_restitution.cases,

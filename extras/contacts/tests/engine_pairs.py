@@ -197,10 +197,10 @@ CASES = [
         for mode in ("average", "min", "max")
     ),
     ("physx", physx, *PRODUCT, SHORT),
-    ("drake", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}, SHORT),
-    ("drake", drake, SAP, None, SHORT),
+    ("drake-sap", drake, SAP, {"point_contact_stiffness": 6e4, "relaxation_time": 0.001}, SHORT),
+    ("drake-sap", drake, SAP, None, SHORT),
     (
-        "drake-hunt-crossley",
+        "drake",
         drake,
         LAGGED,
         {"point_contact_stiffness": 8e4, "hunt_crossley_dissipation": 0.8},

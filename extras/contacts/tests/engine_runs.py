@@ -1,12 +1,13 @@
 """Designs in the engines themselves, as their snippets are pasted.
 
-Each engine returns the heights of the lowest point of a body above a table, or the gap of two free
-balls, after each step, and the largest contact force if the engine reports forces.
+Each engine returns the motion of a body above a table, or of a ball above another free one, after
+each step.
 """
 
 import ctypes
 import functools
 import math
+import re
 import shutil
 import subprocess
 import sys
@@ -21,8 +22,11 @@ from bouncing_ball_contacts.engines import ENGINES
 
 
 class Trial(NamedTuple):
-    """A design with the shape "ball", "box" or "two"; the gap in m at the start, the speed in m/s
-    at the start, the number of steps, and gravity in m/s².
+    """A design with the shape "ball", "box" or "two", and how it starts.
+
+    In SI units: the gap and the speed downwards at the start, gravity, friction, the speed `slide`
+    along x and the angular velocity `spin` about y; the angles `tilt` of a box about y and `slope`
+    of the table in degrees. The table is an infinite "plane", or a "slab" that is 2 cm thick.
     """
 
     design: object
@@ -31,10 +35,44 @@ class Trial(NamedTuple):
     speed: float
     steps: int
     gravity: float
+    friction: float = 0.0
+    slide: float = 0.0
+    spin: float = 0.0
+    tilt: float = 0.0
+    slope: float = 0.0
+    table: str = "plane"
 
     @property
     def size(self):
         return self.design.bounce.size
+
+    @property
+    def touching(self):
+        """The height of the centre of the body where it touches the table."""
+        angle = math.radians(self.tilt)
+        return self.size * (math.cos(angle) + math.sin(angle) if self.tilt else 1.0)
+
+    @property
+    def place(self):
+        """The centre at the start; a body that slides over another one meets it from above."""
+        is_oblique = self.shape == "two" and self.speed > 0
+        return [-self.slide * self.gap / self.speed if is_oblique else 0.0, 0.0, self.start]
+
+    @property
+    def start(self):
+        return self.touching + self.gap
+
+    @property
+    def turned(self):
+        """The quaternion (w, x, y, z) at the start."""
+        half = math.radians(self.tilt) / 2
+        return [math.cos(half), 0.0, math.sin(half), 0.0]
+
+    @property
+    def weight(self):
+        """The vector of gravity."""
+        angle = math.radians(self.slope)
+        return [self.gravity * math.sin(angle), 0.0, -self.gravity * math.cos(angle)]
 
     @property
     def volume(self):
@@ -53,41 +91,100 @@ class Trial(NamedTuple):
         return self.design.row.step
 
 
-def mujoco(trial):
+class Motion(NamedTuple):
+    """Heights of the lowest point above a table, or of a ball above the other one, after each step.
+
+    ``peak`` is the largest contact force, NaN if the engine reports none. ``poses`` are the centre
+    of the body and its quaternion (w, x, y, z), and ``others`` the centre of another free body; in
+    some engines nothing is recorded beside the heights.
+    """
+
+    heights: np.ndarray
+    peak: float = math.nan
+    poses: np.ndarray | None = None
+    others: np.ndarray | None = None
+
+
+def moved(trial, poses, others=None, peak=math.nan):
+    """Return a motion from poses and from centres of the other body."""
+    poses = np.asarray(poses, float)
+    below = trial.touching
+    if others is not None:
+        others = np.asarray(others, float)
+        below = others[:, 2] + 2 * trial.size
+    return Motion(poses[:, 2] - below, peak, poses, others)
+
+
+def _mujoco_model(trial):
     import mujoco
 
     r = trial.size
-    ball = f'<geom class="bounce" type="sphere" size="{r!r}" mass="{{}}"/>'
-    if trial.shape == "box":
-        ball = f'<geom class="bounce" type="box" size="{r!r} {r!r} {r!r}" mass="{{}}"/>'
-    below = '<geom class="bounce" type="plane" size="9 9 1"/>'
-    above = r + trial.gap
+    form = f'type="box" size="{r!r} {r!r} {r!r}"' if trial.shape == "box" else f'size="{r!r}"'
+    rough = f'class="bounce" friction="{trial.friction!r} 0.005 0.0001"'
+    below = f'<geom {rough} type="plane" size="9 9 1"/>'
+    if trial.table == "slab":
+        below = f'<geom {rough} type="box" size="9 9 0.01" pos="0 0 -0.01"/>'
     if trial.shape == "two":
-        below = f'<body pos="0 0 {r!r}"><freejoint/>{ball.format(trial.other)}</body>'
-        above = 3 * r + trial.gap
+        ball = f'<geom {rough} {form} mass="{trial.other!r}"/>'
+        below = f'<body pos="0 0 {-r!r}"><freejoint/>{ball}</body>'
+
+    def numbers(values):
+        return " ".join(map(repr, values))
+
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco>{trial.design.snippet}<option gravity="0 0 {-trial.gravity}"/>
-        <worldbody>{below}
-        <body name="fall" pos="0 0 {above!r}"><freejoint/>{ball.format(trial.mass)}</body>
-        </worldbody></mujoco>"""
+        f"""<mujoco>{trial.design.snippet}<option gravity="{numbers(trial.weight)}"/>
+        <worldbody><body pos="{numbers(trial.place)}" quat="{numbers(trial.turned)}"><freejoint/>
+        <geom {rough} {form} mass="{trial.mass!r}"/></body>{below}</worldbody></mujoco>"""
     )
     data = mujoco.MjData(model)
-    at = model.body("fall").jntadr[0]
-    data.qvel[model.jnt_dofadr[at] + 2] = -trial.speed
-    place = model.jnt_qposadr[at] + 2
-    heights = []
+    data.qvel[:6] = [trial.slide, 0, -trial.speed, 0, trial.spin, 0]
+    return model, data
+
+
+def mujoco(trial):
+    import mujoco
+
+    model, data = _mujoco_model(trial)
+    motion = []
     force = np.zeros(6)
     peak = 0.0
     for _ in range(trial.steps):
         mujoco.mj_step(model, data)
-        lower = data.qpos[2] + r if trial.shape == "two" else 0.0
-        heights.append(data.qpos[place] - r - lower)
+        motion.append(data.qpos.copy())
         total = 0.0
         for i in range(data.ncon):
             mujoco.mj_contactForce(model, data, i, force)
             total += force[0]
         peak = max(peak, total)
-    return np.array(heights), peak
+    motion = np.array(motion)
+    return moved(trial, motion[:, :7], motion[:, 7:10] if trial.shape == "two" else None, peak)
+
+
+@functools.cache
+def _warp():
+    import warp
+
+    warp.config.quiet = True
+    return warp
+
+
+def mujoco_warp(trial):
+    """The designs of MuJoCo in mujoco_warp, which computes in single precision."""
+    _warp()
+    import mujoco_warp
+
+    model, data = _mujoco_model(trial)
+    if not trial.friction:
+        # A pyramid without friction has no numbers there.
+        model.geom_condim[:] = 1
+    on_device = mujoco_warp.put_model(model)
+    state = mujoco_warp.put_data(model, data, nconmax=32, njmax=128)
+    motion = []
+    for _ in range(trial.steps):
+        mujoco_warp.step(on_device, state)
+        motion.append(state.qpos.numpy()[0].copy())
+    motion = np.array(motion)
+    return moved(trial, motion[:, :7], motion[:, 7:10] if trial.shape == "two" else None)
 
 
 def pybullet(trial):
@@ -97,34 +194,43 @@ def pybullet(trial):
         pybullet.connect(pybullet.DIRECT)
     pybullet.resetSimulation()
     r = trial.size
-    ball = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=r)
+    form = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=r)
+    if trial.shape == "box":
+        form = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[r, r, r])
     if trial.shape == "two":
-        one = pybullet.createMultiBody(trial.other, ball, basePosition=[0, 0, r])
-        other = pybullet.createMultiBody(trial.mass, ball, basePosition=[0, 0, 3 * r + trial.gap])
-    elif trial.shape == "box":
+        one = pybullet.createMultiBody(trial.other, form, basePosition=[0, 0, -r])
+    elif trial.shape == "box" or trial.table == "slab":
         # On a box a box gets its four points at once, on a plane one by one.
-        table = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[9, 9, 9])
-        box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[r, r, r])
-        one = pybullet.createMultiBody(0, table, basePosition=[0, 0, -9])
-        other = pybullet.createMultiBody(trial.mass, box, basePosition=[0, 0, r + trial.gap])
+        half = 0.01 if trial.table == "slab" else 9
+        table = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[9, 9, half])
+        one = pybullet.createMultiBody(0, table, basePosition=[0, 0, -half])
     else:
         one = pybullet.createMultiBody(0, pybullet.createCollisionShape(pybullet.GEOM_PLANE))
-        other = pybullet.createMultiBody(trial.mass, ball, basePosition=[0, 0, r + trial.gap])
-    pybullet.setGravity(0, 0, -trial.gravity)
-    pybullet.resetBaseVelocity(other, [0, 0, -trial.speed])
+    w, *xyz = trial.turned
+    other = pybullet.createMultiBody(
+        trial.mass, form, basePosition=trial.place, baseOrientation=[*xyz, w]
+    )
+    pybullet.setGravity(*trial.weight)
+    # The world keeps its parameters, and this one is not in every snippet.
+    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.02)
+    for body in (one, other):
+        pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
+    pybullet.resetBaseVelocity(other, [trial.slide, 0, -trial.speed], [0, trial.spin, 0])
     # If one body alone is set, it is the one that falls.
     names = {"pybullet": pybullet, "one": one, "other": other}
     if trial.design.one_body:
         names["one"] = other
     exec(trial.design.snippet, names)
-    heights = []
+    poses = []
+    others = []
     peak = 0.0
     for _ in range(trial.steps):
         pybullet.stepSimulation()
-        low = pybullet.getBasePositionAndOrientation(one)[0][2] + r if trial.shape == "two" else 0
-        heights.append(pybullet.getBasePositionAndOrientation(other)[0][2] - r - low)
+        center, (*xyz, w) = pybullet.getBasePositionAndOrientation(other)
+        poses.append([*center, w, *xyz])
+        others.append(pybullet.getBasePositionAndOrientation(one)[0])
         peak = max(peak, sum(contact[9] for contact in pybullet.getContactPoints(one, other)))
-    return np.array(heights), peak
+    return moved(trial, poses, others if trial.shape == "two" else None, peak)
 
 
 def drake(trial):
@@ -134,42 +240,47 @@ def drake(trial):
     exec(trial.design.snippet, names)
     builder = pydrake.DiagramBuilder()
     plant, _ = pydrake.AddMultibodyPlant(names["config"], builder)
-    plant.mutable_gravity_field().set_gravity_vector([0, 0, -trial.gravity])
+    plant.mutable_gravity_field().set_gravity_vector(trial.weight)
     r = trial.size
     shape = pydrake.Box(2 * r, 2 * r, 2 * r) if trial.shape == "box" else pydrake.Sphere(r)
     bodies = []
     masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
     for i, mass in enumerate(masses):
         inertia = pydrake.SpatialInertia.SolidSphereWithMass(mass, r)
+        if trial.shape == "box":
+            inertia = pydrake.SpatialInertia.SolidBoxWithMass(mass, 2 * r, 2 * r, 2 * r)
         body = plant.AddRigidBody(f"body{i}", inertia)
         here = pydrake.RigidTransform()
         plant.RegisterCollisionGeometry(body, here, shape, f"shape{i}", names["properties"])
         bodies.append(body)
     if trial.shape != "two":
-        here = pydrake.RigidTransform([0, 0, -r - trial.gap])
+        # Its surface is at the height of 0, and the body starts above.
+        table = pydrake.Box(18, 18, 0.02) if trial.table == "slab" else pydrake.HalfSpace()
+        here = pydrake.RigidTransform([0, 0, -0.01 if trial.table == "slab" else 0])
         properties = names["properties"]
         if trial.design.one_body:
             properties = pydrake.ProximityProperties()
             friction = pydrake.CoulombFriction(0, 0)
             pydrake.AddContactMaterial(friction=friction, properties=properties)
         world = plant.world_body()
-        plant.RegisterCollisionGeometry(world, here, pydrake.HalfSpace(), "table", properties)
+        plant.RegisterCollisionGeometry(world, here, table, "table", properties)
     plant.Finalize()
     log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, trial.step)
     simulator = pydrake.Simulator(builder.Build())
     context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
     positions = plant.GetPositions(context)
     velocities = plant.GetVelocities(context)
-    velocities[5] = -trial.speed
+    velocities[:6] = [0, trial.spin, 0, trial.slide, 0, -trial.speed]
+    positions[:7] = [*trial.turned, *trial.place]
     if trial.shape == "two":
-        positions[13] = -2 * r - trial.gap
+        positions[13] = -r
     plant.SetPositions(context, positions)
     plant.SetVelocities(context, velocities)
     simulator.AdvanceTo((trial.steps + 0.5) * trial.step)
-    found = log.FindLog(simulator.get_context()).data()
-    if trial.shape == "two":
-        return found[6, 1:] - found[13, 1:] - 2 * r, math.nan
-    return found[6, 1:] + trial.gap, math.nan
+    found = log.FindLog(simulator.get_context()).data()[:, 1:].T
+    return moved(
+        trial, found[:, [4, 5, 6, 0, 1, 2, 3]], found[:, 11:14] if trial.shape == "two" else None
+    )
 
 
 def lammps(trial):
@@ -179,72 +290,85 @@ def lammps(trial):
 
     r = trial.size
     wide = 4 * (r + trial.gap) + 1
-    start = r + trial.gap
     lines = [
         "units si",
         "atom_style sphere",
         "boundary f f f",
         "newton off",
         "comm_modify vel yes",
-        f"region all block -1 1 -1 1 {-wide!r} {wide!r}",
+        f"region all block {-wide!r} {wide!r} -1 1 {-wide!r} {wide!r}",
         "create_box 1 all",
-        f"create_atoms 1 single 0 0 {start!r}",
+        f"create_atoms 1 single {' '.join(map(repr, trial.place))}",
     ]
-    center = "xcm(up,z)"
+    bodies = ["up"]
     if trial.shape == "two":
         lines += [
             f"create_atoms 1 single 0 0 {-r!r}",
             f"set atom 2 diameter {2 * r!r} density {trial.other / trial.volume!r}",
             "group low id 2",
         ]
-        center = "xcm(up,z)-xcm(low,z)"
-    # The distance of the centres where the gap is closed.
-    touching = 2 * r if trial.shape == "two" else r
+        bodies.append("low")
+    # With friction the tangential damper is that of the normal force, and is cut off at μ times it.
+    recipe = re.sub(r"( \S+) 0 0 0", rf"\1\1 {trial.friction!r} 1", trial.design.snippet)
+    recipe = recipe.replace("linear_nohistory 0 0", f"linear_nohistory 1 {trial.friction!r}")
     lines += [
         f"set atom 1 diameter {2 * r!r} density {trial.mass / trial.volume!r}",
         "group up id 1",
         "velocity all set 0 0 0",
-        f"velocity up set 0 0 {-trial.speed!r}",
+        f"velocity up set {trial.slide!r} 0 {-trial.speed!r}",
+        f"set group up omega 0 {trial.spin!r} 0",
         "fix move all nve/sphere",
         f"fix down all gravity {trial.gravity!r} vector 0 0 -1",
-        *trial.design.snippet.splitlines(),
+        *(recipe if trial.friction else trial.design.snippet).splitlines(),
     ]
+    centers = " ".join(f"$(xcm({body},{x}):%20.15g)" for body in bodies for x in "xyz")
     with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder, "heights.txt")
+        file = Path(folder, "centers.txt")
         lines += [
-            f'variable height equal "{center}"',
-            f'fix heights all print 1 "$(v_height:%20.15g)" file {file} screen no title ""',
+            f'fix centers all print 1 "{centers}" file {file} screen no title ""',
             f"run {trial.steps} post no",
         ]
         engine = lammps(cmdargs=["-screen", "none", "-log", "none"])
         engine.commands_string("\n".join(lines))
         engine.close()
-        return np.loadtxt(file)[1:] - touching, math.nan
+        found = np.loadtxt(file)[1:]
+    return moved(trial, found[:, :3], found[:, 3:] if trial.shape == "two" else None)
 
 
 def newton(trial):
-    import warp
-
-    warp.config.quiet = True
+    warp = _warp()
     import newton
 
     names = {"newton": newton}
-    builder = newton.ModelBuilder(gravity=(0.0, 0.0, -trial.gravity))
+    builder = newton.ModelBuilder(gravity=tuple(trial.weight))
     names["builder"] = builder
     exec(trial.design.snippet, names)
     r = trial.size
     material = names["material"]
     material.density = trial.mass / trial.volume
+    material.mu = trial.friction
+    if trial.friction:
+        material.kf = newton.ModelBuilder.ShapeConfig().kf
     # The table is where single precision is best.
-    place = warp.transform(warp.vec3(0.0, 0.0, r + trial.gap), warp.quat_identity())
-    more = {"custom_attributes": names["attributes"]} if "attributes" in names else {}
+    w, *xyz = trial.turned
+    place = warp.transform(warp.vec3(*trial.place), warp.quat(*xyz, w))
+    attributes = names.get("attributes", {})
+    if attributes and not trial.friction:
+        attributes["mujoco:condim"] = 1
+    more = {"custom_attributes": attributes} if attributes else {}
     body = builder.add_body(xform=place)
     if trial.shape == "box":
         builder.add_shape_box(body, hx=r, hy=r, hz=r, cfg=material, **more)
     else:
         builder.add_shape_sphere(body, radius=r, cfg=material, **more)
-    builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
+    if trial.table == "slab":
+        below = warp.transform(warp.vec3(0.0, 0.0, -0.01), warp.quat_identity())
+        sides = dict(hx=9.0, hy=9.0, hz=0.01)
+        builder.add_shape_box(-1, xform=below, cfg=material, **sides, **more)
+    else:
+        builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
     model = builder.finalize(device="cpu")
+    model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0])
     kinds = {
         "newton": newton.solvers.SolverSemiImplicit,
         "newton-mujoco": newton.solvers.SolverMuJoCo,
@@ -254,17 +378,16 @@ def newton(trial):
     states = [model.state(), model.state()]
     contacts = pipeline.contacts()
     control = model.control()
-    speeds = states[0].body_qd.numpy()
-    speeds[0, 2] = -trial.speed
-    states[0].body_qd.assign(speeds)
-    heights = []
+    newton.eval_fk(model, model.joint_q, model.joint_qd, states[0])
+    poses = []
     for _ in range(trial.steps):
         states[0].clear_forces()
         pipeline.collide(states[0], contacts)
         solver.step(states[0], states[1], control, contacts, trial.step)
         states.reverse()
-        heights.append(float(states[0].body_q.numpy()[0, 2]) - r)
-    return np.array(heights), math.nan
+        *center_and_axis, w = states[0].body_q.numpy()[0]
+        poses.append([*center_and_axis[:3], w, *center_and_axis[3:]])
+    return moved(trial, poses)
 
 
 def liggghts(trial):
@@ -317,7 +440,7 @@ def liggghts(trial):
         log = Path(folder, "log.txt")
         if ran.returncode or "ERROR" in log.read_text():
             raise RuntimeError(f"LIGGGHTS: {log.read_text()[-500:]}")
-        return np.loadtxt(Path(folder, "heights.txt"))[1:], math.nan
+        return Motion(np.loadtxt(Path(folder, "heights.txt"))[1:])
 
 
 def ode(trial):
@@ -330,13 +453,13 @@ def ode(trial):
     odepy.dInitODE()
     r = trial.size
     world = odepy.dWorldCreate()
-    odepy.dWorldSetGravity(world, 0, 0, -trial.gravity)
+    odepy.dWorldSetGravity(world, *trial.weight)
     space = odepy.dSimpleSpaceCreate(0)
     shapes = []
     bodies = []
     sides = (2 * r, 2 * r, 2 * r)
     masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
-    for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
+    for mass, place in zip(masses, (trial.place, [0, 0, -r]), strict=False):
         body = odepy.dBodyCreate(world)
         inertia = odepy.dMass()
         if trial.shape == "box":
@@ -346,24 +469,32 @@ def ode(trial):
             odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
             shape = odepy.dCreateSphere(space, r)
         odepy.dBodySetMass(body, ctypes.byref(inertia))
-        odepy.dBodySetPosition(body, 0, 0, place)
+        odepy.dBodySetPosition(body, *place)
         odepy.dGeomSetBody(shape, body)
         bodies.append(body)
         shapes.append(shape)
-    odepy.dBodySetLinearVel(bodies[0], 0, 0, -trial.speed)
+    odepy.dBodySetLinearVel(bodies[0], trial.slide, 0, -trial.speed)
+    odepy.dBodySetAngularVel(bodies[0], 0, trial.spin, 0)
+    odepy.dBodySetQuaternion(bodies[0], (ctypes.c_double * 4)(*trial.turned))
     if trial.shape != "two":
         bodies.append(0)
-        shapes.append(odepy.dCreatePlane(space, 0, 0, 1, 0))
+        if trial.table == "slab":
+            shapes.append(odepy.dCreateBox(space, 18, 18, 0.02))
+            odepy.dGeomSetPosition(shapes[1], 0, 0, -0.01)
+        else:
+            shapes.append(odepy.dCreatePlane(space, 0, 0, 1, 0))
     group = odepy.dJointGroupCreate(0)
     contact = odepy.dContact()
     surface = contact.surface
     surface.mode = odepy.dContactSoftERP | odepy.dContactSoftCFM | odepy.dContactBounce
-    surface.mu = 0
+    surface.mode |= odepy.dContactApprox1
+    surface.mu = trial.friction
     for name, value in (ENGINES["ode"].defaults | trial.design.parameters).items():
         setattr(surface, name, value)
     size = ctypes.sizeof(odepy.dContactGeom)
     points = (odepy.dContactGeom * 8)()
-    heights = []
+    poses = []
+    others = []
     for _ in range(trial.steps):
         for point in points[: odepy.dCollide(*shapes, len(points), points, size)]:
             contact.geom = point
@@ -371,17 +502,19 @@ def ode(trial):
             odepy.dJointAttach(joint, *bodies)
         odepy.dWorldStep(world, trial.step)
         odepy.dJointGroupEmpty(group)
-        low = odepy.dBodyGetPosition(bodies[1])[2] + r if trial.shape == "two" else 0.0
-        heights.append(odepy.dBodyGetPosition(bodies[0])[2] - r - low)
-    return np.array(heights), math.nan
+        turned = odepy.dBodyGetQuaternion(bodies[0])[:4]
+        poses.append([*odepy.dBodyGetPosition(bodies[0])[:3], *turned])
+        if trial.shape == "two":
+            others.append(odepy.dBodyGetPosition(bodies[1])[:3])
+    return moved(trial, poses, others or None)
 
 
 _MATERIAL = """    def Material "{of}" (
         prepend apiSchemas = ["PhysicsMaterialAPI", "PhysxMaterialAPI"]
     )
     {{
-        float physics:dynamicFriction = 0
-        float physics:staticFriction = 0
+        float physics:dynamicFriction = {friction!r}
+        float physics:staticFriction = {friction!r}
         float physics:restitution = {restitution!r}
         uniform token physxMaterial:restitutionCombineMode = "{restitutionCombineMode}"
         float physxMaterial:compliantContactStiffness = {compliantContactStiffness!r}
@@ -400,18 +533,18 @@ def Xform "World"
 {{
     def PhysicsScene "Scene" (prepend apiSchemas = ["PhysxSceneAPI"])
     {{
-        vector3f physics:gravityDirection = (0, 0, -1)
+        vector3f physics:gravityDirection = {down}
         float physics:gravityMagnitude = {gravity!r}
         uniform token physxScene:solverType = "PGS"
         bool physxScene:enableGPUDynamics = 0
         float physxScene:bounceThreshold = {bounceThresholdVelocity!r}
         uniform token physxScene:broadphaseType = "MBP"
     }}
-{materials}    def Plane "Table" (
+{materials}    def {table} "Table" (
         prepend apiSchemas = ["PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
     )
     {{
-        uniform token axis = "Z"
+        {of_table}
         float physxCollision:contactOffset = {ahead!r}
         float physxCollision:restOffset = 0
         rel material:binding:physics = </World/OfTable>
@@ -422,8 +555,11 @@ def Xform "World"
     )
     {{
         double {measure} = {extent!r}
-        double3 xformOp:translate = (0, 0, {start!r})
-        uniform token[] xformOpOrder = ["xformOp:translate"]
+        double3 xformOp:translate = {place}
+        quatd xformOp:orient = {turned}
+        uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]
+        vector3f physics:velocity = ({slide!r}, 0, {fall!r})
+        vector3f physics:angularVelocity = (0, {spin!r}, 0)
         float physics:mass = {mass!r}
         float physxRigidBody:linearDamping = 0
         float physxRigidBody:sleepThreshold = 0
@@ -433,6 +569,12 @@ def Xform "World"
     }}
 }}
 """
+
+
+_SLAB = """double size = 1
+        double3 xformOp:translate = (0, 0, -0.01)
+        float3 xformOp:scale = (18, 18, 0.02)
+        uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:scale"]"""
 
 
 @functools.cache
@@ -458,16 +600,27 @@ def physx(trial, other=None):
     gap = max(trial.gap, 0.0)
     # Contacts are found at twice the way of a step, or the body falls through them.
     ahead = 2 * (math.sqrt(2 * trial.gravity * gap) + trial.speed) * trial.step
+    is_slab = trial.table == "slab"
     text = _STAGE.format(
         gravity=trial.gravity,
+        down=tuple(x / (trial.gravity or 1) for x in trial.weight),
+        table="Cube" if is_slab else "Plane",
+        of_table=_SLAB if is_slab else 'uniform token axis = "Z"',
+        place=tuple(trial.place),
+        turned=tuple(trial.turned),
+        slide=float(trial.slide),
+        fall=-float(trial.speed),
+        spin=math.degrees(trial.spin),
         ahead=max(ahead, 1e-3),
         kind="Cube" if trial.shape == "box" else "Sphere",
         measure="size" if trial.shape == "box" else "radius",
         extent=2 * r if trial.shape == "box" else r,
-        start=r + trial.gap,
         mass=trial.mass,
         bounceThresholdVelocity=one["bounceThresholdVelocity"],
-        materials=_MATERIAL.format(of="OfBody", **one) + _MATERIAL.format(of="OfTable", **of_table),
+        materials="".join(
+            _MATERIAL.format(of=of, friction=trial.friction, **values)
+            for of, values in (("OfBody", one), ("OfTable", of_table))
+        ),
     )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "stage.usda")
@@ -482,15 +635,15 @@ def physx(trial, other=None):
         warnings.simplefilter("ignore", DeprecationWarning)
         body = engine.create_tensor_binding(pattern="/World/Body", tensor_type=poses)
     pose = np.zeros(body.shape, np.float32)
-    heights = []
+    poses = []
     for _ in range(trial.steps):
         engine.step_sync(trial.step)
         body.read(pose)
-        heights.append(float(pose[0, 2]) - r)
+        poses.append([*pose[0, :3], pose[0, 6], *pose[0, 3:6]])
     body.destroy()
     engine.wait_task(engine.detach_ovstage())
     stage.destroy()
-    return np.array(heights), math.nan
+    return moved(trial, poses)
 
 
 def genesis(trial):
@@ -502,24 +655,30 @@ def genesis(trial):
     options, *of_geoms = trial.design.snippet.split("\n", 1)
     names = {"gs": genesis}
     exec(options, names)
-    names["options"].gravity = (0.0, 0.0, -trial.gravity)
+    names["options"].gravity = tuple(trial.weight)
     scene = genesis.Scene(show_viewer=False, sim_options=names["options"])
-    names["one"] = scene.add_entity(genesis.morphs.Plane())
-    place = (0.0, 0.0, r + trial.gap)
+    # Genesis takes the larger friction of both, and no material has less than 0.01.
+    friction = max(trial.friction, 0.01)
+    below = genesis.morphs.Plane()
+    if trial.table == "slab":
+        below = genesis.morphs.Box(size=(18.0, 18.0, 0.02), pos=(0.0, 0.0, -0.01), fixed=True)
+    names["one"] = scene.add_entity(below, material=genesis.materials.Rigid(friction=friction))
+    start = dict(pos=tuple(trial.place), quat=tuple(trial.turned))
     if trial.shape == "box":
-        shape = genesis.morphs.Box(size=(2 * r, 2 * r, 2 * r), pos=place)
+        shape = genesis.morphs.Box(size=(2 * r, 2 * r, 2 * r), **start)
     else:
-        shape = genesis.morphs.Sphere(radius=r, pos=place)
-    material = genesis.materials.Rigid(rho=trial.mass / trial.volume)
+        shape = genesis.morphs.Sphere(radius=r, **start)
+    material = genesis.materials.Rigid(rho=trial.mass / trial.volume, friction=friction)
     body = scene.add_entity(shape, material=material)
     names["other"] = body
     scene.build()
     exec(of_geoms[0], names)
-    heights = []
+    body.set_dofs_velocity([trial.slide, 0.0, -trial.speed, 0.0, trial.spin, 0.0])
+    poses = []
     for _ in range(trial.steps):
         scene.step()
-        heights.append(float(body.get_pos()[2]) - r)
-    return np.array(heights), math.nan
+        poses.append([*map(float, body.get_pos()), *map(float, body.get_quat())])
+    return moved(trial, poses)
 
 
 def _by_program(name, trial, *values):
@@ -532,7 +691,7 @@ def _by_program(name, trial, *values):
     command = [program, *map(str, (*body, *values, trial.step, trial.steps))]
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(command, cwd=folder, capture_output=True, check=True)
-        return np.loadtxt(Path(folder, "heights.txt")), math.nan
+        return Motion(np.loadtxt(Path(folder, "heights.txt")))
 
 
 def mercurydpm(trial):
@@ -588,14 +747,15 @@ def chrono(trial, table=None):
         system.DoStepDynamics(trial.step)
         lower = bodies[1].GetPos().z + r if trial.shape == "two" else 0.0
         heights.append(bodies[0].GetPos().z - r - lower)
-    return np.array(heights), math.nan
+    return Motion(np.array(heights))
 
 
 RUNS = {
     "mujoco": mujoco,
+    "mujoco_warp": mujoco_warp,
     "pybullet": pybullet,
+    "drake-sap": drake,
     "drake": drake,
-    "drake-hunt-crossley": drake,
     "lammps": lammps,
     "lammps-limit-damping": lammps,
     "lammps-hertz": lammps,
@@ -642,6 +802,7 @@ def measure(design, shape, instants=13):
     step = row.step
     speed = bounce.impact_speed
     g = bounce.load
+    rubs = bounce.friction or 0.0
     found = []
     for share in np.linspace(0.01, 0.99, instants):
         lasts = 8 * row.outcome.depth[1] / speed + 6 * step
@@ -649,11 +810,11 @@ def measure(design, shape, instants=13):
             gap = float(speed**2 / (2 * g) + share * speed * step)
             fall = math.sqrt(2 * gap / g)
             seconds = fall * (1.05 + row.outcome.restitution[2]) + lasts
-            heights, peak = run(Trial(design, shape, gap, 0.0, int(seconds / step), g))
+            heights, peak, *_ = run(Trial(design, shape, gap, 0.0, int(seconds / step), g, rubs))
         else:
             gap = float((10 + share) * speed * step)
             seconds = 2 * gap / speed + lasts + gap / speed / max(bounce.restitution, 0.05)
-            heights, peak = run(Trial(design, shape, gap, speed, int(seconds / step), 0.0))
+            heights, peak, *_ = run(Trial(design, shape, gap, speed, int(seconds / step), 0, rubs))
         depth, after, end = first_bounce(heights)
         r = 0.0
         if after is not None and g:
@@ -670,6 +831,6 @@ def measure(design, shape, instants=13):
         # Laid where it should rest, it stays there, or swings about where it rests.
         period = 2 * math.pi * math.sqrt(row.outcome.rest / g)
         steps = max(20, int(4 * period / step))
-        heights, _ = run(Trial(design, shape, -row.outcome.rest, 0.0, steps, g))
+        heights = run(Trial(design, shape, -row.outcome.rest, 0.0, steps, g, rubs)).heights
         rest = -float(np.mean(heights))
     return Measured((r.min(), r.max()), depth.max(), force.max(), rest)

@@ -16,9 +16,9 @@ BALL = dict(mass="50 g", restitution=0.8, radius="30 mm", penetration="5 mm")
 BOX = dict(mass="1 kg", restitution=0.7, radius="5 cm", points=4, penetration="5 mm")
 TWO = dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm")
 CASES = [
-    *((engine, "ball", BALL) for engine in ("mujoco", "pybullet", "drake", "lammps", "newton")),
-    *((engine, "box", BOX) for engine in ("mujoco", "pybullet", "drake", "drake-hunt-crossley")),
-    *((engine, "two", TWO) for engine in ("mujoco", "pybullet", "drake", "drake-hunt-crossley")),
+    *((engine, "ball", BALL) for engine in ("mujoco", "pybullet", "drake-sap", "lammps", "newton")),
+    *((engine, "box", BOX) for engine in ("mujoco", "pybullet", "drake-sap", "drake")),
+    *((engine, "two", TWO) for engine in ("mujoco", "pybullet", "drake-sap", "drake")),
     *((engine, "two", TWO) for engine in ("lammps", "lammps-limit-damping", "lammps-hertz")),
 ]
 

@@ -62,21 +62,21 @@ CASES = [
         {},
     ),
     ("pybullet", "two", EQUAL, None, {}),
-    ("drake", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
+    ("drake-sap", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     (
-        "drake",
+        "drake-sap",
         "ball",
         dict(mass="1 kg", restitution=0.1, penetration="5 mm", density="rubber"),
         None,
         {},
     ),
-    ("drake", "ball", dict(mass="2 t", restitution=0.6, radius="0.5 m"), "10 ms", {}),
-    ("drake", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
-    ("drake", "box", BOX, "1 ms", {}),
-    ("drake", "two", EQUAL, None, {}),
-    ("drake", "ball", dict(mass="1 kg", restitution=0, radius="5 cm"), None, {}),
+    ("drake-sap", "ball", dict(mass="2 t", restitution=0.6, radius="0.5 m"), "10 ms", {}),
+    ("drake-sap", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
+    ("drake-sap", "box", BOX, "1 ms", {}),
+    ("drake-sap", "two", EQUAL, None, {}),
+    ("drake-sap", "ball", dict(mass="1 kg", restitution=0, radius="5 cm"), None, {}),
     (
-        "drake-hunt-crossley",
+        "drake",
         "ball",
         dict(mass="50 g", restitution=0.7, penetration="5 mm", radius="30 mm"),
         None,
@@ -199,7 +199,7 @@ HEAD = [
 
 def cells(name, shape, wanted, time_step, more):
     """Return the cells of a row of the table, and whether the engine agrees."""
-    found = design(Bounce(**wanted), name, time_step, **more)
+    found = design(Bounce(**wanted, friction=0.5), name, time_step, **more)
     outcome = found.row.outcome
     problem = Problem(found.bounce, engine_named(name), found.one_body)
     law = problem.law_of(found.parameters, found.row.step)

@@ -75,7 +75,7 @@ def test_a_full_device_is_one_line():
     [
         ("design --engine muj", "plain,mujoco"),
         ("diagnose --engine pyb", "plain,pybullet"),
-        ("fit croquet --engine drake-", "plain,drake-hunt-crossley"),
+        ("fit croquet --engine drake-", "plain,drake-sap"),
         ("fit croq", "file,croq"),
     ],
 )
@@ -121,9 +121,9 @@ def test_a_recording_becomes_a_contact_in_one_command(typed, tmp_path):
 
 
 SCRIPTS = {
-    "": ("mujoco", "pybullet", "drake", "lammps", "newton"),
-    "--points 4": ("mujoco", "pybullet", "drake"),
-    "--other-mass 1 --speed 2": ("mujoco", "pybullet", "drake", "lammps-hertz"),
+    "": ("mujoco", "pybullet", "drake-sap", "lammps", "newton"),
+    "--points 4": ("mujoco", "pybullet", "drake-sap"),
+    "--other-mass 1 --speed 2": ("mujoco", "pybullet", "drake-sap", "lammps-hertz"),
 }
 
 
@@ -193,7 +193,7 @@ MISTAKES = {
     f"{SHORT} --script /no/such/folder/drop.py --engine mujoco": "No such file",
     f"{SHORT} --script {__file__} --engine mujoco": "exists, and is not overwritten",
     f"{SHORT} --script mujoco.py --engine mujoco": "hides the module of the engine",
-    f"{SHORT} --script drake.py --engine drake-hunt-crossley": "hides the module of the engine",
+    f"{SHORT} --script drake.py --engine drake-sap": "hides the module of the engine",
     f"{SHORT} --script warp.py --engine newton": "hides the module of the engine",
     f"{SHORT} --script drop.py --engine mujoco --points 3": "a box of 4 points",
     f"{SHORT} --script drop.py --engine lammps --points 4": "a box of 4 points",
@@ -216,8 +216,8 @@ MISTAKES = {
     f"{PYBULLET} contactStiffness='1e4 kg' contactDamping=1": "write it as in '100 kN/m'",
     f"{PYBULLET} restitution='0.8 m'": "write a number without a unit as in '0.8'",
     "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
-    "diagnose --engine drake hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
-    "drake-hunt-crossley has it",
+    "diagnose --engine drake-sap hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
+    "drake has it",
     "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
     LAMMPS: "kn is missing: give kn and gamma_n; lammps has no default",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",

@@ -55,7 +55,7 @@ def test_a_solver_with_error_control_has_no_step(name, of_ball):
     ("name", "r"),
     [
         *(("mujoco", r) for r in (0.0, 0.135, 0.97)),
-        *(("drake", r) for r in (0.1, 0.6)),
+        *(("drake-sap", r) for r in (0.1, 0.6)),
         *(("lammps", r) for r in (0.02, 0.9)),
         *(("newton", r) for r in (0.135, 0.6)),
     ],
@@ -97,7 +97,7 @@ def test_a_stiffer_contact_can_be_asked_for():
 def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written():
     """It was called too long, because r was not within half of the tolerance."""
     wanted = dict(mass="200 g", restitution=0.7, drop_height="50 cm", radius="4 cm")
-    found = design(Bounce(**wanted, penetration="6 mm"), "drake", "176 us")
+    found = design(Bounce(**wanted, penetration="6 mm"), "drake-sap", "176 us")
     shortest = found.rows[WANTED]
     assert shortest.step < found.row.step and found.chosen == YOURS
     # As compliant as the penetration permits.
@@ -108,10 +108,10 @@ def test_a_step_that_keeps_the_penetration_and_the_tolerance_is_written():
 
 def test_a_step_that_cannot_keep_the_penetration_says_which_row_is_written():
     wanted = Bounce(**BALL, penetration="1 mm")
-    found = design(wanted, "drake", "2 ms")
+    found = design(wanted, "drake-sap", "2 ms")
     text = f"the row for {found.row.step * 1e6:.1f} µs is written (--pick 'your step'"
     assert found.chosen == WANTED and text in str(found)
-    picked = design(wanted, "drake", "2 ms", pick=YOURS)
+    picked = design(wanted, "drake-sap", "2 ms", pick=YOURS)
     assert "the row for 2 ms is written (--pick 'what you want'" in str(picked)
 
 
@@ -214,20 +214,20 @@ def test_a_body_of_several_points_is_a_cube():
 def test_implicit_steps_that_damp_too_much_are_said_so():
     """Drake has r = 0.971 at most with k = 866 kN/m at 20 µs, and said nothing."""
     wanted = Bounce(mass="1 kg", restitution=0.99, stiffness="866 kN/m")
-    found = design(wanted, "drake", "20 us")
+    found = design(wanted, "drake-sap", "20 us")
     most = found.row.outcome.restitution[1]
     # Drake refuses the whole number 0.
     assert found.parameters["relaxation_time"] == 0 and "float(0)" in found.snippet
     assert f"r is still {most:.3f} at most, because the steps damp" in repr(found)
-    assert "at most" not in repr(design(wanted, "drake", "5 us"))
+    assert "at most" not in repr(design(wanted, "drake-sap", "5 us"))
 
 
 def test_a_step_at_which_no_spring_works_is_said_so():
     """5 g at r = 0.95 and 10 ms once lay 877 mm deep in Drake."""
     bounce = Bounce(mass="5 g", restitution=0.95, drop_height="1 m")
-    found = design(bounce, "drake", "10 ms")
+    found = design(bounce, "drake-sap", "10 ms")
     assert list(found.rows) == [WANTED]
-    assert "no spring works in drake" in found.notes[0]
+    assert "no spring works in drake-sap" in found.notes[0]
     assert "moves 44.3 mm in a step" in found.notes[0]
     assert found.row.outcome.rest < 1e-3
 
@@ -267,13 +267,13 @@ def test_points_share_the_force(name):
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
     # At an impedance near 1 points do not matter.
     by_impedance = ("genesis", "mujoco", "newton-mujoco")
-    if not name.startswith("drake") and name not in ("ode", *by_impedance):
+    if not name.startswith("drake-sap") and name not in ("ode", *by_impedance):
         first = ENGINES[name].names[0]
         assert four.parameters[first] == pytest.approx(one.parameters[first] / 4, rel=1e-3)
 
 
 def test_drake_has_one_contact_for_a_pair_of_shapes():
-    one, four = (design(replace(SHORT, points=n), "drake", "0.2 ms") for n in (1, 4))
+    one, four = (design(replace(SHORT, points=n), "drake-sap", "0.2 ms") for n in (1, 4))
     assert one.parameters == four.parameters
 
 
@@ -285,7 +285,7 @@ def test_two_free_balls_change_places_if_they_overlap_by_both_radii():
     assert Problem(pair, ENGINES["lammps"]).deepest == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("name", ["pybullet", "lammps", "mujoco", "drake"])
+@pytest.mark.parametrize("name", ["pybullet", "lammps", "mujoco", "drake-sap"])
 def test_two_free_bodies_act_by_their_reduced_mass(name):
     pair = design(Bounce(mass=1, restitution=0.8, other_mass=3, speed=2, radius=0.05), name)
     setting = (pair.row.stiffness, pair.row.outcome.restitution)
@@ -329,7 +329,7 @@ def test_an_answer_for_one_body_does_not_speak_of_both(engine):
 def test_what_holds_of_boxes_and_of_tables_is_said_of_them_alone():
     """Chrono's gn counts the mass of a fixed floor, and two balls were told of boxes."""
     ball = dict(mass=1, restitution=0.8, contact_time="4 ms")
-    for name in ("pybullet", "drake", "drake-hunt-crossley", "ode", "gazebo"):
+    for name in ("pybullet", "drake-sap", "drake", "ode", "gazebo"):
         text = str(design(Bounce(**ball), name))
         assert "box" not in text and " box " in str(design(Bounce(**ball, points=4), name))
     floor = "counts the mass of a fixed floor"
@@ -352,8 +352,8 @@ def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
     """A friction of 0.5 was given, and CoulombFriction(0, 0) was written without a word."""
     wanted = replace(SHORT, friction=0.5)
     for name, text in (
+        ("drake-sap", "CoulombFriction(0.5, 0.5)"),
         ("drake", "CoulombFriction(0.5, 0.5)"),
-        ("drake-hunt-crossley", "CoulombFriction(0.5, 0.5)"),
         ("physx", "dynamic_friction=0.5"),
         ("ode", "mu = 0.5"),
     ):
@@ -374,7 +374,7 @@ def test_a_contact_deeper_than_the_radius_is_said_so(more, of_ball):
 
 
 def test_a_step_may_be_given_as_a_rate():
-    rate, step = (design(SHORT, "drake", each) for each in ("240 Hz", "1/240"))
+    rate, step = (design(SHORT, "drake-sap", each) for each in ("240 Hz", "1/240"))
     assert rate.rows[YOURS] == step.rows[YOURS] and "time step 4.167 ms" in str(rate)
 
 
@@ -560,7 +560,7 @@ def test_no_rebound_needs_no_short_step(name):
     assert high.row.outcome.restitution[2] < 0.02
 
 
-@pytest.mark.parametrize(("name", "other"), [("pybullet", "170 g"), ("drake", "20 g")])
+@pytest.mark.parametrize(("name", "other"), [("pybullet", "170 g"), ("drake-sap", "20 g")])
 def test_two_free_bodies_do_not_pass_through_each_other(name, other):
     """They were designed to sink 369 mm into each other, and parted on the wrong sides."""
     size = dict(radius="28.5 mm", speed="2 m/s")

@@ -21,8 +21,8 @@ def asked(wanted, engine, parameters, step, **more):
     [
         "mujoco",
         "pybullet",
+        "drake-sap",
         "drake",
-        "drake-hunt-crossley",
         "lammps",
         "lammps-hertz",
         "liggghts-hertz",
@@ -55,7 +55,7 @@ def test_a_solver_with_error_control_needs_no_step(engine, of_ball):
         ("mujoco", {"solref": "0.02 0.5"}, "1 ms"),
         ("mujoco", {"solref": "-20000 -5"}, "1 ms"),
         ("pybullet", {"contactStiffness": 1e5, "contactDamping": 1}, "0.2 ms"),
-        ("drake", {"point_contact_stiffness": 1e5, "relaxation_time": 0.01}, "0.2 ms"),
+        ("drake-sap", {"point_contact_stiffness": 1e5, "relaxation_time": 0.01}, "0.2 ms"),
         ("lammps", {"kn": 1e5, "gamma_n": 1}, "0.1 ms"),
         ("lammps-hertz", {"kn": 1e7, "e": 0.3}, "0.1 ms"),
         ("newton", {"ke": 1e5, "kd": 1e3}, "0.1 ms"),
@@ -160,8 +160,8 @@ def test_the_mujoco_solver_of_newton_has_the_impedance_of_mujoco(ke, rest):
 
 def test_the_scheme_that_is_taken_for_drake_is_said():
     """Its default, lagged, ignores relaxation_time: r was 0 where 0.493 was printed."""
-    assert "lagged" in str(asked(None, "drake", {}, "1 ms"))
-    assert asked(None, "drake-hunt-crossley", {}, "1 ms").outcome.restitution[2] < 0.01
+    assert "lagged" in str(asked(None, "drake-sap", {}, "1 ms"))
+    assert asked(None, "drake", {}, "1 ms").outcome.restitution[2] < 0.01
 
 
 def test_what_a_row_takes_as_given_is_said():
@@ -212,7 +212,7 @@ def test_what_is_assumed_of_another_body_is_said():
     """Drake's default of 0.1 s took all of the bounce, and stood nowhere."""
     given = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-3}
     ball = Bounce(mass=1, radius=0.1, restitution=0.3)
-    found = str(diagnose(ball, "drake", given, "1 ms", other={"point_contact_stiffness": 1e6}))
+    found = str(diagnose(ball, "drake-sap", given, "1 ms", other={"point_contact_stiffness": 1e6}))
     assert "of the other body the defaults relaxation_time = 0.1" in found
     # The least change of one body is at half the step; at this step both have to be changed.
     ball = Bounce(mass=1, radius=0.1, restitution=0.6)
@@ -517,7 +517,7 @@ def test_a_rule_and_its_inverses_agree(rule):
 def test_two_bodies_may_have_two_materials():
     one = {"point_contact_stiffness": 1e5, "relaxation_time": 0.001}
     other = {"point_contact_stiffness": 3e5, "relaxation_time": 0.002}
-    found = asked(None, "drake", one, "0.1 ms", other=other)
+    found = asked(None, "drake-sap", one, "0.1 ms", other=other)
     assert found.stiffness == pytest.approx(7.5e4)
     # c = k τ with the sum of both times.
     assert found.damping_ratio == pytest.approx(0.003 * 7.5e4 / (2 * 7.5e4**0.5), rel=1e-6)
@@ -588,7 +588,7 @@ def test_an_undamped_contact_has_the_limit_one_in_every_engine():
     spring = {"contactStiffness": 1e6, "contactDamping": 0, **UNDISTURBED}
     assert asked(None, "pybullet", spring, "1 ms").limit == pytest.approx(1, abs=1e-4)
     relaxed = {"point_contact_stiffness": 1e6, "relaxation_time": 0}
-    assert asked(None, "drake", relaxed, "1 ms").limit == pytest.approx(1, abs=1e-4)
+    assert asked(None, "drake-sap", relaxed, "1 ms").limit == pytest.approx(1, abs=1e-4)
 
 
 def test_what_changes_r_is_named_with_r_without_it():
@@ -605,8 +605,8 @@ def test_what_changes_r_is_named_with_r_without_it():
 def test_an_engine_without_numbers_per_unit_of_mass_has_no_hint_of_them():
     """The steps of Drake give the wanted r here, which short steps would not."""
     spring = {"point_contact_stiffness": 1e5, "relaxation_time": 1e-5}
-    r = asked(None, "drake", spring, "1 ms", body={"mass": "2 kg"}).outcome.restitution[1]
-    found = asked(r, "drake", spring, "1 ms", body={"mass": "2 kg"})
+    r = asked(None, "drake-sap", spring, "1 ms", body={"mass": "2 kg"}).outcome.restitution[1]
+    found = asked(r, "drake-sap", spring, "1 ms", body={"mass": "2 kg"})
     assert abs(found.free - r) > 0.02
     assert not any("per unit of mass" in reason for reason in found.reasons)
 

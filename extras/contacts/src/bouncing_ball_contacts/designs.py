@@ -36,6 +36,7 @@ from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
     Drops,
+    Impedance,
     Implicit,
     Law,
     OfSolver,
@@ -125,6 +126,8 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
     "gravity": ("m/s^2", in_si),
 }
 """The unit of each quantity of a bounce, and how it is read."""
+_LARGEST = 1e12
+"""Of a quantity in SI units; products of larger ones overflow."""
 _CONTACT = ("penetration", "stiffness", "contact_time")
 _EITHER = (("drop_height", "speed"), ("radius", "density"), *combinations(_CONTACT, 2))
 """Quantities of which one at most is given."""
@@ -198,6 +201,11 @@ class Bounce:
                 words = name.replace("_", " ")
                 number = read(words, value, unit)
                 object.__setattr__(self, name, number)
+                if not (number == 0 or 1 / _LARGEST <= abs(number) <= _LARGEST):
+                    raise Refused(
+                        f"{words} = {show(number, unit)} is not computed: only 0 and what is from "
+                        f"{1 / _LARGEST:g} to {_LARGEST:g} in SI units"
+                    )
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)
@@ -441,7 +449,11 @@ class Problem:
         r = found.restitution
         force = found.peak * self.bounce.reduced_mass
         rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
-        is_resolved = rest == 0 or rest >= self.engine.resolution * self.bounce.size
+        least = self.engine.resolution * self.bounce.size
+        if isinstance(law, Impedance):
+            # It hardly feels gravity: the body hops by what gravity moves it in a step.
+            least = max(least, self.bounce.load * step**2)
+        is_resolved = rest == 0 or rest >= least
         return Outcome(
             # A body that creeps is not followed until it is at rest.
             depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
@@ -601,8 +613,9 @@ class Problem:
         """
         if self.bounce.gives_contact:
             return YOURS if keeps else WANTED
-        by_number = self.engine.bounces_by_number and self.bounce.restitution > 0
-        for name in (IMPULSE, YOURS) if by_number else (YOURS, IMPULSE):
+        # The impulse also keeps r of boxes and of bodies that slide, which implicit springs of
+        # several points do not; if nothing is to rebound, a spring stops the body more softly.
+        for name in (IMPULSE, YOURS) if self.bounce.restitution > 0 else (YOURS, IMPULSE):
             found = rows[name].outcome if name in rows else None
             if found and self.is_near(found) and found.depth[1] <= self.usable_depth:
                 return name
@@ -675,8 +688,7 @@ def design(
         contact = kept if keeps else problem.stiffest(step)
         if keeps or problem.works(contact):
             rows[YOURS] = problem.row(contact)
-        is_known = bounce.points == 1 or problem.engine.bounces_by_number
-        if problem.engine.number and is_known and not one_body:
+        if problem.engine.number and not one_body:
             rows[IMPULSE] = problem.impulse(step)
     chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
     names = ", ".join(map(repr, rows))
@@ -765,7 +777,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 and outcome.depth[1] > bounce.limit,
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
-            (math.isnan(outcome.rest) and not law.is_number, VAGUE),
+            (math.isnan(outcome.rest) and not isinstance(law, Impedance), VAGUE),
             (
                 problem.engine.fixed_steps
                 and law.duration(bounce.impact_speed) > MOST_STEPS * row.step,

@@ -175,6 +175,8 @@ class Diagnosis(Page):
     damping_ratio: float
     reasons: tuple[str, ...]
     change: Change | None
+    lost: str = ""
+    """Why the body is lost; empty if it is not."""
 
     def __str__(self) -> str:
         row = engine_named(self.engine)
@@ -194,11 +196,15 @@ class Diagnosis(Page):
         is_kept = ""
         if wanted is not None and self.outcome.deviation(wanted) <= TOLERANCE:
             is_kept = f", and kept within {TOLERANCE:g}"
-        lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest)
+        lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest) and not self.lost
+        said = f"r = {self.outcome.around}"
+        if self.lost:
+            said = f"lost, because {self.lost}"
+            is_kept = ""
         lines = [
             (
                 True,
-                f"{row.name} at a step of {show(self.time_step, 's')}: r = {self.outcome.around}"
+                f"{row.name} at a step of {show(self.time_step, 's')}: {said}"
                 + ("" if wanted is None else f"; {wanted:g} is wanted{is_kept}"),
             ),
             (
@@ -297,6 +303,9 @@ def diagnose(
         reasons=(),
         change=None,
     )
+    if found.outcome.depth[1] > contact.problem.deepest:
+        why = [] if bounce.restitution is None else _of_design(contact)
+        return replace(found, lost=contact.problem.lost, reasons=(*_facts(contact, found), *why))
     reasons = [*_causes(contact, found), *_facts(contact, found)]
     if bounce.restitution is None or found.outcome.deviation(bounce.restitution) <= TOLERANCE:
         return replace(found, reasons=tuple(reasons))
@@ -489,8 +498,10 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             found.outcome.depth[1] > bounce.size,
             f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
         ),
-        (found.outcome.depth[1] > contact.problem.deepest, contact.problem.lost),
-        (math.isnan(found.outcome.rest), HOPS if law.is_number else VAGUE),
+        (
+            math.isnan(found.outcome.rest) and not isinstance(law, Impedance),
+            HOPS if law.is_number else VAGUE,
+        ),
         (
             impedance < 0.99,
             f"at an impedance of {impedance:g} this is r at a friction of 1, and another one "
@@ -576,6 +587,12 @@ def _at_this_step(contact: Contact) -> Iterator[str]:
     row = contact.problem.engine
     what = row.number if contact.law.is_number else "damping of this contact"
     yield f"no {what} keeps r within {TOLERANCE:g} at this step; the nearest: {_nearest(contact)}"
+    yield from _of_design(contact)
+
+
+def _of_design(contact: Contact) -> Iterator[str]:
+    """Yield what a design has at this step."""
+    row = contact.problem.engine
     try:
         found = design(contact.problem.bounce, row, contact.step if row.fixed_steps else None)
     except Refused:

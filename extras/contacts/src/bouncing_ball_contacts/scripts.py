@@ -10,7 +10,7 @@ FAMILIES = {
     "mujoco": "mujoco",
     "pybullet": "pybullet",
     "drake": "drake",
-    "drake-hunt-crossley": "drake",
+    "drake-sap": "drake",
     "lammps": "lammps",
     "lammps-limit-damping": "lammps",
     "lammps-hertz": "lammps",

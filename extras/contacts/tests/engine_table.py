@@ -1,7 +1,7 @@
 """Designs beside what their engines do: ``python tests/engine_table.py [ENGINE]...``.
 
-It prints a table, and names engines that are not installed. The exit status is 1 if a design
-differs.
+It prints a table, and names engines that are not installed; that of all engines is written into
+docs/validation.md. The exit status is 1 if a design differs.
 """
 
 import math
@@ -9,6 +9,7 @@ import sys
 
 import engine_runs
 import numpy as np
+from engine_page import write
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
@@ -181,6 +182,12 @@ CASES = [
     ("genesis", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("genesis", "box", BOX, "1 ms", {}),
 ]
+DESIGNS = (
+    "Designs at 13 instants within a step, at a friction of 0.5. *r designed* is what `bounce "
+    "design` prints, which holds for neighbouring contacts as well; the numbers before each column "
+    "*engine* are for the contact and the step as they are written. `two` are two free balls "
+    "without gravity."
+)
 HEAD = [
     "engine, shape",
     "given",
@@ -236,8 +243,7 @@ def cells(name, shape, wanted, time_step, more):
 
 def main():
     wanted = sys.argv[1:]
-    print("| " + " | ".join(HEAD) + " |")
-    print("|" + " --- |" * len(HEAD))
+    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
     agreed = 0
     cases = [case for case in CASES if not wanted or case[0] in wanted]
     missing = {}
@@ -249,11 +255,15 @@ def main():
             continue
         agreed += agrees
         mark = "" if agrees else " (differs)"
-        print("| " + " | ".join(texts) + mark + " |", flush=True)
+        lines.append("| " + " | ".join(texts) + mark + " |")
+        print(lines[-1], flush=True)
     run = len(cases) - sum(map(len, missing.values()))
-    print(f"\n{agreed} of {run} designs agree with their engines.")
-    for engine, names in missing.items():
-        print(f"Not run, because it is not installed: {engine} ({names[0]}).")
+    said = f"{agreed} of {run} designs agree with their engines."
+    if missing:
+        said += f" Not run, because they are not installed: {', '.join(missing)}."
+    print(said)
+    if not wanted:
+        write("designs", ["## Designs", "", DESIGNS, "", said, "", *lines])
     sys.exit(1 if agreed < run else 0)
 
 

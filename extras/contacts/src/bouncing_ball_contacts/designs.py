@@ -203,8 +203,8 @@ class Bounce:
                 object.__setattr__(self, name, number)
                 if not (number == 0 or 1 / _LARGEST <= abs(number) <= _LARGEST):
                     raise Refused(
-                        f"{words} = {show(number, unit)} is not computed: only 0 and what is from "
-                        f"{1 / _LARGEST:g} to {_LARGEST:g} in SI units"
+                        f"{words} = {number:g} {unit} is too large or too small: 0 and quantities "
+                        f"from {1 / _LARGEST:g} to {_LARGEST:g} in SI units are computed"
                     )
                 if number != default:
                     given[words] = show(number, unit, 6)

@@ -122,7 +122,7 @@ def stubs(tmp_path_factory) -> Checkout:
     """The workflow with scripts that only write their outputs, not run yet."""
     folder = tmp_path_factory.mktemp("stubs") / "checkout"
     without = shutil.ignore_patterns("__pycache__")
-    for name in ("config", "profiles", "src", "workflow"):
+    for name in ("config", "docs", "profiles", "src", "workflow"):
         shutil.copytree(ROOT / name, folder / name, ignore=without)
     shutil.copyfile(ROOT / "Snakefile", folder / "Snakefile")
     for script in (folder / "workflow/scripts").glob("*.py"):

@@ -6,7 +6,10 @@
 PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
-SNAKEMAKE := $(RUN) snakemake --cores 2 --quiet host reason --
+# A line for each step; errors as Snakemake prints them.
+SNAKEMAKE = $(RUN) snakemake --cores 2 --quiet host reason rules -- $(1) 2>&1 | sed -u -E -f workflow/progress.sed
+SHELL := bash
+.SHELLFLAGS := -o pipefail -c
 PIP := $(RUN) pip install --quiet --disable-pip-version-check
 LOCKED := $(PIP) --require-hashes --only-binary :all: --no-binary connection-pool --no-build-isolation
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --upgrade
@@ -28,14 +31,16 @@ endif
 .PHONY: all setup test test-cluster test-processors lint diff replication choices accept report release newest lowest lock clean ci everything test-everything
 
 all: setup
-	$(SNAKEMAKE)
+	@echo "Making every figure, table and text in results/, about half a minute:"
+	@$(call SNAKEMAKE)
 
 setup: $(VENV)/.installed
 $(VENV)/.installed: requirements-build.lock requirements.lock
-	$(PYTHON) -m venv --clear $(VENV)
-	$(PIP) --require-hashes --only-binary :all: --requirement requirements-build.lock
-	$(LOCKED) --requirement requirements.lock
-	$(PIP) --no-deps --no-build-isolation --editable .
+	@echo "Setting up $(VENV) from the lock file, about a minute."
+	@$(PYTHON) -m venv --clear $(VENV)
+	@$(PIP) --require-hashes --only-binary :all: --requirement requirements-build.lock
+	@$(LOCKED) --requirement requirements.lock
+	@$(PIP) --no-deps --no-build-isolation --editable .
 	@touch $@
 
 test: setup
@@ -58,7 +63,7 @@ lint: setup
 	$(RUN) snakemake --lint
 
 diff: setup
-	$(SNAKEMAKE) diff
+	@$(call SNAKEMAKE,diff)
 
 replication: clean diff
 
@@ -66,7 +71,7 @@ choices: setup
 	PYTHONPATH=src:workflow/scripts .venv/bin/python workflow/studies/choices.py
 
 accept: setup
-	$(SNAKEMAKE) accept
+	@$(call SNAKEMAKE,accept)
 
 report: all
 	$(RUN) snakemake --report results/report.html

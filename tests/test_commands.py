@@ -52,7 +52,8 @@ def made(makefile: Path, target: str) -> list[str]:
     """The same of what make would run for a target."""
     command = ["make", "--dry-run", "--always-make", "-C", str(makefile.parent), target]
     planned = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    return re.findall(r"-m snakemake (.*)", planned)
+    # What is printed goes through a filter.
+    return re.findall(r"-m snakemake (.*?)(?: *2>&1.*)?$", planned, re.MULTILINE)
 
 
 def commands(folder: Path) -> list[str]:

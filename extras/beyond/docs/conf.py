@@ -8,6 +8,7 @@ formulas are MathML, and the explorer is a separate page.
 
 import os
 import re
+import shutil
 from pathlib import Path
 
 import xarray as xr
@@ -15,6 +16,8 @@ from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 
 import bouncing_ball_beyond
+from bouncing_ball import pages
+from bouncing_ball.datasets import read
 
 ROOT = Path(__file__).parents[3]
 EXPLORER = "extras/beyond/figures/explorer.html"
@@ -140,12 +143,29 @@ def mathml(as_block):
     return write, None
 
 
+# Where the front page leads.
+LINKS = [
+    ("What this is and how to run it", "README.html"),
+    ("The article", "paper.html"),
+    ("its supplement", "supplement.html"),
+    ("all claims", "figures/claims.html"),
+    ("Past the paper", "extras/beyond/README.html"),
+    ("Contacts for physics engines", "extras/contacts/README.html"),
+]
+
+
 def home(app, failure):
-    """The site's folder opens with the page of README."""
-    page = (
-        '<!doctype html><title>Bouncing ball</title><meta http-equiv="refresh" content="0; url={}">'
-    )
-    Path(app.outdir, "index.html").write_text(page.format(f"{root_doc}.html"), encoding="utf-8")
+    """The front page is that of the results of the replication, with its pictures and data."""
+    folder = Path(app.outdir)
+    names = sorted((ROOT / "figures").glob("*.nc"))
+    page = pages.filled_in("html", {path.stem: read(path) for path in names}, links=LINKS)
+    # The tables in Markdown are pages of the site.
+    page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', page)
+    (folder / "index.html").write_text(page, encoding="utf-8")
+    (folder / "figures").mkdir(exist_ok=True)
+    for path in (ROOT / "figures").iterdir():
+        if path.suffix in (".nc", ".csv", ".png", ".svg"):
+            shutil.copyfile(path, folder / "figures" / path.name)
 
 
 def setup(app):

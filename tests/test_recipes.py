@@ -1,0 +1,127 @@
+"""The recipes of CONTRIBUTING.md, followed in a copy of the checkout: what is registered in three
+files is made, listed, drawn and shown, and the tests stay green before and after it is accepted.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bouncing_ball.datasets import read
+
+ROOT = Path(__file__).resolve().parents[1]
+FOLDERS = ("config", "docs", "figures", "profiles", "src", "tests", "workflow")
+FILES = ("Snakefile", "CONTRIBUTING.md", "pyproject.toml")
+
+
+def code(start: str) -> str:
+    """The example of CONTRIBUTING that begins with a line, without its indentation there."""
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    blocks = re.findall(r"^( *)```(?:yaml|python)\n(.*?)^ *```", text, re.DOTALL | re.MULTILINE)
+    (found,) = (
+        re.sub(f"^{indent}", "", block, flags=re.MULTILINE)
+        for indent, block in blocks
+        if block.strip().startswith(start)
+    )
+    return found
+
+
+def insert(file: Path, before: str, text: str) -> None:
+    """Insert a text before the only occurrence of another in a file."""
+    old = file.read_text("utf-8")
+    assert old.count(before) == 1, (file, before)
+    file.write_text(old.replace(before, text + before), "utf-8")
+
+
+def run(folder: Path, *arguments: str) -> str:
+    """What a module of Python prints in the copy, which must succeed."""
+    environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
+    done = subprocess.run(
+        [sys.executable, "-m", *arguments],
+        cwd=folder,
+        env=environment | {"OMP_NUM_THREADS": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.fixture(scope="module")
+def followed(tmp_path_factory) -> Path:
+    """A copy in which the recipes of a figure, a curve, a claim and a stage were followed."""
+    folder = tmp_path_factory.mktemp("recipes") / "checkout"
+    for name in FOLDERS:
+        without = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(ROOT / name, folder / name, ignore=without)
+    for name in FILES:
+        shutil.copyfile(ROOT / name, folder / name)
+    config = folder / "config/config.yaml"
+    # Few points are enough here.
+    fewer = config.read_text("utf-8").replace("samples: 301", "samples: 21")
+    config.write_text(fewer, "utf-8")
+    scripts = folder / "workflow/scripts"
+    figures = folder / "src/bouncing_ball/figures.py"
+    # A figure, in three files.
+    insert(config, "  fig13:\n", code("fig17:") + "\n")
+    insert(
+        scripts / "apparent_restitution.py", '"fig13": fig13', code('"fig17": fig10').strip() + " "
+    )
+    insert(figures, "SCHEMATICS = (", code("def fig17") + "\n\n")
+    insert(figures, '    "fig16": fig16,\n', '    "fig17": fig17,\n')
+    # A curve.
+    insert(
+        config,
+        "      - { restitution: 0.65, amplitude: 1.2 }\n",
+        "      - { restitution: 0.65, amplitude: 0.9 }\n",
+    )
+    # A claim.
+    insert(
+        folder / "src/bouncing_ball/claims.py",
+        '@claim(\n    "threshold ensures"',
+        code("@claim") + "\n\n",
+    )
+    # A stage: a section and a script of its name.
+    insert(
+        config,
+        "time_histories:\n",
+        "thresholds_elsewhere:\n  title: Permanent contact elsewhere\n  elsewhere:\n"
+        "    title: The threshold of another ball\n    caption: Threshold along ϖ.\n"
+        "    restitution: 0.5\n    frequency_ratio: { min: 1.0, max: 10.0, samples: 11 }\n\n",
+    )
+    script = (scripts / "permanent_contact.py").read_text("utf-8")
+    stage = re.sub(r"STAGE = \{.*?\}", 'STAGE = {"elsewhere": fig11}', script, flags=re.DOTALL)
+    (scripts / "thresholds_elsewhere.py").write_text(stage, "utf-8")
+    insert(
+        folder / "workflow/rules/common.smk",
+        '    "time_histories": ["release"],\n',
+        '    "thresholds_elsewhere": ["release"],\n',
+    )
+    insert(figures, '    "fig17": fig17,\n', '    "elsewhere": fig11,\n')
+    return folder
+
+
+CHOSEN = ("-k", "fig17 or elsewhere or every_figure")
+"""Tests that the entries of the registry decide."""
+
+
+def test_what_the_recipes_add_is_made_listed_and_shown(followed):
+    listed = run(followed, "snakemake", "--list")
+    assert "fig17 (Figure 17: greatest height along the frequency ratio)" in listed
+    assert "compute_thresholds_elsewhere (Permanent contact elsewhere)" in listed
+    # Nothing of it is in the reference yet.
+    run(followed, "pytest", "-q", "tests/test_pages.py", *CHOSEN, "-p", "no:cacheprovider")
+    run(followed, "snakemake", "--cores", "1", "fig06", "fig17", "elsewhere")
+    made = followed / "results/figures"
+    assert read(made / "fig17.nc").title == "Figure 17: greatest height along the frequency ratio"
+    assert read(made / "fig06.nc").sizes["case"] == 4
+    for path in [*made.glob("fig17.*"), *made.glob("elsewhere.*")]:
+        shutil.copyfile(path, followed / "figures" / path.name)
+    # As if it were accepted.
+    affected = ("tests/test_pages.py", "tests/test_figures.py")
+    run(followed, "pytest", "-q", *affected, *CHOSEN, "-p", "no:cacheprovider")

@@ -169,7 +169,7 @@ def test_stretched_impact_is_that_of_another_ratio():
 
 
 def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
-    """Eq. R8, and that no error above the threshold exceeds the tolerance."""
+    """Eq. R7, and that no error above the threshold exceeds the tolerance."""
     rng = np.random.default_rng(4)
     r, amplitude = random_orbits(rng, 200)
     # Next to the saddle-node some errors leave the tolerance upwards.

@@ -296,7 +296,7 @@ def law_thresholds(
     dict
         By the names in :data:`QUANTITIES`: |K|/ε, but for the height and for the phase, which feel
         the saddle-node in the first order. As functions of 1/ϖ their errors are concave: they
-        leave the tolerance downwards, or first upwards (Eq. R9 of the article).
+        leave the tolerance downwards, or first upwards (Eq. R7 of the article).
 
     Examples
     --------

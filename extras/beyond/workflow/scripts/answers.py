@@ -96,25 +96,26 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
     It is located by interpolation between two of the ratios, of which 400 leave 10⁻⁴ of it.
     """
     n = parameters["window_n"]
-    restitution = parameters["window_restitution"]
+    span = parameters["window_restitution"]
+    restitution = np.linspace(span["min"], span["max"], span["samples"])
     ratios = grid(parameters["window_ratio"])[::-1]
-    found = np.full((len(n), len(restitution)), np.nan)
-    for column, r in enumerate(restitution):
-        contact = Contact(1.0, float(damping_of(r)), "displacement")
-        nodes, *_ = bifurcations(n, "saddle-node", ratios, contact)
-        above = nodes / saddle_node(np.array(n)[:, np.newaxis], r) - 1
-        for row, share in enumerate(above):
-            (some,) = np.nonzero(share > 0)
-            if some.size:
-                at = slice(some[0] - 1, some[0] + 1)
-                found[row, column] = np.exp(np.interp(0, share[at], np.log(ratios[at])))
+    n_all, r_all = (each.reshape(-1, 1) for each in np.meshgrid(n, restitution, indexing="ij"))
+    contact = Contact(1.0, damping_of(r_all), "displacement")
+    nodes, *_ = bifurcations(n_all[:, 0], "saddle-node", ratios, contact)
+    above = nodes / saddle_node(n_all, r_all) - 1
+    found = np.full(len(above), np.nan)
+    for row, share in enumerate(above):
+        (some,) = np.nonzero(share > 0)
+        if some.size:
+            at = slice(some[0] - 1, some[0] + 1)
+            found[row] = np.exp(np.interp(0, share[at], np.log(ratios[at])))
     example = parameters["example"]
     contact = Contact(1.0, float(damping_of(example["restitution"])), "displacement")
     down = np.append(ratios[ratios > example["frequency_ratio"]], example["frequency_ratio"])
     node = bifurcations(example["n"], "saddle-node", down, contact)[0, 0, -1]
     return xr.Dataset(
         {
-            "window_ratio": (("window_n", "window_restitution"), found),
+            "window_ratio": (("window_n", "window_restitution"), found.reshape(len(n), -1)),
             "example_n": example["n"],
             "example_restitution": example["restitution"],
             "example_ratio": example["frequency_ratio"],

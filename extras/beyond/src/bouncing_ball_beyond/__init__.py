@@ -55,6 +55,8 @@ _MODULES = {
     "orbit_near": "periodic",
     "orbits": "periodic",
     "Table": "tables",
+    "RestOrbit": "rests",
+    "orbit_with_rest": "rests",
     "ParameterPath": "paths",
     "SpecialCurve": "curves",
     "special_curve": "curves",

@@ -478,8 +478,15 @@ def releases(ball, phase, u, amplitude, table=SINE):
     u = np.where(u == 0, SLOWEST, u)
     waves = table.waves(phase, amplitude)
     given = [ball.start(u), u, *waves]
-    rows = np.array(np.broadcast_arrays(0 * u, *given))
     closed = ball.has_closed_form(table)
+
+    def resonance(ball):
+        of_ball = ball.frequency_ratio, ball.zeta
+        return 0.0 if closed else 1.0 * oscillator.resonates(*of_ball, table.orders)
+
+    of_ball = ball.frequency_ratio, ball.zeta, ball.kappa
+    forced = oscillator.forcing(table, waves, *of_ball, resonance(ball))
+    rows = np.array(np.broadcast_arrays(0 * u, *given, *forced))
     of_time = oscillator.closed_motion if closed else oscillator.doubled_motion
     fewest = FEW if closed and table.compiled else 1
     given = np.broadcast_arrays(*given, amplitude, ball.frequency_ratio, ball.zeta, ball.kappa)
@@ -487,14 +494,14 @@ def releases(ball, phase, u, amplitude, table=SINE):
     speed = np.full(u.shape, np.nan)
     left = np.arange(u.size)
     while left.size >= fewest:
-        s, gap, u, *waves = rows
+        s, gap, u, *waves = rows[:-4]
         ratio = ball.frequency_ratio
         zeta = ball.zeta
         kappa = ball.kappa
-        resonant = 0.0 if closed else 1.0 * oscillator.resonates(ratio, zeta, table.orders)
+        resonant = resonance(ball)
         motion = of_time(s, gap, u, table, waves, 1.0, ratio, zeta)
         f, slope, second, third, bend, jerk, lasts = oscillator.bounds(
-            motion, table, waves, ratio, zeta, kappa, resonant
+            motion, table, rows[-4:], ratio, zeta, kappa, resonant
         )
         above = np.maximum(f, 0.0)
         step, last = safe_steps(s, above, slope, -second - kappa * third, bend, jerk)

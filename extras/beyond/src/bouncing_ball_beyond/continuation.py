@@ -26,7 +26,6 @@ from bouncing_ball_beyond.periodic import (
 )
 from bouncing_ball_beyond.special_orbits import (
     KINDS,
-    ON_THE_WAY,
     SINGULAR,
     Crossings,
     crossings_of,
@@ -128,7 +127,7 @@ class FollowedBranch:
     @cached_property
     def orbits(self) -> tuple[PeriodicOrbit, ...]:
         """The orbits one by one."""
-        return tuple(PeriodicOrbit(self.equations, row) for row in self.z)
+        return tuple(self.equations.orbit(row) for row in self.z)
 
     @cached_property
     def stable(self) -> NDArray:
@@ -204,12 +203,10 @@ class _Start(NamedTuple):
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
-    derivatives = equations.linear(z).derivatives
-    none = np.zeros((*derivatives.shape[:3], 1))
+    linear = equations.linear(z)
     normal = np.ones(z.shape)
     for _ in range(2):
-        border = normal[:, np.newaxis]
-        normal = _unit(solve_bordered(derivatives, none, border, np.ones((len(z), 1, 1)))[..., 0])
+        normal = _unit(equations.bordered(z, linear, normal)[..., 1])
     return normal
 
 
@@ -235,18 +232,8 @@ class _Points(NamedTuple):
 
 
 def _points_at(equations, z, tangents, linear: Linear) -> _Points:
-    """Orbits with their tests; that of a period halving is the distance from one."""
-    halves = equations.halves(z)
-    turn = equations.turn(linear)
-    tests = [
-        1 - turn,
-        1 + turn,
-        linear.flights.min(axis=1),
-        equations.least_speed(z),
-        equations.least_release(linear, z),
-        np.linalg.norm(halves, axis=1),
-    ]
-    return _Points(z, tangents, np.stack(tests, axis=1), halves)
+    """Orbits with their tests."""
+    return _Points(z, tangents, equations.tests(z, linear), equations.halves(z))
 
 
 def _same_sign(before: _Points, after: _Points) -> _Points:
@@ -329,7 +316,8 @@ def _march(start: _Start, window, until, points: int) -> list[tuple[_Points, str
                 paths[rows[j]].append(inner.take([j]))
             paths[rows[j]].append(here.take([j]))
             kind = until[rows[j]]
-            ends[rows[j]] = _end_of_step(crossed[j], last[j], back[j], kind)
+            passed = np.array(equations.watched)[crossed[j]]
+            ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"all {points} points are used"
         for j in np.flatnonzero(step < SHORTEST_STEP):
@@ -368,9 +356,9 @@ _AT_GOAL = "the end of the window"
 _CLOSED = "the branch is closed: it is back at its start"
 
 
-def _end_of_step(crossed, last, back, until) -> str:
-    """Why a branch ends with a step in which some tests have changed their signs, or ""."""
-    for name in np.array(ON_THE_WAY)[crossed]:
+def _end_of_step(passed, last, back, until) -> str:
+    """Why a branch ends with a step in which some kinds of special orbits are passed, or ""."""
+    for name in passed:
         if _ends_at(name, until):
             return str(name)
     if last:
@@ -428,7 +416,7 @@ def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]
                 here = halved_at(equations, crossings.ends[:, j])
             if here is not None and not (number == 0 and kind == own):
                 place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
-                passed.append(_Passed(number, place, PeriodicOrbit(equations, here, kind)))
+                passed.append(_Passed(number, place, equations.orbit(here, kind)))
         passed.sort(key=lambda each: each[:2])
         orbits = path.z
         last = _first_end([each for each in passed if _ends_at(each.orbit.kind, until[i])])
@@ -464,7 +452,12 @@ def _first_end(ends: list[_Passed]) -> _Passed | None:
     # Where a flight vanishes, an impact and a release do so at the same place.
     same = [each for each in ends if each.number == ends[0].number]
     same = [each for each in same if each.place < ends[0].place + 1e-6]
-    return min(same, key=lambda each: ON_THE_WAY.index(each.orbit.kind), default=None)
+    return min(same, key=lambda each: _rank(each.orbit), default=None)
+
+
+def _rank(orbit: PeriodicOrbit) -> int:
+    """The place of a kind among those that a march watches."""
+    return orbit.equations.watched.index(orbit.kind)
 
 
 def _in_words(end: str, name: str, value: float, goal: float, passed: list[_Passed]) -> str:
@@ -660,12 +653,12 @@ def _follow_all(orbits, along, to, points, until) -> list:
         task = _task(each, path, goal, until[[i]])
         same_ball = each.ball.at(**dict.fromkeys(each.ball.parameters, 0.0))
         same_table = each.table.at(**dict.fromkeys(each.table.parameters, 0.0))
-        key = each.kind, path, each.impacts, same_ball, same_table
+        key = type(each.equations), each.kind, path, each.impacts, same_ball, same_table
         same = next((rows for other, rows in groups if other == key), None)
         if same is None:
             groups.append((key, same := []))
         same.append((i, task))
-    for (kind, *_), rows in groups:
+    for (_, kind, *_), rows in groups:
         together = _stacked([task for _, task in rows])
         ways = range(together.goals.shape[1])
         parts = [_from_special(together, way, kind, points) for way in ways]
@@ -696,9 +689,9 @@ def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     ValueError
         If a goal is out of its range, or the orbit not on the path.
     """
-    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
-    equations = OrbitEquations(*given, (path,), orbit.table)
-    value = float(place_on(path, *given[::3], orbit.table))
+    here = {"ball": orbit.ball, "amplitude": orbit.amplitude, "table": orbit.table}
+    equations = replace(orbit.equations, **here, along=(path,))
+    value = float(place_on(path, **here))
     z = np.append(orbit.z[: equations.size], value)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
     if to is None:
@@ -1005,19 +998,16 @@ def _between_limits(equations: OrbitEquations) -> list:
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     followed = np.zeros(len(n), bool)
 
-    def keep(row, orbits):
-        followed[row] = bool(orbits) and orbits[0].admissible
-        if orbits and (followed[row] or isinstance(found[row], OrbitNotFound)):
-            found[row] = orbits[0]
-
     for amplitude in amplitudes:
         left = np.flatnonzero(~followed)
         if not left.size:
             return found
         rows = equations.rows(left)
         z, good = near_instants(rows, amplitude[left], 1)
+        followed[left[good]] = rows.rows(good).admissible(z[good])
         for i, row in enumerate(left):
-            keep(row, [PeriodicOrbit(single(rows, i), z[i])] if good[i] else [])
+            if good[i] and (followed[row] or isinstance(found[row], OrbitNotFound)):
+                found[row] = PeriodicOrbit(single(rows, i), z[i])
     around = [times * np.pi * n / table.slope for times in AROUND]
     for amplitude in [*amplitudes, *around]:
         left = np.flatnonzero(~followed)
@@ -1025,5 +1015,7 @@ def _between_limits(equations: OrbitEquations) -> list:
             return found
         searched = shortest_contacts(equations.rows(left), amplitude[left], 1)
         for row, orbits in zip(left, searched, strict=True):
-            keep(row, orbits)
+            followed[row] = bool(orbits) and orbits[0].admissible
+            if orbits and (followed[row] or isinstance(found[row], OrbitNotFound)):
+                found[row] = orbits[0]
     return found

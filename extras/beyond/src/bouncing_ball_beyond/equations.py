@@ -154,6 +154,13 @@ class OrbitEquations:
             table = path.shape(table, values[..., j, np.newaxis])
         return table
 
+    def orbit(self, z: NDArray, kind: str = ""):
+        """One orbit, shape (N,), with its quantities."""
+        # The module of orbits imports this one.
+        from bouncing_ball_beyond.periodic import PeriodicOrbit
+
+        return PeriodicOrbit(self, z, kind)
+
     def split(self, z) -> tuple[NDArray, Ball, NDArray]:
         """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
@@ -215,6 +222,44 @@ class OrbitEquations:
         legs[..., q - 2] = gap - ball.start(y[..., q + 1])
         legs[..., q - 1] = rate + y[..., q + 1]
         return legs, flights
+
+    def bordered(self, z, linear: Linear, normal: NDArray) -> NDArray:
+        """The step of Newton's method to the plane through z across a normal, and the tangent.
+
+        Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations.
+        """
+        right = np.zeros((*linear.legs.shape, 2))
+        right[..., 0] = -linear.legs
+        border_right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
+        return solve_bordered(linear.derivatives, right, normal[:, np.newaxis], border_right)
+
+    def tests(self, z, linear: Linear) -> NDArray:
+        """What is zero at the special orbits that a march watches, shape (rows, tests).
+
+        That of a period halving is the distance from one.
+        """
+        turn = self.turn(linear)
+        columns = [
+            1 - turn,
+            1 + turn,
+            linear.flights.min(axis=1),
+            self.least_speed(z),
+            self.least_release(linear, z),
+            np.linalg.norm(self.halves(z), axis=1),
+        ]
+        return np.stack(columns, axis=1)
+
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """The kinds of special orbits of these tests: they cost little, or end a branch."""
+        return (
+            "saddle-node",
+            "period doubling",
+            "vanishing flight",
+            "grazing of an impact",
+            "lost release",
+            "period halving",
+        )
 
     def residuals(self, z) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
@@ -598,13 +643,9 @@ def newton(
     if normal is None:
         normal = np.zeros_like(z)
         normal[:, -1] = 1.0
-    border = normal[:, np.newaxis]
-    border_right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
     for _ in range(iterations):
         linear = equations.linear(z)
-        right = np.zeros((*linear.legs.shape, 2))
-        right[..., 0] = -linear.legs
-        solution = solve_bordered(linear.derivatives, right, border, border_right)
+        solution = equations.bordered(z, linear, normal)
         step = solution[..., 0]
         z = z + step
         defect = np.abs(linear.legs).max(axis=(1, 2))

@@ -24,6 +24,7 @@ from bouncing_ball_beyond.balls import H, check_ball, checked, whole_number
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
+from bouncing_ball_beyond.rests import orbit_with_rest
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     Balls,
@@ -848,6 +849,8 @@ def orbit_of_motion(
 ):
     """The periodic orbit on which a ball ends, confirmed by Newton's method.
 
+    A locked motion with instantaneous impacts is an orbit with a rest, a :class:`.RestOrbit`.
+
     Parameters
     ----------
     ball, amplitude, phase, velocity, relative_velocity, impacts, table
@@ -860,7 +863,7 @@ def orbit_of_motion(
     Raises
     ------
     OrbitNotFound
-        If the motion does not repeat, or not without a rest on the table; the message says why.
+        If the motion does not repeat, or with rests that the table does not end at one lift-off.
     ValueError
         As :func:`.simulate`.
 
@@ -881,6 +884,10 @@ def orbit_of_motion(
     if not k:
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
     if ends["kind"][0] == LOCKED and not ball.lasts:
+        if not ball.sinks:
+            found = orbit_with_rest(ball, amplitude=amplitude, table=table)
+            if found.periods == m:
+                return found
         raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
     state = ends["end_phase"], ends["end_speed"]
     on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)

@@ -45,27 +45,44 @@ def resonates(ratio, zeta, orders=(1,)):
 
 def free_responses(s, ratio, zeta):
     """g, g′ and 1 - K, for a ζ that is not next to 1."""
-    over = np.real(zeta) > 1
     square = (1 - zeta) * (1 + zeta)
+    over = np.real(zeta) > 1
+    if not np.any(over):
+        return _underdamped(s, ratio, zeta, ratio * np.sqrt(square))
+    if np.all(over):
+        return _overdamped(s, ratio, zeta, np.sqrt(-square))
     omega = ratio * np.sqrt(np.where(over, 0.75, square))
-    decay = np.where(over, 0.5, zeta) * ratio
+    under = _underdamped(s, ratio, np.where(over, 0.5, zeta), omega)
+    root = np.sqrt(np.where(over, -square, 3.0))
+    above = _overdamped(s, ratio, np.where(over, zeta, 2.0), root)
+    return tuple(np.where(over, x, y) for x, y in zip(above, under, strict=True))
+
+
+def _underdamped(s, ratio, zeta, omega):
+    """The same for ζ < 1, with ω = ϖ√(1 - ζ²)."""
+    decay = zeta * ratio
     lost = -np.expm1(-decay * s)
     sine, versine = swing(omega * s)
-    g = (1 - lost) * sine / omega
-    cosine = (1 - lost) * (1 - versine)
-    lost = lost + (1 - lost) * versine
-    if np.any(over):
-        root = np.sqrt(np.where(over, -square, 0.75))
-        paces = ratio / (zeta + root), ratio * (zeta + root)
-        slow, fast = (np.exp(-pace * s) for pace in paces)
-        g = np.where(over, (slow - fast) / (2 * ratio * root), g)
-        cosine = np.where(over, (slow + fast) / 2, cosine)
-        lost = np.where(over, 1 - cosine, lost)
-    return g, cosine - zeta * ratio * g, lost - zeta * ratio * g
+    envelope = 1 - lost
+    g = envelope * sine / omega
+    wave = envelope * versine
+    return g, envelope - wave - decay * g, lost + wave - decay * g
 
 
-def closed_motion(s, gap, u, table, waves, gravity, ratio, zeta):
-    """A contact by the closed form (Eqs. 12 and 13), a time s after it started from δ′ = -u."""
+def _overdamped(s, ratio, zeta, root):
+    """The same for ζ > 1, with √(ζ² - 1)."""
+    slow = np.exp(-ratio * s / (zeta + root))
+    fast = np.exp(-ratio * s * (zeta + root))
+    g = (slow - fast) / (2 * ratio * root)
+    cosine = (slow + fast) / 2
+    return g, cosine - zeta * ratio * g, 1 - cosine - zeta * ratio * g
+
+
+def closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=True):
+    """A contact by the closed form (Eqs. 12 and 13), a time s after it started from δ′ = -u.
+
+    The pushes and shoves of the table are left out without ``loads``.
+    """
     g, slope, lost = free_responses(s, ratio, zeta)
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -73,17 +90,26 @@ def closed_motion(s, gap, u, table, waves, gravity, ratio, zeta):
     speed = -u * slope - (gravity + gap * stiffness) * g
     pushes, shoves = [], []
     for k, x, y in table.each_wave(waves):
-        sine, versine = swing(s if k == 1 else k * s)
+        damped = loss if k == 1 else k * loss
         detuning = (ratio - k) * (ratio + k)
-        scale = detuning * detuning + (k * loss) ** 2
+        scale = detuning * detuning + damped * damped
+        sine, versine = swing(s if k == 1 else k * s)
+        if k > 1:
+            # What pushes the contact is k² times as large, and its rate k³ times.
+            x, y = k * k * x, k * k * y
         real = lost - versine
-        imaginary = sine - k * g
-        cosine_part = k * k * (real * detuning + imaginary * (k * loss)) / scale
-        sine_part = k * k * (imaginary * detuning - real * (k * loss)) / scale
-        position = position + (y * cosine_part + x * sine_part)
-        speed = speed + (y * (k * k * g - k * sine_part) + k * x * cosine_part)
-        pushes.append(k * k * (y * (1 - versine) + x * sine))
-        shoves.append(k**3 * (x * (1 - versine) - y * sine))
+        imaginary = sine - (g if k == 1 else k * g)
+        of_cosine = (real * detuning + imaginary * damped) / scale
+        of_sine = (imaginary * detuning - real * damped) / scale
+        position = position + (y * of_cosine + x * of_sine)
+        if k == 1:
+            speed = speed + (y * (g - of_sine) + x * of_cosine)
+        else:
+            speed = speed + (y * (g - k * of_sine) + k * x * of_cosine)
+        if loads:
+            pushes.append(y * (1 - versine) + x * sine)
+            shove = x * (1 - versine) - y * sine
+            shoves.append(shove if k == 1 else k * shove)
     return Motion(position, speed, pushes, shoves)
 
 
@@ -97,37 +123,38 @@ def doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta):
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
-    orders = np.array(table.orders, float).reshape(-1, *(1 for _ in np.shape(s + 0 * loss)))
-
     size = np.max(np.abs(s) * (max(table.orders) + np.real(ratio) * (1 + 2 * np.real(zeta))))
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
     part = (s + 0 * loss) / 2.0**doublings
-    nothing = 0 * np.asarray(part)
-    free = np.array([nothing, 1 + nothing, nothing])
-    forced = np.zeros((2, len(orders), *np.shape(nothing)), nothing.dtype)
-    term, sines = free, forced
+
+    def rates(g, rate, load, *forced):
+        waves = zip(table.orders, forced[::2], forced[1::2], strict=True)
+        changes = [each for k, sine, cosine in waves for each in (k * cosine, g - k * sine)]
+        return np.array([rate, -loss * rate - stiffness * g, g, *changes])
+
+    term = np.zeros((3 + 2 * len(table.orders), *np.shape(part)), np.asarray(part).dtype)
+    term[1] = 1.0
+    found = term
     for j in range(1, 21):
-        step = part / j
-        g, rate, _ = term
-        sine, cosine = sines
-        sines = step * np.array([orders * cosine, g - orders * sine])
-        term = step * np.array([rate, -loss * rate - stiffness * g, g])
-        free = free + term
-        forced = forced + sines
-    g, rate, load = free
-    sine, cosine = forced
+        term = part / j * rates(*term)
+        found = found + term
+    g, rate, load, *forced = found
     for _ in range(doublings):
         held = rate + loss * g
-        a = held + np.cos(orders * part)
-        b = orders * g + np.sin(orders * part)
+        for i, k in enumerate(table.orders):
+            sine, cosine = forced[2 * i : 2 * i + 2]
+            a = held + np.cos(k * part)
+            b = k * g + np.sin(k * part)
+            forced[2 * i] = a * sine + b * cosine
+            forced[2 * i + 1] = a * cosine - b * sine + g * g
         load = (1 + held) * load + g * g
-        sine, cosine = a * sine + b * cosine, a * cosine - b * sine + g * g
         g, rate = g * (held + rate), rate * rate - stiffness * g * g
         part = 2 * part
     position = gap * (rate + loss * g) - u * g - gravity * load
     speed = -gap * stiffness * g - u * rate - gravity * g
     pushes, shoves = [], []
-    for (k, x, y), of_sine, of_cosine in zip(table.each_wave(waves), sine, cosine, strict=True):
+    responses = zip(table.each_wave(waves), forced[::2], forced[1::2], strict=True)
+    for (k, x, y), of_sine, of_cosine in responses:
         position = position + k * k * (y * of_cosine + x * of_sine)
         speed = speed + k * k * (y * (g - k * of_sine) + k * x * of_cosine)
         sin = np.sin(k * s)
@@ -144,7 +171,7 @@ def motion(s, gap, u, table, waves, gravity, ratio, zeta):
         delicate = delicate | (np.abs(s * s * ((ratio - k) * (ratio - k) + zeta * zeta)) < 1)
     given = s, gap, u, *waves, gravity, ratio, zeta
     if not np.any(delicate):
-        return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta)[:2]
+        return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
     if np.all(delicate):
         return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta)[:2]
     given = np.broadcast_arrays(*given)
@@ -154,13 +181,36 @@ def motion(s, gap, u, table, waves, gravity, ratio, zeta):
         return *values[:3], table, values[3:-3], *values[-3:]
 
     with np.errstate(all="ignore"):  # of the closed form where it is not used
-        gap, speed = (np.array(each) for each in closed_motion(*ordered(given))[:2])
+        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), loads=False)[:2])
     some = doubled_motion(*ordered([each[delicate] for each in given]))
     gap[delicate], speed[delicate] = some[:2]
     return gap[()], speed[()]
 
 
-def bounds(motion, table, waves, ratio, zeta, kappa, resonant):
+def forcing(table, waves, ratio, zeta, kappa, resonant):
+    """What the table adds to the bounds of the search for a release.
+
+    The largest steady response of δ + κδ′, of its second derivative and of its third, and the
+    growth of the energy of F, see :func:`bounds`.
+    """
+    loss = 2 * zeta * ratio
+    held = bend = jerk = pushed = jerked = 0.0
+    for k, x, y in table.each_wave(waves):
+        detuning = (ratio - k) * (ratio + k)
+        share = (1 - resonant) / (detuning * detuning + (k * loss) ** 2 + resonant)
+        force = k * k * np.sqrt(x * x + y * y) * np.sqrt(1 + (kappa * k) ** 2)
+        response = force * np.sqrt(share)
+        held = held + response
+        bend = bend + k * k * response
+        jerk = jerk + k**3 * response
+        pushed = pushed + force
+        jerked = jerked + k * force
+    bend = bend + resonant * pushed * (1 + loss)
+    jerk = jerk + resonant * (jerked + pushed * loss)
+    return held, bend, jerk, 2 * resonant * pushed / ratio
+
+
+def bounds(motion, table, forced, ratio, zeta, kappa, resonant):
     r"""f = -δ - κδ′, f′, δ″ and δ‴, K and J of the search for a release, and whether there is none.
 
     What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +
@@ -169,38 +219,32 @@ def bounds(motion, table, waves, ratio, zeta, kappa, resonant):
         \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
 
     Next to a resonance, where ``resonant`` is 1 and not 0, F is all of f besides 1/ϖ², and forced
-    by l = Σ|w″|√(1 + κ²k²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ.
+    by l = Σ|w″|√(1 + κ²k²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ. ``forced`` is
+    from :func:`forcing`.
     """
     position, rate, pushes, shoves = motion
+    held, bend_forced, jerk_forced, gained = forced
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
-    second = sum(pushes) - 1 - loss * rate - stiffness * position
-    third = sum(shoves) - loss * second - stiffness * rate
+    push, shove = (parts[0] if len(parts) == 1 else sum(parts) for parts in (pushes, shoves))
+    second = push - 1 - loss * rate - stiffness * position
+    third = shove - loss * second - stiffness * rate
     f = -position - kappa * rate
     slope = -rate - kappa * second
     free = f - 1 / stiffness
     free_rate = slope
-    held = bend_forced = jerk_forced = pushed = jerked = 0.0
-    for (k, x, y), push, shove in zip(table.each_wave(waves), pushes, shoves, strict=True):
+    for k, push, shove in zip(table.orders, pushes, shoves, strict=True):
         detuning = (ratio - k) * (ratio + k)
-        share = (1 - resonant) / (detuning * detuning + (k * loss) ** 2 + resonant)
+        damped = loss if k == 1 else k * k * loss
+        share = (1 - resonant) / (detuning * detuning + damped * loss + resonant)
         # The steady response of δ + κδ′.
-        a = (detuning + kappa * loss * k * k) * share
+        a = (detuning + kappa * damped) * share
         b = (kappa * detuning - loss) * share
-        free = free + a * push + b * shove
-        free_rate = free_rate + a * shove - k * k * b * push
-        force = k * k * np.sqrt(x * x + y * y) * np.sqrt(1 + (kappa * k) ** 2)
-        response = force * np.sqrt(share)
-        held = held + response
-        bend_forced = bend_forced + k * k * response
-        jerk_forced = jerk_forced + k**3 * response
-        pushed = pushed + force
-        jerked = jerked + k * force
-    energy = np.sqrt(free_rate * free_rate + stiffness * free * free)
-    energy = energy + 2 * resonant * pushed / ratio
+        free = free + (a * push + b * shove)
+        free_rate = free_rate + (a * shove - (b if k == 1 else k * k * b) * push)
+    energy = np.sqrt(free_rate * free_rate + stiffness * free * free) + gained
     growth = 1 + 4 * zeta * zeta
     bend = ratio * np.sqrt(growth) * energy
-    jerk = ratio * np.sqrt(1 + growth) * bend + jerk_forced + resonant * (jerked + pushed * loss)
-    bend = bend + bend_forced + resonant * pushed * (1 + loss)
+    jerk = ratio * np.sqrt(1 + growth) * bend + jerk_forced
     lasts = energy / ratio + held <= (1 - resonant) / stiffness
-    return f, slope, second, third, bend, jerk, lasts
+    return f, slope, second, third, bend + bend_forced, jerk, lasts

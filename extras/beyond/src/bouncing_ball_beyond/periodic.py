@@ -507,7 +507,7 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def _one_amplitude(amplitude) -> float:
+def one_amplitude(amplitude) -> float:
     """The amplitude as a number; ValueError unless it is a positive one."""
     value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     if np.ndim(value):
@@ -555,7 +555,7 @@ def orbits(
     [(8.209, True), (8.007, False)]
     """
     check_ball(ball)
-    amplitude = _one_amplitude(amplitude)
+    amplitude = one_amplitude(amplitude)
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
     equations = OrbitEquations(ball, *counts, table=table)
@@ -739,7 +739,7 @@ def orbit_near(
         If Newton's method does not converge.
     """
     check_ball(ball)
-    amplitude = _one_amplitude(amplitude)
+    amplitude = one_amplitude(amplitude)
     phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
     if phases.shape != velocities.shape or phases.ndim != 1:
         raise ValueError("phases, velocities: must have one entry for each impact")

@@ -78,12 +78,13 @@ class Balls:
 @np.errstate(divide="ignore", invalid="ignore")
 def landings(table, start, gap, w, waves, height, amplitude):
     """:func:`.one_ball.landing` for arrays of one shape, with the table at a height at first."""
-    given = start, gap, w, *waves, amplitude
+    _, _, bend, jerk, *_ = table.bounds
+    given = start, gap, w, *waves
     absolute = w + table.pulls(waves)[0]
     below = gap + (height - amplitude * table.peaks[0])
     aloft = np.sqrt(np.maximum(absolute * absolute + 2 * below, 0.0))
-    rows = np.array([*given, absolute - aloft, absolute + aloft])
-    _, _, bend, jerk, *_ = table.bounds
+    limits = 1 + bend * amplitude, jerk * amplitude
+    rows = np.array([*given, *limits, absolute - aloft, absolute + aloft])
     fewest = FEW if table.compiled else 1
     time = np.full_like(start, np.nan)
     speed = np.full_like(start, np.nan)
@@ -91,14 +92,14 @@ def landings(table, start, gap, w, waves, height, amplitude):
     steps = 0
     while left.size >= fewest and steps < STEPS:
         steps += 1
-        t, gap, w, *waves, amplitude, ascent, descent = rows
+        t, gap, w, *waves, strongest, sharpest, ascent, descent = rows
         t = np.where((ascent <= t) & (t < descent), descent, t)
         position, rate, second = table.flights(t, gap, w, waves)
         f = np.maximum(position, 0.0)
-        step, last = safe_steps(t, f, rate, second, 1 + bend * amplitude, jerk * amplitude)
+        step, last = safe_steps(t, f, rate, second, strongest, sharpest)
         rows[0] = t + step
         if last.any():
-            third = table.third(t, waves)
+            third = table.third(t, w, rate, waves)
             slowed = -rate - step * (second + step * third / 2)
             time[left] = rows[0]
             speed[left] = np.maximum(slowed, 0.0)
@@ -106,7 +107,7 @@ def landings(table, start, gap, w, waves, height, amplitude):
             left = left[going]
             rows = rows.take(going, axis=1)
     for i in left if table.compiled else ():
-        time[i], speed[i] = one_ball.landing(*(each[i] for each in given))
+        time[i], speed[i] = one_ball.landing(*(each[i] for each in given), amplitude[i])
     return time, speed
 
 

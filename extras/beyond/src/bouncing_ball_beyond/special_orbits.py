@@ -56,21 +56,21 @@ KINDS = {
         lambda equations, z, linear: equations.halving(z),
         "the orbit merges with one of half its period",
     ),
+    "end of a rest": Kind(
+        lambda equations, z, linear: equations.rest(z),
+        "the ball no longer comes to rest before it leaves the table",
+    ),
+    "lost lift-off": Kind(
+        lambda equations, z, linear: equations.fall(z),
+        "the table no longer falls faster than a ball",
+    ),
 }
 """The kinds of special orbits of a branch, by name."""
 
-ON_THE_WAY = (
-    "saddle-node",
-    "period doubling",
-    "vanishing flight",
-    "grazing of an impact",
-    "lost release",
-    "period halving",
-)
-"""The kinds whose tests are computed at each step: they cost little, or end a branch."""
 
 SINGULAR = slice(2, 5)
-"""Those of them at which multipliers have poles or jump: beyond them there are no orbits."""
+"""Those tests of `OrbitEquations.watched` at which multipliers have poles or jump: beyond them
+there are no orbits."""
 
 
 def kind_named(name: str) -> str:
@@ -124,12 +124,12 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     row : ndarray of int, shape (points,)
     z, slopes : ndarray, shape (points, N)
     tests : ndarray, shape (points, tests)
-        Those of `ON_THE_WAY`.
+        Those of `OrbitEquations.tests`.
     """
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
     columns = [*tests.T, every.clearance(z), every.contact_clearance(z)]
-    names = np.array([*ON_THE_WAY, "grazing of a flight", "grazing of a release"])
+    names = np.array([*equations.watched, "grazing of a flight", "grazing of a release"])
     values = np.array(columns)
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
     # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.

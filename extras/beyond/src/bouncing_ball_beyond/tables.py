@@ -25,10 +25,9 @@ CYCLE = (np.sin, np.cos)
 def swing(x):
     """sin x and 1 - cos x, which loses no digits for a small x.
 
-    For many real numbers numpy finds them faster by a tangent, at whose poles complex steps are
-    lost.
+    For real numbers numpy finds them faster by a tangent, at whose poles complex steps are lost.
     """
-    if np.iscomplexobj(x) or np.size(x) < 200:
+    if np.iscomplexobj(x):
         sine = np.sin(x / 2)
         return 2 * sine * np.cos(x / 2), 2 * sine * sine
     half = np.tan(x / 2)
@@ -224,8 +223,8 @@ class Table:
             second = second + (bend if k == 1 else k * k * bend)
         return position, rate, second
 
-    def third(self, t, waves):
-        """δ‴ a time t after a release."""
+    def third(self, t, w, rate, waves):
+        """δ‴ a time t after a release, where the relative speed is the rate."""
         found = 0.0
         for k, x, y in self.each_wave(waves):
             sine, versine = swing(k * t)
@@ -384,7 +383,10 @@ class Table:
 
     def at_release(self, t, gap, w, waves):
         """δ, δ′, δ″ and δ‴ as numbers."""
-        return (*(float(x) for x in self.flights(t, gap, w, waves)), float(self.third(t, waves)))
+        return (
+            *(float(x) for x in self.flights(t, gap, w, waves)),
+            float(self.third(t, w, 0.0, waves)),
+        )
 
     def resumption(self, gap, w, phase, amplitude, kappa):
         """As :func:`.one_ball.rise`: whether a contact resumes below the level, and the time."""
@@ -503,6 +505,18 @@ class Sine(Table):
         """w′, -w″ and -w‴ at the start."""
         return waves[0], waves[1], waves[0]
 
+    def flights(self, t, gap, w, waves):
+        """δ, δ′ and δ″ a time t after a release."""
+        x, y = waves
+        sine, versine = swing(t)
+        position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
+        rate = (w - t) + (y * sine + x * versine)
+        return position, rate, (y - 1) + (x * sine - y * versine)
+
+    def third(self, t, w, rate, waves):
+        """w′, which is -w‴, from what gravity and the table have changed of the speed."""
+        return waves[0] + w - t - rate
+
     def phase_of_slope(self, slope, side=1):
         """± arccos of the slope."""
         return side * np.arccos(np.clip(slope, -1, 1))
@@ -529,6 +543,10 @@ class Sine(Table):
         """The two phases at which Λ sin τ = 1, and π/2 for both if there are none."""
         level = np.arcsin(np.minimum(1, 1 / np.asarray(amplitude, float)))
         return np.stack([level, np.pi - level], axis=-1)
+
+    def lift_offs(self, amplitude):
+        """arcsin 1/Λ, if Λ > 1."""
+        return np.arcsin(1 / np.array([amplitude])) if amplitude > 1 else np.empty(0)
 
     def until_lift_off(self, phase, amplitude):
         """As of a table, by an arcsine."""

@@ -1,0 +1,339 @@
+"""Orbits of a ball that comes to rest on the table and leaves it with the next lift-off.
+
+A ball with a restitution coefficient that bounces infinitely often in a finite time rests on the
+table until this falls faster than a ball, 1 + w″ = 0. It leaves without a speed, at a phase that is
+always the same, so that it has no memory: the motion from one lift-off to the next repeats, and is
+superstable. Its equations are the lift-off and the flights after it. The ball comes back to rest
+for any values of the parameters nearby, so that its return is no equation. The length of the rest
+is a test function: where it is zero the ball is still bouncing at the next lift-off.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.balls import Ball, H, check_ball, whole_number
+from bouncing_ball_beyond.equations import FAR, Flights, Linear, OrbitEquations, flight, newton
+from bouncing_ball_beyond.equations import solved_or_nan as solve
+from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, one_amplitude
+from bouncing_ball_beyond.tables import SINE, Table, check_table
+
+TAIL = 1e-2
+"""The last bounces that are slower than this do not tell where a flight or an impact grazes: their
+heights, u²/2, get as small as rounding errors."""
+
+SOON = 1e-6
+"""A flight after a lift-off does not turn back so soon: it starts as slowly as t³."""
+
+MOST = 2000
+"""The largest number of impacts between a lift-off and the rest after it."""
+
+CYCLES = 20
+"""The largest number of rests after which a ball leaves at the same lift-off again."""
+
+
+@dataclass(frozen=True)
+class RestEquations(OrbitEquations):
+    """Orbits with a rest: z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), with the lift-off at τ₀.
+
+    After the last of the k impacts the bounces are summed up.
+    """
+
+    unknowns = 2
+
+    @cached_property
+    def size(self) -> int:
+        """2k + 1."""
+        return 2 * self.impacts + 1
+
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """There are no multipliers: both are zero."""
+        kinds = ("vanishing flight", "grazing of an impact", "lost lift-off", "end of a rest")
+        return ("saddle-node", "period doubling", *kinds)
+
+    def orbit(self, z, kind=""):
+        """One orbit with a rest."""
+        return RestOrbit(self, z, kind)
+
+    def split(self, z):
+        """The impacts (rows, k, 2), the ball and Λ; the lift-off is not among them."""
+        x = z[..., : 2 * self.impacts].reshape(*z.shape[:-1], self.impacts, 2)
+        return x, *self.at(z[..., self.size :])
+
+    def ends(self, z):
+        """The flights after the lift-off and after all impacts but the last."""
+        x, ball, amplitude = self.split(z)
+        table = self.table_at(z[..., self.size :])
+        before = x[..., :-1, :]
+        bounce = ball.contact(before[..., 0], before[..., 1], None, amplitude, table=table)
+        start = z[..., self.size - 1 : self.size]
+        leaves = np.concatenate([start, before[..., 0]], axis=-1)
+        speed = np.concatenate([0 * start, bounce.speed], axis=-1)
+        time = x[..., 0] - leaves
+        return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
+
+    def linear(self, z):
+        """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight.
+
+        The last slow bounces are not counted as flights that may vanish.
+        """
+        y = z + 1j * H * np.eye(z.shape[1])[:, np.newaxis]
+        x, _, amplitude = self.split(y)
+        leaves, gap, speed, time, _, table = self.ends(y)
+        gap, rate = flight(time, leaves, gap, speed, amplitude, table)
+        lifts = 1 + amplitude * table(leaves[..., :1], 2)
+        values = np.concatenate([lifts, gap, rate + x[..., 1]], axis=-1)
+        derivatives = np.moveaxis(values.imag, 0, -1) / H
+        lasting = np.where(self._tail(speed[0].real), FAR, time[0].real)
+        return Linear(values[0].real[..., np.newaxis], derivatives, lasting)
+
+    @staticmethod
+    def _tail(speeds):
+        """Which of the speeds are those of the last slow bounces, shape (rows, k)."""
+        return np.cumprod(np.abs(speeds[:, ::-1]) < TAIL, axis=1)[:, ::-1].astype(bool)
+
+    def bordered(self, z, linear, normal):
+        """As of orbits without a rest, by one matrix."""
+        matrix = np.concatenate([linear.derivatives, normal[:, np.newaxis]], axis=1)
+        right = np.zeros((*z.shape, 2))
+        right[:, :-1, 0] = -linear.legs[..., 0]
+        right[:, -1, 1] = 1.0
+        return solve(matrix, right)
+
+    def tests(self, z, linear):
+        """What is zero at the kinds that are watched."""
+        ones = np.ones(len(z))
+        last = self.least_speed(z), self.fall(z), self.rest(z)
+        return np.stack([ones, ones, linear.flights.min(axis=1), *last], axis=1)
+
+    def rest(self, z):
+        """How long the ball rests, shape (rows,): what the bounces leave until the next lift-off.
+
+        With g = 1 + w″ and g′ = w‴ at the last impact, infinitely many bounces of the speed w take
+        T₀ (1 - g′T₀/(3g)), T₀ = 2w/(g (1 - r)).
+        """
+        x, ball, amplitude = self.split(z)
+        table = self.table_at(z[..., self.size :])
+        tau, u = (x[..., -1:, i] for i in (0, 1))
+        w = ball.contact(tau, u, None, amplitude, table=table).speed
+        gravity = 1 + amplitude * table(tau, 2)
+        whole = 2 * w / (gravity * (1 - w / u))
+        bounces = whole * (1 - amplitude * table(tau, 3) * whole / (3 * gravity))
+        period = 2 * np.pi * np.asarray(self.periods)
+        return z[:, self.size - 1] + period - (tau + bounces)[..., 0]
+
+    def fall(self, z):
+        """How fast the table falls away at the lift-off, shape (rows,): -w‴, zero if it no longer
+        does."""
+        _, _, amplitude = self.split(z)
+        table = self.table_at(z[..., self.size :])
+        return -(amplitude * table(z[:, self.size - 1 : self.size], 3))[..., 0]
+
+    def least_speed(self, z):
+        """The least closing speed, without the last slow bounces."""
+        speeds = self.split(z)[0][..., 1]
+        return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
+
+    def clearance(self, z, flights=None):
+        """How far the ball is above the table where flights turn back, without the last bounces."""
+        ends = self.ends(z)
+        slow = self._tail(ends.speed)
+        slow[:, 0] = False
+        time = np.where(slow, 0.0, ends.flight)
+        return super().clearance(z, _Lifted(*ends._replace(flight=time)))
+
+    def contact_clearance(self, z):
+        """There are no contacts."""
+        return np.full(len(z), FAR)
+
+    def halves(self, z):
+        """There are no halves."""
+        return np.ones((len(z), 1))
+
+    def trace_and_determinant(self, linear):
+        """Both are zero, because the ball leaves without a memory."""
+        return np.zeros(len(linear.legs)), np.zeros(len(linear.legs))
+
+    def stable(self, linear):
+        """All orbits are superstable."""
+        return np.ones(len(linear.legs), bool)
+
+    def admissible(self, z):
+        """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
+        linear = self.linear(z)
+        good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
+        return good & (self.rest(z) > 0) & (self.fall(z) > 0) & (self.clearance(z) > 0)
+
+
+class _Lifted(Flights):
+    """Flights of which the first one starts with a lift-off."""
+
+    def bends(self):
+        """As of other flights, without the lift-off itself."""
+        times = super().bends()
+        first = times[:, 0]
+        times[:, 0] = np.where(first < SOON, self.flight[:, :1], first)
+        return times
+
+
+class RestOrbit(PeriodicOrbit):
+    """A periodic motion of a ball that rests on the table once in its period.
+
+    The impacts are those up to the bounces that are summed up; see :class:`PeriodicOrbit`.
+    """
+
+    @cached_property
+    def _impacts(self):
+        return self.z[: 2 * self.impacts].reshape(self.impacts, 2)
+
+    @property
+    def lift_off(self) -> float:
+        """Phase of the table at which the ball leaves it, in (-π, π]."""
+        return float(np.pi - (np.pi - self.z[self.equations.size - 1]) % (2 * np.pi))
+
+    @property
+    def rest(self) -> float:
+        """How long the ball rests on the table."""
+        return float(self.equations.rest(self.z[np.newaxis])[0])
+
+    @property
+    def contact_duration(self):
+        """Impacts are instants; the rest is not counted."""
+        return self._each(np.zeros(self.impacts))
+
+    @property
+    def flight_time(self):
+        """Durations of the flights before the impacts, the first one from the lift-off on."""
+        return self._each(self._ends.flight)
+
+    @property
+    def release_phase(self):
+        """Phase of the table at the impacts, in (-π, π]."""
+        return self.phase
+
+    @property
+    def relative_bounce_velocity(self):
+        """δ′ after the impacts."""
+        given = self.times, self.speeds, None, self.amplitude
+        return self._each(self.ball.contact(*given, table=self.table).speed)
+
+    @property
+    def bounce_velocity(self):
+        """Velocity of the ball after the impacts."""
+        velocity = self.amplitude * self.table(self.times, 1)
+        return self._each(velocity + self.relative_bounce_velocity)
+
+    @property
+    def apparent_restitution(self):
+        """r."""
+        return self._each(self.relative_bounce_velocity / self.speeds)
+
+    @property
+    def monodromy(self) -> NDArray:
+        """Zero: the ball leaves without a memory."""
+        return np.zeros((2, 2))
+
+    @property
+    def multipliers(self) -> NDArray:
+        """Both are zero."""
+        return np.zeros(2, complex)
+
+    @property
+    def digits_left(self) -> float:
+        """How many decimal places are certain, as of other orbits."""
+        z = self.z[np.newaxis]
+        jacobian = self.equations.linear(z).derivatives[0]
+        rounding = np.finfo(float).eps * np.abs(jacobian) @ np.abs(self.z)
+        error = np.abs(np.linalg.pinv(jacobian[:, : self.equations.size])) @ rounding
+        return float(-np.log10(error.max()))
+
+
+def orbit_with_rest(
+    ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
+) -> RestOrbit:
+    """The motion of a ball between two rests on the table, if it repeats after one of them.
+
+    It is found by a ball that leaves the table at a lift-off. `follow` continues it along a
+    parameter, up to the end of the rest.
+
+    Parameters
+    ----------
+    ball : Ball
+        With instantaneous impacts.
+    amplitude : float
+        Λ.
+    impacts : int, optional
+        The number of impacts after which the bounces are summed up; by default that of the
+        simulation, which leaves an error of 1e-15.
+    table : Table
+        The waveform of the table, by default a sine.
+
+    Raises
+    ------
+    OrbitNotFound
+        If the ball never leaves the table, or does not come to rest.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, follow
+    >>> orbit = orbit_with_rest(Rigid(0.3), amplitude=1.9)
+    >>> orbit.periods, round(orbit.rest, 6)
+    (1, 0.449792)
+    >>> round(follow(orbit, to=2.1).first("end of a rest").amplitude, 4)
+    1.9469
+    """
+    # The simulation is not needed by other orbits.
+    from bouncing_ball_beyond.simulation import TURN, Balls, Leaving, fly, follow, reduced
+
+    check_ball(ball)
+    check_table(table)
+    amplitude = one_amplitude(amplitude)
+    if ball.lasts or ball.sinks:
+        raise ValueError(f"ball = {ball!r}: must have instantaneous impacts, such as Rigid(0.3)")
+    impacts = None if impacts is None else whole_number("impacts", impacts)
+    starts = table.lift_offs(amplitude)
+    if not len(starts):
+        raise OrbitNotFound(
+            f"the table never falls faster than a ball: its greatest -w″ is"
+            f" {amplitude * table.lift:.6g}"
+        )
+    none = np.zeros(1)
+    start = float(starts[0])
+    for _ in range(CYCLES):
+        before = Balls(ball, none + amplitude, none, none + start, none, table)
+        time, speed = fly(before, Leaving(none, none, none, none + start, none, none))
+        turns, phase = reduced(start + time)
+        first = Balls(ball, none + amplitude, turns, phase, speed, table)
+        record = follow(first, MOST)[0][..., 0]
+        turns, phase, u, _, rests, _, w, _ = record.T
+        ends = np.flatnonzero((rests > 0) & (w == 0))
+        if not len(ends) or not np.isfinite(rests[ends[0]]):
+            raise OrbitNotFound(
+                f"the ball does not come to rest and leave again within {MOST} impacts after the"
+                f" lift-off at the phase {start:.6g}"
+            )
+        at = ends[0]
+        times = TURN * turns + phase
+        length = times[at] + rests[at] - start
+        if abs(length - TURN * round(length / TURN)) < SOON:
+            break
+        start = float(reduced(start + length)[1])
+    else:
+        raise OrbitNotFound("the ball leaves at other lift-offs each time")
+    hops = list(zip(times[: at + 1], u[: at + 1], strict=True))
+    # Bounces that the simulation sums up: Newton's method makes them exact.
+    while impacts is not None and len(hops) < impacts:
+        tau, fast = hops[-1]
+        slow = float(ball.contact(tau, fast, None, amplitude, table=table).speed)
+        hops.append((tau + 2 * slow / (1 + amplitude * float(table(tau, 2))), slow))
+    hops = hops[:impacts]
+    equations = RestEquations(ball, len(hops), round(length / TURN), table=table)
+    columns = np.array(hops).ravel()
+    z = np.concatenate([columns, [start, amplitude]])
+    solution = newton(equations, z[np.newaxis], iterations=40)
+    if not solution.found[0]:
+        raise OrbitNotFound("the orbit with a rest is not found: Newton's method does not converge")
+    return equations.orbit(solution.z[0])

@@ -1,0 +1,83 @@
+"""Orbits with a rest on the table, by simulation and by other numbers of bounces."""
+
+import numpy as np
+import pytest
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond.periodic import OrbitNotFound
+from bouncing_ball_beyond.tables import Table
+
+
+def test_an_orbit_with_a_rest_is_that_of_a_simulated_ball():
+    orbit = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9)
+    assert orbit.lift_off == pytest.approx(np.arcsin(1 / 1.9), abs=1e-14)
+    assert orbit.admissible and orbit.stable and not orbit.multipliers.any()
+    start = {"phase": orbit.phase[0], "velocity": orbit.impact_velocity[0]}
+    found = bb.simulate(bb.Rigid(0.3), amplitude=1.9, **start, impacts=40)
+    k = orbit.impacts
+    np.testing.assert_allclose(found.time[:k], orbit.times - orbit.times[0], atol=1e-11)
+    np.testing.assert_allclose(-found.relative_impact_velocity[:k], orbit.speeds, atol=1e-11)
+    period = float(found.time[k] - found.time[0])
+    assert period == pytest.approx(2 * np.pi * orbit.periods, abs=1e-10)
+    # The contact of the last impact has the bounces that are summed up, and the rest.
+    last = float(found.contact_duration[k - 1])
+    assert 0 < last - orbit.rest < 1e-5
+
+
+@pytest.mark.parametrize(
+    ("impacts", "ends"), [(10, 1.9469410659), (13, 1.9469385558), (14, 1.9469385036), (22, None)]
+)
+def test_the_rest_ends_where_another_code_has_it(impacts, ends):
+    """A code that follows single orbits has these; the more impacts the nearer to the end.
+
+    With more than 18 impacts, heights of the last bounces are rounding errors.
+    """
+    ends = ends or 1.94693848
+    orbit = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9, impacts=impacts)
+    branch = bb.follow(orbit, to=2.1)
+    assert branch.first("end of a rest").amplitude == pytest.approx(ends, abs=1e-8)
+    assert "no longer comes to rest" in branch.end
+    assert branch.admissible[:-1].all()
+    assert np.all(np.diff([each.rest for each in branch.orbits]) < 0)
+
+
+def test_balls_are_locked_up_to_the_end_of_the_rest():
+    ends = bb.follow(bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9), to=2.1).values[-1]
+    kinds = []
+    for amplitude in (ends - 1e-5, ends + 1e-5):
+        orbit = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9)
+        start = {"phase": orbit.phase[0], "velocity": orbit.impact_velocity[0]}
+        found = bb.motion_of(bb.Rigid(0.3), amplitude=amplitude, **start, impacts=500)
+        kinds.append(str(found.kind.values))
+    assert kinds[0] == "locked" != kinds[1]
+
+
+def test_a_locked_motion_is_an_orbit_with_a_rest():
+    found = bb.orbit_of_motion(bb.Rigid(0.1), amplitude=1.5)
+    assert found.rest > 0
+    known = bb.motion_of(bb.Rigid(0.1), amplitude=1.5)
+    assert str(known.kind.values) == "locked" and int(known.periods) == found.periods
+
+
+def test_an_orbit_with_a_rest_along_the_restitution_and_on_other_tables():
+    orbit = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9)
+    branch = bb.follow(orbit, along="restitution", to=(0.2, 0.32))
+    for each in (branch.orbits[0], branch.orbits[-1]):
+        again = bb.orbit_with_rest(each.ball, amplitude=1.9, impacts=each.impacts)
+        assert again.distance(each) < 1e-10
+    table = Table([(1, 1.0, 0.0), (2, 0.1, 0.4)])
+    orbit = bb.orbit_with_rest(bb.Rigid(0.2), amplitude=1.6, table=table)
+    branch = bb.follow(orbit, along="harmonic_2", to=0.12)
+    there = bb.orbit_with_rest(
+        bb.Rigid(0.2), amplitude=1.6, impacts=orbit.impacts, table=branch.orbits[-1].table
+    )
+    assert there.distance(branch.orbits[-1]) < 1e-10
+
+
+def test_where_there_is_no_rest_it_is_said():
+    with pytest.raises(OrbitNotFound, match="never falls faster than a ball"):
+        bb.orbit_with_rest(bb.Rigid(0.3), amplitude=0.9)
+    with pytest.raises(OrbitNotFound, match="does not come to rest"):
+        bb.orbit_with_rest(bb.Rigid(0.95), amplitude=2.0)
+    with pytest.raises(ValueError, match="must have instantaneous impacts"):
+        bb.orbit_with_rest(bb.SpringDamper(20.0, 0.3), amplitude=1.9)

@@ -49,7 +49,13 @@ from bouncing_ball_beyond.forms import (
 )
 from bouncing_ball_beyond.paths import Path, path_of, place_on
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
-from bouncing_ball_beyond.special_orbits import KINDS, halves_of, scales, value_and_gradient
+from bouncing_ball_beyond.special_orbits import (
+    KINDS,
+    OF_RESTS,
+    halves_of,
+    scales,
+    value_and_gradient,
+)
 
 FIRST_STEP = 0.05
 LONGEST_STEP = 0.2
@@ -243,7 +249,8 @@ class _System:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names of the points of codimension two."""
-        others = KINDS.keys() - {self.kind}
+        on_the_way = {"grazing of a flight", "grazing of a release", *self.equations.watched}
+        others = on_the_way - {self.kind}
         if self.kind in MULTIPLIERS:
             others = others - MULTIPLIERS.keys() | set(DEGENERATE[self.kind])
         return tuple(sorted(others))
@@ -318,7 +325,7 @@ SUCH = "such as branch.first('period doubling')"
 
 def _start(special: Any, along) -> tuple[_System, NDArray]:
     """The equations of special orbits along two parameters, and one of them."""
-    allowed = KINDS.keys() - {"lost release", "vanishing flight"}
+    allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
     if not special.kind:

@@ -68,6 +68,9 @@ KINDS = {
 """The kinds of special orbits of a branch, by name."""
 
 
+OF_RESTS = ("end of a rest", "lost lift-off")
+"""Those of orbits with a rest."""
+
 SINGULAR = slice(2, 5)
 """Those tests of `OrbitEquations.watched` at which multipliers have poles or jump: beyond them
 there are no orbits."""

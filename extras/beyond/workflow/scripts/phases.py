@@ -24,8 +24,9 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.simulation import Balls, step
+from bouncing_ball_beyond.tables import Table
 from studies.variables import VARIABLES
-from studies.waveforms import WAVEFORMS, Waveform, contact_orbits
+from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
 LAWS = ("linear", *HERTZIAN)
@@ -60,7 +61,7 @@ def contacts(law: str, r: float, duration: NDArray) -> Ball:
 # What the law leaves on tables of three waveforms
 
 
-def left_by_law(waveform: Waveform, r: float, ratio: float) -> dict[str, float]:
+def left_by_law(waveform: Table, r: float, ratio: float) -> dict[str, float]:
     """Remainders of the error law times powers of ϖ, and ϖ times the shift of the saddle-node.
 
     The latter is relative, in max w′. The remainders are those of the phase and of the height on
@@ -73,7 +74,7 @@ def left_by_law(waveform: Waveform, r: float, ratio: float) -> dict[str, float]:
     delay = impact.shift + impact.centroid
 
     def by_law(amplitude: NDArray) -> tuple[NDArray, NDArray]:
-        instant = waveform.falling((impact.line - impact.shift) / amplitude) - impact.shift
+        instant = waveform.phase_of_slope((impact.line - impact.shift) / amplitude) - impact.shift
         height = amplitude * waveform(instant) - impact.speed * impact.centroid + np.pi**2 / 2
         return instant - impact.centroid, height
 

@@ -61,6 +61,8 @@ MISTAKES = {
     f"thresholds {RIGID} --tolerance 0": "--tolerance",
     f"shaker --mass 20g {SHAKER.replace('50Hz', '50m')}": "--frequency = '50m'",
     f"shaker {SHAKER}": "--mass",
+    "shaker --mass 20g": "Missing options --frequency, --restitution.",
+    f"follow {RIGID}": "Missing option '--to'",
     "fly": "fly",
 }
 

@@ -74,6 +74,16 @@ def test_an_orbit_with_a_rest_along_the_restitution_and_on_other_tables():
     assert there.distance(branch.orbits[-1]) < 1e-10
 
 
+def test_datasets_of_orbits_with_a_rest(tmp_path):
+    branch = bb.follow(bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.9), to=2.1)
+    file = tmp_path / "rests.nc"
+    bb.to_dataset(branch).to_netcdf(file)
+    back = bb.read_orbits(file)
+    assert back.first("end of a rest").distance(branch.first("end of a rest")) == 0
+    assert back.orbits[0].rest == branch.orbits[0].rest
+    assert bb.plot(back, quantity="max_height").axes
+
+
 def test_where_there_is_no_rest_it_is_said():
     with pytest.raises(OrbitNotFound, match="never falls faster than a ball"):
         bb.orbit_with_rest(bb.Rigid(0.3), amplitude=0.9)

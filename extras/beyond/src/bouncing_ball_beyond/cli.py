@@ -22,6 +22,19 @@ PICTURES = (".png", ".pdf", ".svg")
 class Command(click.Command):
     """A command that names its option where a function of the package finds a mistake."""
 
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """The arguments of the command; all options that are missing are named at once."""
+        given = list(args)
+        try:
+            return super().parse_args(ctx, args)
+        except click.MissingParameter:
+            values, _, _ = self.make_parser(ctx).parse_args(given)
+            missing = [each.opts[0] for each in self.params if each.required]
+            missing = [name for name in missing if name[2:].replace("-", "_") not in values]
+            if len(missing) < 2:
+                raise
+            raise click.UsageError(f"Missing options {', '.join(missing)}.") from None
+
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
         try:

@@ -689,9 +689,14 @@ def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> _Task:
     ValueError
         If a goal is out of its range, or the orbit not on the path.
     """
-    here = {"ball": orbit.ball, "amplitude": orbit.amplitude, "table": orbit.table}
-    equations = replace(orbit.equations, **here, along=(path,))
-    value = float(place_on(path, **here))
+    equations = replace(
+        orbit.equations,
+        ball=orbit.ball,
+        amplitude=orbit.amplitude,
+        along=(path,),
+        table=orbit.table,
+    )
+    value = float(place_on(path, orbit.ball, orbit.amplitude, orbit.table))
     z = np.append(orbit.z[: equations.size], value)
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
     if to is None:

@@ -393,6 +393,14 @@ class OrbitEquations:
         )
         return -depth.max(axis=-1)
 
+    def rest(self, z) -> NDArray:
+        """How long the ball rests on the table in each period: not at all."""
+        return np.zeros(len(z))
+
+    def fall(self, z) -> NDArray:
+        """How fast the table falls away at a lift-off: there is none."""
+        return np.full(len(z), FAR)
+
     def halves(self, z) -> NDArray:
         """Differences of the impacts half an orbit apart, shape (rows, kq/2).
 

@@ -46,7 +46,7 @@ def resonates(ratio, zeta, orders=(1,)):
 def free_responses(s, ratio, zeta):
     """g, g′ and 1 - K, for a ζ that is not next to 1."""
     square = (1 - zeta) * (1 + zeta)
-    over = np.real(zeta) > 1
+    over = zeta.real > 1
     if not np.any(over):
         return _underdamped(s, ratio, zeta, ratio * np.sqrt(square))
     if np.all(over):
@@ -166,15 +166,17 @@ def doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta):
 
 def motion(s, gap, u, table, waves, gravity, ratio, zeta):
     """δ and δ′ a time s after an impact, by the formula that keeps all digits for each number."""
-    delicate = np.abs(s * s * ratio * ratio * (1 - zeta * zeta)) < 1
+    square = s * s
+    damped = zeta * zeta
+    delicate = np.abs(square * ratio * ratio * (1 - damped)) < 1
     for k in table.orders:
-        delicate = delicate | (np.abs(s * s * ((ratio - k) * (ratio - k) + zeta * zeta)) < 1)
-    given = s, gap, u, *waves, gravity, ratio, zeta
+        apart = ratio - k
+        delicate = delicate | (np.abs(square * (apart * apart + damped)) < 1)
     if not np.any(delicate):
         return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
     if np.all(delicate):
         return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta)[:2]
-    given = np.broadcast_arrays(*given)
+    given = np.broadcast_arrays(s, gap, u, *waves, gravity, ratio, zeta)
     delicate = np.broadcast_to(delicate, given[0].shape)
 
     def ordered(values):

@@ -28,6 +28,8 @@ MARKS = {
     "grazing of an impact": "<",
     "vanishing flight": ">",
     "lost release": "X",
+    "end of a rest": "d",
+    "lost lift-off": "x",
     "cusp": "P",
     "generalized period doubling": "*",
     "1:1 resonance": "p",

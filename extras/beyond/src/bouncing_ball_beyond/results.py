@@ -23,6 +23,7 @@ from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.paths import OF_TABLES, Path, path_of
 from bouncing_ball_beyond.periodic import PeriodicOrbit
+from bouncing_ball_beyond.rests import RestEquations, RestOrbit
 from bouncing_ball_beyond.special_orbits import scales
 from bouncing_ball_beyond.tables import SINE, Table
 
@@ -53,6 +54,8 @@ OF_EQUATIONS = {
     "multiplier_real": ("real part of the Floquet multiplier", "μ", "1"),
     "multiplier_imag": ("imag part of the Floquet multiplier", "μ", "1"),
     "impact_time": ("time of the impact", "τ", "1"),
+    "lift_off_time": ("time at which the ball leaves the table after a rest", "τ₀", "1"),
+    "rest": ("how long the ball rests on the table", "", "1"),
     "scaled_duration": ("duration of the contact in the time of its equations", "T", "1"),
 }
 """Unknowns and multipliers."""
@@ -118,7 +121,13 @@ def to_dataset(found: Found) -> xr.Dataset:
     multipliers = np.array([each.multipliers for each in orbits])
     data["multiplier_real"] = ("point", "multiplier"), multipliers.real
     data["multiplier_imag"] = ("point", "multiplier"), multipliers.imag
-    unknowns = np.array([each.z[: each.equations.size] for each in orbits])
+    rests = isinstance(first, RestOrbit)
+    if rests:
+        lifts = [each.z[each.equations.size - 1] for each in orbits]
+        data["lift_off_time"] = "point", np.array(lifts)
+        z = np.array([each.z for each in orbits])
+        data["rest"] = "point", first.equations.rest(z)
+    unknowns = np.array([each.z[: each.equations.size - rests] for each in orbits])
     unknowns = unknowns.reshape(len(orbits), first.impacts, -1)
     data["impact_time"] = ("point", "impact"), unknowns[..., 0]
     if first.ball.lasts:
@@ -149,7 +158,7 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
     if len({each.impacts for each in orbits}) > 1:
         counts = ", ".join(str(count) for count in sorted({each.impacts for each in orbits}))
         raise ValueError(f"orbits with {counts} impacts: those of one dataset have the same number")
-    if len({(type(each.ball), *each.parameters) for each in orbits}) > 1:
+    if len({(type(each), type(each.ball), *each.parameters) for each in orbits}) > 1:
         raise ValueError(
             "the orbits of one dataset have balls of one kind, and change along one path"
         )
@@ -239,15 +248,15 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
         raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
     ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
     # Datasets of the first versions have no table: theirs is a sine.
-    table = SINE
+    table: Table = SINE
     if any(name.startswith(OF_TABLES) for name in map(str, data.variables)):
         table = Table(json.loads(data.attrs["table"]))
     missing = ball.parameters.keys() - data.variables
     if missing:
         raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
     paths = [_path(each, ball, along, table) for each in json.loads(data.attrs["along"])]
-    rows = range(data.sizes["point"])
-    orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in rows]
+    numbers = range(data.sizes["point"])
+    orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in numbers]
     form = data.attrs["form"]
     if form == "PeriodicOrbit":
         return orbits[0]
@@ -282,8 +291,10 @@ def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> P
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})
     given = len(columns[0]), int(row.periods), float(row.amplitude)
     on = table.at(**{name: float(row[name]) for name in table.parameters})
-    equations = OrbitEquations(here, *given, tuple(paths), on)
     values = [float(row[path.name]) for path in paths]
-    return PeriodicOrbit(
-        equations, np.append(np.stack(columns, axis=-1), values), str(row.kind.values)
-    )
+    kind = OrbitEquations
+    if "lift_off_time" in row:
+        kind = RestEquations
+        values.insert(0, float(row.lift_off_time))
+    equations = kind(here, *given, tuple(paths), on)
+    return equations.orbit(np.append(np.stack(columns, axis=-1), values), str(row.kind.values))

@@ -18,6 +18,8 @@ SAMPLES = 64
 """Samples in a period of the highest harmonic: between two of them a derivative of W changes by
 1.2e-3 of the size of the second derivative after it, over k²."""
 
+REAL = np.dtype(float)
+
 CYCLE = (np.sin, np.cos)
 """sin and its derivatives, which repeat with the opposite sign."""
 
@@ -27,10 +29,11 @@ def swing(x):
 
     For real numbers numpy finds them faster by a tangent, at whose poles complex steps are lost.
     """
-    if np.iscomplexobj(x):
-        sine = np.sin(x / 2)
-        return 2 * sine * np.cos(x / 2), 2 * sine * sine
-    half = np.tan(x / 2)
+    half = x / 2
+    if getattr(x, "dtype", REAL).kind == "c" or isinstance(x, complex):
+        sine = np.sin(half)
+        return 2 * sine * np.cos(half), 2 * sine * sine
+    half = np.tan(half)
     sine = 2 * half / (1 + half * half)
     return sine, half * sine
 

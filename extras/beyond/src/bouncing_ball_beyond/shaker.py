@@ -178,9 +178,13 @@ class ShakerAnswer:
         return "\n".join([*lines, "", *self._sentences()])
 
     def _acceleration(self) -> str:
-        """The greatest acceleration over gravity, which is Λ if W″ reaches 1."""
+        """The greatest acceleration over gravity, which is Λ if W″ reaches 1, and Λ if not."""
         greatest = self.amplitude * self.table.acceleration
-        return f"Λ = {greatest:.4g}" if np.isclose(greatest, self.amplitude) else f"{greatest:.4g}"
+        if np.isclose(greatest, self.amplitude):
+            return f"Λ = {greatest:.4g} times gravity"
+        return (
+            f"{greatest:.4g} times gravity; the scale of its waveform is Λ = {self.amplitude:.4g}"
+        )
 
     def _sentences(self) -> list[str]:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
@@ -188,7 +192,7 @@ class ShakerAnswer:
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
-            f" with an acceleration of {self._acceleration()} times gravity."
+            f" with an acceleration of {self._acceleration()}."
             f" A contact lasts {in_words(self.contact_duration, 's')},"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",

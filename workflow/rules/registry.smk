@@ -7,6 +7,7 @@
 
 import ast
 import os
+import re
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -135,9 +136,11 @@ def files(name):
 
 def unknown_target(wildcards):
     """End the run with a line on a name that is no target."""
-    near = " or ".join(
-        get_close_matches(wildcards.name, [*KINDS, *STAGES, "all", "article", "diff"])
-    )
+    names = [*KINDS, *STAGES, "all", "article", "diff"]
+    # A figure is often meant whose number has one digit: fig6 is fig06.
+    padded = re.sub(r"\d+", lambda number: number[0].zfill(2), wildcards.name.lower())
+    found = [*get_close_matches(padded, names, 1, 0.99), *get_close_matches(wildcards.name, names)]
+    near = " or ".join(list(dict.fromkeys(found))[:3])
     meant = f"did you mean {near}? " if near else ""
     end(f"{wildcards.name} is no target: {meant}snakemake --list names all of them")
 

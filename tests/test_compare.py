@@ -378,6 +378,14 @@ def test_results_that_are_the_reference_are_refused(record):
         record.results.unlink()
 
 
+def test_a_figure_without_a_file_in_the_reference_is_a_new_one(drawn):
+    for path in (drawn.reference / "figures").glob("fig14.*"):
+        path.unlink()
+    lines = drawn.lines()
+    words = "fig14 is not in the reference yet: commit, then snakemake --cores 2 fig14 accept"
+    assert lines.count(words) == 1 and "missing" not in lines
+
+
 def test_a_result_that_is_linked_to_the_reference_is_refused(record):
     path = record.results / "figures" / "fig14.nc"
     path.unlink()

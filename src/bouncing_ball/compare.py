@@ -152,9 +152,15 @@ class Comparison:
             for path in present
             if (file := f"figures/{path.name}") not in self.files and path.name[0] != "."
         }
+        unknown = self.not_yet_accepted() if side is self.old else set()
         for file in self.files:
             path = side.folder / file
-            if not path.is_file():
+            if path.stem in unknown:
+                texts[path.stem] = (
+                    f"{path.stem} is not in the reference yet: commit, then "
+                    f"snakemake --cores 2 {path.stem} accept"
+                )
+            elif not path.is_file():
                 what = "no regular file" if path.exists() else "missing"
                 texts[file] = f"{file} is {what} in the {side.name}"
             elif file.endswith(".nc") and path.stem in side.unread:
@@ -162,6 +168,12 @@ class Comparison:
         for file, words in texts.items():
             name = Path(file).stem
             yield Finding("file", words, artifact=name, of_results=side is self.new)
+
+    def not_yet_accepted(self) -> set[str]:
+        """The figures and tables of which the reference has no file."""
+        pages = [file for file in self.files if file.startswith("figures/")]
+        known = {Path(file).stem for file in pages if (self.old.folder / file).exists()}
+        return {Path(file).stem for file in pages} - known
 
     def dataset_findings(self, name: str) -> Iterator[Finding]:
         """Whether a dataset is stale, and where it differs from the reference."""

@@ -471,7 +471,8 @@ def move(note: Annotation, place: tuple[float, float]) -> None:
 def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) -> None:
     """Save a figure as PNG and SVG, whose description names the commit that drew it.
 
-    The same figure gives the same bytes, and the file appears whole or not at all. Raises OSError
+    A label of the figure is the title of the SVG, which a browser shows and reads aloud. The same
+    figure gives the same bytes, and the file appears whole or not at all. Raises OSError
     if a file cannot be written.
     """
     named = {"Description": f"drawn at commit {commit}"}
@@ -479,6 +480,8 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) 
         "png": named | {"Software": None},
         "svg": named | {"Date": None, "Creator": None},
     }
+    if figure.get_label():
+        metadata["svg"]["Title"] = str(figure.get_label())
     with style():
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
             with whole(path) as unfinished:

@@ -531,4 +531,6 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
 def draw(name: str, data: xr.Dataset) -> Figure:
     """A figure by name from its dataset, in the style of the replication."""
     with style():
-        return FIGURES[name](data)
+        figure = FIGURES[name](data)
+        figure.set_label(data.attrs["title"])
+        return figure

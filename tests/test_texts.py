@@ -74,7 +74,8 @@ def test_numbers_of_readme_are_those_of_the_datasets():
         f"{worst['apparent_restitution']}):",
         f"Of the {sum(by.values())} statements that we judged, {by['reproduced']} are "
         f"*reproduced*, {by['by construction']} are right *by construction*, {by['by reading']} "
-        f"are right *by reading* ({own} of them in the sense of the paper's own sentence), "
+        f"are right *by reading* ({own} of them in the sense of the paper's own sentence, and the "
+        f"others, the advice itself among them, in another sense only), "
         f"{by['undecidable']} are *undecidable*, and {by['contradicted']} is",
         f"stable again for Λ = {article.fixed(low, 5, 'up')} to {article.fixed(high, 5, 'down')}, "
         f"and ends at Λ = {article.fixed(branch.amplitude[0], 6)} in permanent contact",
@@ -85,7 +86,9 @@ def test_numbers_of_readme_are_those_of_the_datasets():
     verdicts = readme.partition("## The verdicts ")[2].partition("## Read it")[0]
     assert len(answer) > 100 and len(verdicts) > 1000
     typed = re.findall(r"\d+\.\d+", answer + verdicts)
-    assert [number for number in typed if not any(number in each for each in sentences)] == ["1.2"]
+    # A dip at Λ = 1.2, and the r of the branch, which are the paper's.
+    known = [number for number in typed if not any(number in each for each in sentences)]
+    assert known == ["1.2", "0.85"]
 
 
 @pytest.mark.parametrize("file", ["CITATION.cff", "metadata.yaml"])

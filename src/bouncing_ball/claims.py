@@ -349,8 +349,8 @@ def chaotic(balls: xr.Dataset) -> xr.DataArray:
     "the flights are high against the excitation",
     "fig05 fig06 fig10",
     missing="the ratio of both from which on a flight is high",
-    remark="the lowest ratio is that of r = 0.1, Λ = 2.6; the neglect of the excitation shows in "
-    "the period doubling of Eq. 8",
+    remark="at the largest ϖ the lowest ratio is that of r = 0.1, Λ = 2.6; the neglect of the "
+    "excitation shows in the period doubling of Eq. 8",
 )
 def high_flights(*sweeps):
     ratios = [sweep["max_height"].isel(frequency_ratio=-1) / sweep["amplitude"] for sweep in sweeps]
@@ -620,7 +620,7 @@ def depends_on_amplitude(fig06):
     "fig06",
     remark="a dip must be deeper than the width of a line, 1 % of the axis; the curve of Λ = 0.7 "
     "has one; the labels stand in rising order from the top, the curves in falling order, so that "
-    "the labels are probably swapped",
+    "the labels may be swapped",
 )
 def dip_at_12(fig06):
     curves = fig06["apparent_restitution"]
@@ -841,7 +841,7 @@ def amplitude_does_not_matter(fig10):
     stiffer = apart.sel(frequency_ratio=slice(2.0, None))
     return [
         at_most("an axis from ϖ = 2 on", [at_2, *stiffer], LIMIT),
-        at_most(f"an axis from ϖ = 1 on (they meet at {meeting:.4f})", apart, LIMIT),
+        at_most(f"an axis from ϖ = 1 on (they are that near from {meeting:.4f} on)", apart, LIMIT),
     ]
 
 
@@ -950,7 +950,7 @@ def height_threshold(fig14):
     "before Eq. 37",
     "above this threshold the relative error is less than 1 %",
     "fig14",
-    remark="the error must fall everywhere, so that it passes 1 % once",
+    remark="the error must fall along the whole axis of Fig. 14, so that it passes 1 % once",
 )
 def threshold_ensures(fig14):
     fall = -steps(fig14["relative_error"])

@@ -471,18 +471,22 @@ def move(note: Annotation, place: tuple[float, float]) -> None:
 def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) -> None:
     """Save a figure as PNG and SVG, whose description names the commit that drew it.
 
-    A label of the figure is the title of the SVG, which a browser shows and reads aloud. The same
-    figure gives the same bytes, and the file appears whole or not at all. Raises OSError
-    if a file cannot be written.
+    The SVG of a figure with a label has this as its title, which a browser shows and reads aloud,
+    and its texts as texts, which can be searched and depend on the fonts of the reader. The same
+    figure gives the same bytes, and the file appears whole or not at all. Raises OSError if a file
+    cannot be written.
     """
     named = {"Description": f"drawn at commit {commit}"}
     metadata = {
         "png": named | {"Software": None},
         "svg": named | {"Date": None, "Creator": None},
     }
-    if figure.get_label():
+    named_figure = bool(figure.get_label())
+    if named_figure:
         metadata["svg"]["Title"] = str(figure.get_label())
     with style():
+        if named_figure:
+            matplotlib.rcParams["svg.fonttype"] = "none"
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
             with whole(path) as unfinished:
                 figure.savefig(unfinished, format=kind, metadata=metadata[kind])

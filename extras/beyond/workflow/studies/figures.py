@@ -445,7 +445,7 @@ def ext_laws(data: xr.Dataset) -> Figure:
         axes.set_xlabel(r"share $(D+\kappa)/(2\pi n)$")
         axes.tick_params(labelleft=axes is slots[0])
     beside: Look = {"fontsize": 7, "transform": slots[0].transAxes}
-    slots[0].text(0.05, 0.78, "restitution model, constant $r$", **beside)
+    slots[0].text(0.05, 0.88, "restitution model, constant $r$", **beside)
     slots[0].text(0.5, 0.2, "corrected model", **beside)
     slots[0].set_ylabel("relative error")
     figure.suptitle(title(data, "n", "restitution", "amplitude"), fontsize="medium")

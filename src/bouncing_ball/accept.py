@@ -41,7 +41,9 @@ def accept(
     and if the code is not committed.
     """
     comparison = Comparison(results, reference, products, config, names, top)
-    history, new, old = comparison.history, comparison.new, comparison.old
+    history = comparison.history
+    new = comparison.new
+    old = comparison.old
     folders = [old.folder / each for each in code]
     edited = sorted(history.uncommitted(folders))
     unfit = [finding.line for finding in comparison.report().findings if finding.of_results]
@@ -84,7 +86,8 @@ def renewed(
     Its numbers are those of the reference if these agree with the expected ones, and those of the
     results otherwise. Its provenance is that of the results.
     """
-    new, old = comparison.new, comparison.old
+    new = comparison.new
+    old = comparison.old
     agrees = name in old.data and not dataset_differences(expected, old.data[name])
     side = old if agrees else new
     if not agrees and (name not in new.data or dataset_differences(expected, new.data[name])):

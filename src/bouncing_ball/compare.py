@@ -268,7 +268,8 @@ class Comparison:
         """Why a dataset differs: by what both sides record."""
         if name not in self.old.data:
             return "it is not in the reference"
-        new, old = self.new.data[name], self.old.data[name]
+        new = self.new.data[name]
+        old = self.old.data[name]
         reference = [f"figures/{name}.nc"]
         parameters = changes(record(old, "parameters"), record(new, "parameters"))
         sure = [f"changed parameter: {'; '.join(parameters)}"] if parameters else []
@@ -277,7 +278,8 @@ class Comparison:
             for each in changes(record(old, "versions"), record(new, "versions"))
             if each.split()[0] in PACKAGES
         ]
-        mine, theirs = code_of(new), code_of(old)
+        mine = code_of(new)
+        theirs = code_of(old)
         ids = {*mine.values(), *theirs.values()}
         same = {*mine.values()} & {*theirs.values()}
         changed: Collection[str] | None = [

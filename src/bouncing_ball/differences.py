@@ -107,7 +107,8 @@ def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[Finding], xr.Dataset
     """
     found = []
     for dim in [str(dim) for dim in old.indexes if dim in new.indexes]:
-        ours, theirs = new.indexes[dim], old.indexes[dim]
+        ours = new.indexes[dim]
+        theirs = old.indexes[dim]
         shared = theirs[theirs.isin(ours)]
         rounded = theirs.dtype.kind == "f" and len(ours) == len(theirs) > len(shared)
         unclear = rounded or not ours.is_unique or not theirs.is_unique or not len(shared)

@@ -481,11 +481,10 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) 
         "png": named | {"Software": None},
         "svg": named | {"Date": None, "Creator": None},
     }
-    named_figure = bool(figure.get_label())
-    if named_figure:
-        metadata["svg"]["Title"] = str(figure.get_label())
+    words = str(figure.get_label())
     with style():
-        if named_figure:
+        if words:
+            metadata["svg"]["Title"] = words
             matplotlib.rcParams["svg.fonttype"] = "none"
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
             with whole(path) as unfinished:

@@ -36,7 +36,7 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
         orbits = orbit(ball, amplitude=amplitude, n=n)
         stable = [i for i, each in enumerate(orbits) if each.stable and each.admissible][:wanted]
         columns = {
-            "n": np.full(wanted, n),
+            "n": np.full(len(stable), n),
             "restitution": r[stable],
             "position": place[stable],
             "amplitude": amplitude[stable],

@@ -234,13 +234,13 @@ MISTAKES = {
     "fit croquet --time-step 1ms": "--time-step needs an engine",
     "fit croquet --tolerance 0.1": "--tolerance needs an engine",
     "fit croquet --density wood": "--density needs an engine",
-    "fit /": "/ is a directory: give a file in it",
+    "fit /": "/ is no file",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",
     'fit croquet --mass "a lot"': "does not begin",
     "engines --all": "No such option",
-    "design --mass 1e-300 --restitution 0.8": "too large or too small",
+    "design --mass 1e-300 --restitution 0.8": "mass = 1e-300 kg is not computed",
 }
 
 

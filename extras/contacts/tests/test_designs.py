@@ -535,7 +535,7 @@ def test_a_design_has_a_step_that_can_be_given():
 
 @pytest.mark.parametrize("more", [{"mass": 1e-300}, {"gravity": 1e300}])
 def test_numbers_that_overflow_are_one_line(more):
-    with pytest.raises(Refused, match="is too large or too small"):
+    with pytest.raises(Refused, match="is not computed"):
         Bounce(**{"mass": 1, "restitution": 0.8, **more})
 
 

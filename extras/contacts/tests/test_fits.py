@@ -204,7 +204,7 @@ def touches(rng):
 
 
 def printed(times):
-    return read({"time (s)": [f"{each:.3f}" for each in times]})
+    return read({"time (s)": [f"{each:.3f}" for each in times]})[""]
 
 
 @pytest.mark.parametrize("rate", [24, 25, 29.97, 60, 120])
@@ -423,23 +423,6 @@ def test_weights_are_those_of_a_distribution():
     impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64, 0.5]),)))
     curves = curves_of(impacts, None, 3.0)
     assert curves.basis @ curves.basis.T == pytest.approx(np.eye(3))
-
-
-def test_intervals_are_read_and_shown(tmp_path):
-    file = tmp_path / "both.csv"
-    file.write_text("time [s],interval [s]\n0,\n0.9,0.8\n1.7,0.7\n2.4,0.61\n3,0.53\n")
-    by_times, by_intervals = fit(file), fit(file, intervals=True)
-    assert by_times.impacts.log_r[0] == pytest.approx(math.log(0.8 / 0.9))
-    assert by_intervals.impacts.log_r[0] == pytest.approx(math.log(0.7 / 0.8))
-    light = fit(file, intervals=True, mass="2.7 g", diameter="40 mm")
-    assert light.intervals[1].split()[2] == "0.87500"
-    assert float(light.intervals[1].split()[3]) < -0.01
-    file.write_text("time [s]\n0\n0.9\n1.7\n2.4\n3\n")
-    with pytest.raises(Refused, match="no column of intervals"):
-        fit(file, intervals=True)
-    file.write_text("drop height (cm),rebound height (cm)\n20,13\n50,32\n")
-    with pytest.raises(Refused, match="no column of intervals"):
-        fit(file, intervals=True)
 
 
 def test_a_fit_is_a_bounce_for_an_engine():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import Refused, fit
-from bouncing_ball_contacts.recordings import read, read_all
+from bouncing_ball_contacts.recordings import read
 from bouncing_ball_contacts.tables import experiments
 
 FLIGHTS = 0.9 * 0.82 ** np.arange(6)
@@ -100,7 +100,7 @@ def test_each_ball_has_its_own_r(name, tmp_path, typed):
     """They were pooled: tennis, golf and table tennis had one r of 0.8249."""
     path = tmp_path / "balls.csv"
     path.write_text(BALLS[name])
-    found = {ball: fit(each).restitution for ball, each in read_all(path).items()}
+    found = {ball: fit(each).restitution for ball, each in read(path).items()}
     assert found == {"tennis": pytest.approx(0.73, abs=1e-3), "golf": pytest.approx(0.82, abs=1e-3)}
     assert fit(path, ball="golf").restitution == pytest.approx(0.82, abs=1e-3)
     with pytest.raises(Refused, match="has tennis, golf: name one, --ball"):
@@ -140,7 +140,9 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("valhoogte (cm),stuithoogte (cm)\n2,1", "'valhoogte' is not known"),
         ("落下高さ (cm),跳ね返り (cm)\n2,1", "'落下高さ' is not known"),
         ("event_ms\n10\n20", "'event' is not known"),
-        ("drop (cm),rebound (%)\n10,20", "'rebound': the unit of '1 %' does not fit"),
+        ("altura de queda (cm),altura\n2,1", "'altura de queda' is not known"),
+        ("altura\n36 cm\n20 cm", "'altura' is not known"),
+        ("drop (cm),rebound (%)\n10,20", "unit of column 'rebound': '1 %' does not fit"),
         (
             "drop,rebound\n36 in,20",
             "line 2: '36 in' below 'drop' is no number; a unit stands in the",
@@ -200,7 +202,7 @@ def test_what_is_no_text_is_refused(tmp_path):
 def test_every_published_experiment_names_its_source():
     assert len(experiments()) == 12
     for name in experiments():
-        head = read(name).head
+        head = read(name)[""].head
         assert {"title", "measured by", "published", "source", "read"} <= head.keys()
 
 
@@ -211,7 +213,7 @@ def test_every_published_experiment_names_its_source():
         ({"drop": [1, 2], "rebound": [0.5]}, "columns differ in length: 2, 1 cells"),
         ({"time": [[0.45, 1.17], [1.75, 2]]}, "columns have one number in each cell"),
         ("croqet", "none of the experiments: did you mean croquet"),
-        ("/", "is a directory: give a file in it"),
+        ("/", "/ is no file, and none of the experiments"),
     ],
 )
 def test_other_sources_are_refused(source, said):
@@ -297,7 +299,7 @@ def test_an_empty_line_divides_a_series(tmp_path):
     """Flights on both sides of it were compared."""
     path = tmp_path / "two.csv"
     path.write_text("time [s]\n0.1\n0.9\n1.5\n\n0.2\n1.0\n1.6\n\n")
-    found = read(path)
+    found = read(path)[""]
     assert [list(chain) for chain in found.chains] == [pytest.approx([0.8, 0.6])] * 2
     assert "a number is missing in line 5, which is left out and divides the series" in found.notes
 
@@ -327,4 +329,4 @@ def test_kilometres_per_hour_are_not_metres_per_second(tmp_path):
     path = tmp_path / "recording.csv"
     for heading in ("v_in/km/h,v_out/km/h", "v_in_km/h,v_out_km/h", "v_in (km/h),v_out (km/h)"):
         path.write_text(heading + "\n3.6,2.88\n7.2,5.76")
-        assert read(path).chains[0] == pytest.approx(np.array([[1, 0.8], [2, 1.6]]))
+        assert read(path)[""].chains[0] == pytest.approx(np.array([[1, 0.8], [2, 1.6]]))

@@ -260,9 +260,6 @@ def _print_balls(found: dict[str, Any], engine: str | None, as_json: bool) -> No
         click.Option(["--read-at"], help="Of rebound heights, off the ball: bottom or top."),
         click.Option(["--laws"], is_flag=True, help="Judge contact laws by r over the speed."),
         click.Option(
-            ["--intervals"], is_flag=True, help="Read the intervals, and show single impacts."
-        ),
-        click.Option(
             ["--engine"], help="For which the contact is written.", shell_complete=_engines
         ),
         _STEP,
@@ -274,7 +271,6 @@ def _print_balls(found: dict[str, Any], engine: str | None, as_json: bool) -> No
 def fit_command(
     recording: str,
     leave_out: str | None,
-    intervals: bool,
     ball: str | None,
     engine: str | None,
     time_step: str | None,
@@ -293,19 +289,14 @@ def fit_command(
     RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
     from bouncing_ball_contacts.fits import fit
-    from bouncing_ball_contacts.recordings import read, read_all
+    from bouncing_ball_contacts.recordings import read
 
-    source = "/dev/stdin" if recording == "-" else recording
-    left_out = _lines(leave_out)
-    balls = read_all(source, left_out, intervals) if ball is None else {}
-    if len(balls) > 1:
-        each = {name: fit(one, **of_fit) for name, one in balls.items()}
-        _print_balls(each, engine, as_json)
+    balls = read("/dev/stdin" if recording == "-" else recording, _lines(leave_out), ball)
+    fits = {name: fit(one, **of_fit) for name, one in balls.items()}
+    if len(fits) > 1:
+        _print_balls(fits, engine, as_json)
         return
-    one = read(source, left_out, intervals, ball) if ball else next(iter(balls.values()))
-    found = fit(one, **of_fit)
-    if intervals and not as_json:
-        click.echo("\n".join([*found.intervals, ""]))
+    found = next(iter(fits.values()))
     contact = {
         "density": density,
         "penetration": penetration,

@@ -126,8 +126,6 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
     "gravity": ("m/s^2", in_si),
 }
 """The unit of each quantity of a bounce, and how it is read."""
-_LARGEST = 1e12
-"""Of a quantity in SI units; products of larger ones overflow."""
 _CONTACT = ("penetration", "stiffness", "contact_time")
 _EITHER = (("drop_height", "speed"), ("radius", "density"), *combinations(_CONTACT, 2))
 """Quantities of which one at most is given."""
@@ -201,11 +199,6 @@ class Bounce:
                 words = name.replace("_", " ")
                 number = read(words, value, unit)
                 object.__setattr__(self, name, number)
-                if not (number == 0 or 1 / _LARGEST <= abs(number) <= _LARGEST):
-                    raise Refused(
-                        f"{words} = {number:g} {unit} is too large or too small: 0 and quantities "
-                        f"from {1 / _LARGEST:g} to {_LARGEST:g} in SI units are computed"
-                    )
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)

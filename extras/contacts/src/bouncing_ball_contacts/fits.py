@@ -54,14 +54,6 @@ class Fit(Page):
     notes: tuple[str, ...]
 
     @property
-    def intervals(self) -> list[str]:
-        """The lines of single impacts: r, the plain ratio of the flights, and the drag's part."""
-        plain = impacts_of(self.recording).restitution
-        rows = zip(self.impacts.speed, self.impacts.restitution, plain, strict=True)
-        cells = [[f"{v:.5g}", f"{r:.5f}", f"{q:.5f}", f"{q - r:+.5f}"] for v, r, q in rows]
-        return aligned([["v in m/s", "r", "ratio", "by drag"], *cells])
-
-    @property
     def tables(self) -> list[list[list[str]]]:
         """The cells of the tables of laws, by r and by contact times, the headings first."""
         at = f"at {self.speed:.3g} m/s"
@@ -171,7 +163,6 @@ def fit(
     diameter: Quantity = None,
     contact_time: Quantity = None,
     leave_out: tuple[int, ...] = (),
-    intervals: bool = False,
     ball: str | None = None,
     read_at: str | None = None,
     laws: bool = False,
@@ -194,8 +185,6 @@ def fit(
         is taken off times between impacts, which are from touch to touch.
     leave_out : tuple of int
         Lines of the file.
-    intervals : bool
-        Whether a file with times and intervals is read by its intervals.
     ball : str, optional
         The name of one, if the file has a column of several.
     read_at : {"bottom", "top"}, optional
@@ -212,7 +201,10 @@ def fit(
     if isinstance(source, Recording):
         recording = source
     else:
-        recording = read(source, leave_out, intervals, ball)
+        found = read(source, leave_out, ball)
+        if len(found) > 1:
+            raise Refused(f"the recording has {', '.join(found)}: name one, --ball")
+        recording = next(iter(found.values()))
 
     def given(name: str, value: Quantity, unit: str) -> float | None:
         said = recording.head.get(name) if value is None else value

@@ -18,7 +18,7 @@ import numpy as np
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.tables import HEADINGS, Column, Lines, Table, table_of
+from bouncing_ball_contacts.tables import HEADINGS, TEXTS, Column, Lines, Table, table_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
 
 LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
@@ -122,7 +122,7 @@ def rounding_of(recording: Recording) -> float:
 # Numbers to series.
 
 
-def _series(table: Table, columns: list[Column], names: list[str]) -> list[tuple[Array, Lines]]:
+def _series(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     """Return the numbers between missing ones, with their lines.
 
     Those of several columns, as h0 and h1, run along each line.
@@ -135,15 +135,14 @@ def _series(table: Table, columns: list[Column], names: list[str]) -> list[tuple
             "these heights do not fall on as those of successive bounces: repeated drops from one "
             "height are named drop height, trial 1, trial 2",
         )
-        runs = [
-            (row, np.full(len(row), line)) for row, line in zip(matrix, table.lines, strict=True)
-        ]
+        lines = np.broadcast_to(table.lines[:, None], matrix.shape)
+        runs = list(zip(matrix, lines, strict=True))
     else:
-        counted = [np.diff(each.numbers, prepend=each.numbers[0]) > 1 for each in table.of("count")]
-        parts = list(zip(names, np.cumsum(sum(counted, np.zeros(len(names)))), strict=True))
-        groups = [
-            [i for i, each in enumerate(parts) if each == part] for part in dict.fromkeys(parts)
-        ]
+        jumps = np.zeros(len(matrix))
+        for each in table.of("count"):
+            jumps += np.cumsum(np.diff(each.numbers, prepend=each.numbers[0]) > 1)
+        parts = list(zip(_names(table, "recording"), jumps, strict=True))
+        groups = [[each == part for each in parts] for part in dict.fromkeys(parts)]
         runs = [(matrix[rows, 0], table.lines[rows]) for rows in groups]
     return [
         (values[piece], lines[piece])
@@ -172,10 +171,13 @@ def _flights_between(table: Table, runs: list[tuple[Array, Lines]]) -> list[tupl
     return flights
 
 
-def _of_series(table: Table, kind: str, digit: float, runs: list[tuple[Array, Lines]]) -> Recording:
+def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     are_times = kind == "times"
-    runs = _flights_between(table, runs) if are_times else runs
+    digit = min(each.digit for each in columns)
+    runs = _series(table, columns)
+    if are_times:
+        runs = _flights_between(table, runs)
     chains = tuple(values for values, _ in runs if len(values))
     # The errors of intervals that were rounded one by one do not cancel, as those of times.
     is_read = are_times or kind == "heights"
@@ -353,22 +355,19 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
 # What was measured.
 
 
-def _layout(table: Table, intervals: bool) -> tuple[str, list[Column]]:
+def _layout(table: Table) -> tuple[str, list[Column]]:
     """Return what was measured, and the columns with that."""
     roles = {each.role for each in table.columns}
     # An r beside times was computed of these.
     computed = {"restitution"} if {"time", "interval"} & roles else set()
     is_half = bool(roles & set(_HALVES) - computed)
     layouts = LAYOUTS[:6] if is_half else LAYOUTS
-    layouts = (("flights", ("interval",)),) if intervals else layouts
-    found = next((each for each in layouts if roles >= set(each[1])), None)
-    if found is None:
+    kind, needed = next((each for each in layouts if roles >= set(each[1])), ("", ()))
+    if not kind:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        wanted = "no column of intervals" if intervals else f"no bounces, as {there}"
-        raise Refused(f"{table.name}: {wanted}: {HEADINGS}")
-    kind, needed = found
+        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}")
     columns = []
     for role in needed:
         same = table.of(role)
@@ -389,52 +388,46 @@ def _layout(table: Table, intervals: bool) -> tuple[str, list[Column]]:
     return kind, columns
 
 
-def _names(column: Column | None, size: int) -> list[str]:
-    """Return the names in a column; an empty cell has the name above it."""
+def _names(table: Table, role: str) -> list[str]:
+    """Return the names of a column for each line; an empty cell has the name above it."""
     name = ""
-    return [name := cell or name for cell in column.cells] if column else [""] * size
+    cells = [each.cells for each in table.of(role)[:1]] or [[""] * len(table.lines)]
+    return [name := cell or name for cell in cells[0]]
 
 
-def _recording(table: Table, intervals: bool) -> Recording:
+def _recording(table: Table) -> Recording:
     """Return the recording of one ball."""
     drop = table.head.get("drop height")
     if drop is not None and not table.of("drop height"):
         height = np.full(len(table.lines), in_si("drop height", drop, "m"))
         above = Column("drop height", "m", "drop height", [], height)
         table = replace(table, columns=[*table.columns, above])
-    kind, columns = _layout(table, intervals)
+    kind, columns = _layout(table)
     is_missing = np.isnan([each.numbers for each in columns]).any(axis=0)
+    if is_missing.all():
+        named = ", ".join(each.name for each in columns)
+        raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     if kind in ("drops", "speeds", "coefficients"):
         recording = _of_pairs(table, kind, columns)
     elif kind == "track":
         recording = _of_track(table, columns)
     else:
-        names = _names(next(iter(table.of("recording")), None), len(table.lines))
-        digit = min(each.digit for each in columns)
-        recording = _of_series(table, kind, digit, _series(table, columns, names))
-    if not sum(map(len, recording.chains)):
-        named = ", ".join(each.name for each in columns)
-        raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
+        recording = _of_series(table, kind, columns)
     used = list(columns)
     found: dict[str, Array] = {}
-    for role in ("uncertainty", "duration") if kind != "track" else ():
-        for each in table.of(role)[:1]:
-            # Without a unit an uncertainty has that of the coefficients.
-            unit = columns[-1].unit if role == "uncertainty" else ""
-            values = table.values(replace(each, unit=each.unit or unit))
-            is_known = ~np.isnan(values)
-            is_each = kind == "coefficients" and bool(is_known.all())
-            if role == "uncertainty" and not is_each:
-                continue
-            known = values[is_known]
-            found[role] = known if is_each else known.mean(keepdims=True)
-            used.append(each)
-    durations = found.get("duration", recording.durations)
+    # Without a unit an uncertainty has that of the coefficients.
+    for role, unit in (("uncertainty", columns[-1].unit), ("duration", "")):
+        for each in table.of(role)[:1] if kind != "track" else []:
+            values = table.values(replace(each, unit=each.unit or unit))[~is_missing]
+            known = values[~np.isnan(values)]
+            is_each = kind == "coefficients" and len(known) == len(values)
+            if is_each or (role == "duration" and len(known)):
+                found[role] = known if is_each else known.mean(keepdims=True)
+                used.append(each)
     if "contact time" in table.head:
-        durations = np.array([positive("contact time", table.head["contact time"], "s")])
-    grouping = ("ball", "recording", "count")
+        found["duration"] = np.array([positive("contact time", table.head["contact time"], "s")])
     ignored = [
-        each.name for each in table.columns if each not in used and each.role not in grouping
+        repr(each.name) for each in table.columns if each not in used and each.role not in TEXTS
     ]
     unused = [
         f"'{key}: {value}'"
@@ -444,7 +437,7 @@ def _recording(table: Table, intervals: bool) -> Recording:
     gaps = ", ".join(map(str, table.lines[is_missing]))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     further = {
-        f"columns not used: {', '.join(map(repr, ignored))}": bool(ignored),
+        f"columns not used: {', '.join(ignored)}": bool(ignored),
         f"a number is missing in line {gaps}, which is left out{divides}": bool(gaps),
         f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),
     }
@@ -452,16 +445,16 @@ def _recording(table: Table, intervals: bool) -> Recording:
         recording,
         head=table.head,
         uncertainty=found.get("uncertainty"),
-        durations=durations,
+        durations=found.get("duration"),
         is_free=columns[0].role == "flight",
         notes=recording.notes + tuple(text for text, holds in further.items() if holds),
     )
 
 
-def read_all(
+def read(
     source: str | Path | Mapping[str, Any],
     leave_out: Sequence[int] = (),
-    intervals: bool = False,
+    ball: str | None = None,
 ) -> dict[str, Recording]:
     """Return the recordings of a file, an experiment or columns, by the names of their balls.
 
@@ -471,13 +464,13 @@ def read_all(
         Columns have headings as in a file, ``{"time (s)": [0.45, 1.17, 1.75]}``.
     leave_out : sequence of int
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
-    intervals : bool
-        Whether a file with times and intervals is read by its intervals, and not by its times.
+    ball : str, optional
+        The name of one, in a column ``ball``.
 
     Returns
     -------
     dict
-        One recording for each name in a column ``ball``, or a single one with an empty name.
+        One recording for each ball, or a single one with an empty name.
 
     Raises
     ------
@@ -486,43 +479,23 @@ def read_all(
     """
     table = table_of(source, leave_out)
     for each in table.columns:
-        texts = set(filter(None, each.cells))
+        # A reading with its unit, such as 36 cm, begins with a digit, and is no name.
+        texts = {cell for cell in each.cells if re.match(r"\D", cell)}
         if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
                 f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
                 "'ball' for one result each, or leave it out for one of all"
             )
-    of_balls = table.of("ball")
-    names = _names(of_balls[0] if of_balls else None, len(table.lines))
+    names = _names(table, "ball")
+    if ball is not None and ball not in names:
+        known = ", ".join(filter(None, dict.fromkeys(names))) or "no column of balls"
+        raise Refused(f"{table.name} has {known}: name one, --ball")
     found = {}
-    for name in dict.fromkeys(names):
-        rows = np.flatnonzero(np.array(names) == name)
+    for name in dict.fromkeys(names if ball is None else [ball]):
+        rows = [i for i, each in enumerate(names) if each == name]
         columns = [
             replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
             for each in table.columns
         ]
-        of_ball = Table(table.name, table.head, columns, table.lines[rows])
-        found[name] = _recording(of_ball, intervals)
+        found[name] = _recording(Table(table.name, table.head, columns, table.lines[rows]))
     return found
-
-
-def read(
-    source: str | Path | Mapping[str, Any],
-    leave_out: Sequence[int] = (),
-    intervals: bool = False,
-    ball: str | None = None,
-) -> Recording:
-    """Return the recording of one ball; the parameters are those of :func:`read_all`.
-
-    Raises
-    ------
-    Refused
-        Also if there are several balls, and none or no known one is named.
-    """
-    found = read_all(source, leave_out, intervals)
-    if ball is None and len(found) == 1:
-        return next(iter(found.values()))
-    if ball not in found:
-        known = ", ".join(filter(None, found)) or "no column of balls"
-        raise Refused(f"{next(iter(found.values())).name} has {known}: name one, --ball")
-    return found[ball]

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import Refused, in_si
+from bouncing_ball_contacts.units import LARGEST, Refused, in_si
 
 Lines = NDArray[np.intp]
 """Numbers of the lines of a file, from 1 on."""
@@ -68,15 +68,16 @@ _UNITS = {
     "restitution": "",
     "uncertainty": "",
 }
-_TEXTS = ("ball", "recording", "count", "")
+TEXTS = ("ball", "recording", "count")
+"""What divides a table, and is no reading."""
 # Of each SI unit: what has it, the least and the most that a ball has, without a unit and with one,
 # and the unit that was perhaps meant.
 _PLAUSIBLE = {
-    "s": ("time", 0.0, 1e4, 1e4, "ms"),
+    "s": ("time", 1e-9, 1e4, 1e4, "ms"),
     "m": ("height", 1e-6, 10.0, 100.0, "cm"),
     "m/s": ("speed", 1e-6, 100.0, 100.0, "cm/s"),
     # An error of its reading may let an r exceed 1.
-    "": ("restitution coefficient", 0.0, 1.05, 1.05, "%"),
+    "": ("restitution coefficient", 1e-6, 1.05, 1.05, "%"),
 }
 
 
@@ -102,7 +103,7 @@ class Column:
     @property
     def scale(self) -> float:
         """The unit of the column in SI units."""
-        return in_si(f"column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
+        return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
 
     @property
     def digit(self) -> float:
@@ -165,9 +166,7 @@ def _text_of(source: Any) -> tuple[str, str]:
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if path.is_dir():
-        raise Refused(f"{source} is a directory: give a file in it")
-    if not path.exists():
+    if not path.exists() or path.is_dir():
         near = difflib.get_close_matches(str(source), experiments(), 1) or experiments()
         raise Refused(
             f"{source} is no file, and none of the experiments: did you mean {' or '.join(near)}?"
@@ -175,10 +174,7 @@ def _text_of(source: Any) -> tuple[str, str]:
     data = path.read_bytes()
     if b"\0" in data or data.startswith(b"PK"):
         raise Refused(f"{path.name} is no text: save it as csv in UTF-8")
-    try:
-        return path.name, data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        return path.name, data.decode("latin-1")
+    return path.name, data.decode("utf-8-sig", errors="replace")
 
 
 def _columns_as_text(columns: Mapping[str, Any]) -> str:
@@ -206,22 +202,40 @@ def _heading(text: str) -> tuple[str, str, str]:
         r"(.+?)[ /]+(?:in )?(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
     )
     name, unit = parts.groups() if parts else (plain, "")
-    unit = "" if unit == "-" else unit
     key = re.sub(r"[ .]", "", name.lower())
     counted = re.sub(r"\d+$", "", key)
     # h0, h1, h2 are counted, and v0 is a name of its own.
-    return name, unit, _ROLES.get(key) or _ROLES.get(counted, "")
+    return name, unit.replace("-", ""), _ROLES.get(key) or _ROLES.get(counted, "")
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:
-    """Return a number, NaN for an empty cell, or None for another text."""
-    plain = cell.strip().replace("−", "-")
+    """Return a number, NaN for an empty cell, or None for another text and for infinity."""
+    plain = cell.replace("−", "-")
     if plain.lower() in ("", "-", "nan"):
         return math.nan
     try:
-        return float(plain.replace(",", ".") if is_decimal_comma else plain)
+        number = float(plain.replace(",", ".") if is_decimal_comma else plain)
     except ValueError:
         return None
+    return number if abs(number) <= LARGEST else None
+
+
+def _rows_of(text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
+    """Return what the head says, the cells of each line, and whether commas are decimal."""
+    head: dict[str, str] = {}
+    lines: dict[int, str] = {}
+    for i, line in enumerate(text.rstrip().splitlines(), 1):
+        if line.startswith("#"):
+            key, _, said = line.lstrip("# ").partition(":")
+            key = key.strip().lower().replace("_", " ")
+            head[key] = f"{head.get(key, '')} {said.strip()}".strip()
+        elif lines or line.strip():
+            lines[i] = line
+    above = [line for line in list(lines.values())[:4] if re.match(r"\W*[^\W\d]", line)]
+    sign = next((each for each in "\t;," if any(each in line for line in above)), "\t")
+    cells = csv.reader(lines.values(), delimiter=sign, skipinitialspace=True)
+    rows = zip(lines, ([cell.strip() for cell in row] for row in cells), strict=False)
+    return head, dict(rows), sign != ","
 
 
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
@@ -235,46 +249,28 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         If there is no table with headings, or a number is none.
     """
     name, text = _text_of(source)
-    head: dict[str, str] = {}
-    kept: dict[int, str] = {}
-    for i, line in enumerate(text.rstrip().splitlines(), 1):
-        if line.startswith("#"):
-            key, colon, said = line.lstrip("# ").partition(":")
-            key = key.strip().lower().replace("_", " ")
-            if colon:
-                head[key] = f"{head.get(key, '')} {said.strip()}".strip()
-        elif kept or line.strip():
-            kept[i] = line
-    if len(kept) < 2:
-        raise Refused(f"{name} has no line of numbers below a heading")
-    headings = [line for line in list(kept.values())[:4] if re.match(r"\W*[^\W\d]", line)]
-    sign = next((each for each in "\t;," if any(each in line for line in headings)), "\t")
-    rows = list(csv.reader(kept.values(), delimiter=sign, skipinitialspace=True))
+    head, rows, is_decimal_comma = _rows_of(text)
     # Programs write a title above the headings.
-    above = next((i for i, row in enumerate(rows[:4]) if any(_heading(c)[2] for c in row)), 0)
-    rows = rows[above:]
-    begin, *body_lines = list(kept)[above:]
-    headings = [cell.strip() for cell in rows[0]]
-    if _number(headings[0], sign != ",") is not None and headings[0]:
+    titled = [i for i in list(rows)[:4] if any(_heading(cell)[2] for cell in rows[i])]
+    begin = min(titled or rows, default=0)
+    lines = [i for i in rows if i > begin]
+    if not lines:
+        raise Refused(f"{name} has no line of numbers below a heading")
+    headings = rows[begin]
+    if headings[0] and _number(headings[0], is_decimal_comma) is not None:
         raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
-    lines = np.array(body_lines)
-    if unknown := set(leave_out) - set(lines.tolist()):
+    if unknown := set(leave_out) - set(lines):
         raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
-    body = [
-        ([*row, *[""] * len(headings)] if line not in leave_out else [""] * len(headings))
-        for line, row in zip(lines, rows[1:], strict=True)
-    ]
     columns = []
     for j, heading in enumerate(headings):
-        cells = [row[j].strip() for row in body]
         title, unit, role = _heading(heading)
-        numbers = [_number(cell, sign != ",") for cell in cells]
-        if role not in _TEXTS and None in numbers:
+        cells = [rows[i][j] if j < len(rows[i]) and i not in leave_out else "" for i in lines]
+        numbers = [_number(cell, is_decimal_comma) for cell in cells]
+        if role and role not in TEXTS and None in numbers:
             i = numbers.index(None)
             raise Refused(
                 f"{name}, line {lines[i]}: {cells[i]!r} below {title!r} is no number; a unit "
                 "stands in the heading, as in height (cm)"
             )
-        known = np.array([math.nan if each is None else each for each in numbers])
-        columns.append(Column(title, unit, role, cells, known))
-    return Table(name, head, columns, lines)
+        columns.append(Column(title, unit, role, cells, np.array(numbers, float)))
+    return Table(name, head, columns, np.array(lines))

@@ -6,6 +6,21 @@ from typing import Any
 
 STANDARD_GRAVITY = 9.80665
 """In m/s²."""
+LONGEST_STEP = 0.1
+"""Of a simulation, in s."""
+LARGEST = 1e18
+"""Of a number in SI units: powers of larger ones overflow, and engines have defaults of 1e18."""
+DENSITIES = {
+    "steel": 7850.0,
+    "aluminium": 2700.0,
+    "aluminum": 2700.0,
+    "glass": 2500.0,
+    "rubber": 1100.0,
+    "nylon": 1150.0,
+    "wood": 700.0,
+    "ice": 917.0,
+}
+"""Of solid materials, in kg/m³."""
 
 # The units that most people type. Importing pint costs more than a whole design, so that only
 # other units, such as lb or inch, are left to it.
@@ -18,31 +33,10 @@ _COMMON = {
     "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "g/cm^3": 1e3, "g/cm³": 1e3},
     "Hz": {"Hz": 1.0, "kHz": 1e3},
     "N/m": {"N/m": 1.0, "mN/m": 1e-3, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
-    "": {"%": 1e-2},
+    "": {"": 1.0, "%": 1e-2},
 }
+# Of texts that pint reads as something else: gr is its grain of 65 mg, and Ms are 10⁶ s.
 _MISSPELT = {"gr": "g", "gm": "g", "kgs": "kg"}
-DENSITIES = {
-    "steel": 7850.0,
-    "aluminium": 2700.0,
-    "aluminum": 2700.0,
-    "glass": 2500.0,
-    "rubber": 1100.0,
-    "nylon": 1150.0,
-    "wood": 700.0,
-    "ice": 917.0,
-}
-"""Of solid materials, in kg/m³."""
-LONGEST_STEP = 0.1
-_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
-# The least and the greatest power of ten of units that are not read with all prefixes: kilometres,
-# kiloseconds and km/s are rare, and masses above a tonne stay in kilograms.
-_POWERS = {
-    "m": (-9, 0),
-    "s": (-9, 0),
-    "g": (-9, 3),
-    **dict.fromkeys(("", "m/s", "kg/m^3", "m/s^2"), (0, 0)),
-}
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _EXAMPLES = {
     "kg": "50 g",
     "m": "2 mm",
@@ -53,6 +47,7 @@ _EXAMPLES = {
     "N/m": "100 kN/m",
     "": "0.8",
 }
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
 class Refused(ValueError):
@@ -75,64 +70,56 @@ def in_si(name: str, value: Any, unit: str) -> float:
     Raises
     ------
     Refused
-        If the value is no finite number of this unit, or if it can be read in two ways.
+        If the value is no finite number of this unit, if it can be read in two ways, or if it is
+        so large or small that nothing can be computed with it.
+
+    >>> in_si("mass", "50 g", "kg")
+    0.05
     """
-    if isinstance(value, str):
-        value = _read(name, value, unit)
-    elif hasattr(value, "to"):
-        value = _converted(name, value, unit, str(value))
+    wanted = f"write {'it' if unit else 'a number without a unit'} as in "
+    wanted += repr(_EXAMPLES.get(unit, f"2 {unit}"))
+    found = _typed(name, value, unit, wanted) if isinstance(value, str) else value
     try:
-        number = float(value)
+        number = float(found.to(unit).magnitude if hasattr(found, "to") else found)
     except (TypeError, ValueError):
-        raise Refused(f"{name}: {value!r} is not a number; {_wanted(unit)}") from None
-    if not math.isfinite(number):
-        raise Refused(f"{name}: {number} is not a finite number")
+        raise Refused(f"{name}: {value!r} does not fit; {wanted}") from None
+    # Also of infinity and NaN.
+    if number != 0 and not 1 / LARGEST <= abs(number) <= LARGEST:
+        raise Refused(
+            f"{name} = {f'{number:g} {unit}'.strip()} is not computed, but 0 and quantities from "
+            f"{1 / LARGEST:g} to {LARGEST:g} in SI units"
+        )
     return number
 
 
-def _read(name: str, text: str, unit: str) -> float:
+def _typed(name: str, text: str, unit: str, wanted: str) -> Any:
+    """Return the number of a text in the SI unit, or a quantity of pint."""
     plain = text.strip().replace("−", "-")
     if re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain):
         both = (plain.replace(",", ""), plain.replace(",", "."))
         raise Refused(f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one")
     plain = re.sub(r"(?<=\d),(?=\d)", ".", plain)
-    plain = re.sub(r"\s*[*×·]\s*10(?:\^|\*\*)(?=[-+\d])", "e", plain)
     found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", plain)
     if not found:
-        raise Refused(f"{name}: {text!r} does not begin with a number; {_wanted(unit)}")
+        raise Refused(f"{name}: {text!r} does not begin with a number; {wanted}")
     divisor = float(found[2] or 1)
     if divisor == 0:
         raise Refused(f"{name}: {text!r} divides by zero")
     number = float(found[1]) / divisor
     typed = found[3]
-    if not typed:
-        return number
-    common = _COMMON.get(unit, {})
+    common = {"": 1.0, **_COMMON.get(unit, {})}
     if typed in common:
         return number * common[typed]
-    # Ms would be 10⁶ s, and gr a grain of 65 mg.
-    wanted = _MISSPELT.get(typed.lower(), typed.lower())
-    if meant := next((each for each in common if each.lower() == wanted), None):
-        raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
+    near = _MISSPELT.get(typed.lower(), typed.lower())
+    for meant in common:
+        if meant.lower() == near:
+            raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
     import pint
 
     try:
-        quantity = pint.Quantity(number, typed)
+        return pint.Quantity(number, typed)
     except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
-        raise Refused(f"{name}: the unit of {text!r} is not known; {_wanted(unit)}") from None
-    return _converted(name, quantity, unit, text)
-
-
-def _converted(name: str, quantity: Any, unit: str, text: str) -> float:
-    try:
-        return float(quantity.to(unit).magnitude)
-    except Exception:
-        raise Refused(f"{name}: the unit of {text!r} does not fit; {_wanted(unit)}") from None
-
-
-def _wanted(unit: str) -> str:
-    what = "it" if unit else "a number without a unit"
-    return f"write {what} as in '{_EXAMPLES.get(unit, f'2 {unit}')}'"
+        raise Refused(f"{name}: the unit of {text!r} is not known; {wanted}") from None
 
 
 def positive(name: str, value: Any, unit: str) -> float:
@@ -189,6 +176,12 @@ def span(low: float, high: float, digits: int = 3, form: str = "f") -> str:
     return f"{low:.{digits}{form}} to {high:.{digits}{form}}"
 
 
+_PREFIXES = {-9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+# Kilometres, kiloseconds and km/s are rare, and masses above a tonne stay in kilograms.
+_GREATEST = {"m": 0, "s": 0, "g": 3}
+_UNPREFIXED = ("", "m/s", "kg/m^3", "m/s^2")
+
+
 def show(value: float, unit: str, digits: int = 3) -> str:
     """Return a number with its unit and a prefix: ``2.2 kN/m``.
 
@@ -202,9 +195,10 @@ def show(value: float, unit: str, digits: int = 3) -> str:
     # Less than a thousandth of the least prefix is rounding.
     if abs(value) < 1e-12:
         return f"0 {unit}".strip()
-    rounded = float(f"{value:.{digits}g}")
-    least, most = _POWERS.get(unit, (-9, 9))
-    power = max(least, min(3 * math.floor(math.log10(abs(rounded)) / 3), most))
+    power = 0
+    if unit not in _UNPREFIXED:
+        order = math.floor(math.log10(abs(float(f"{value:.{digits}g}"))) / 3)
+        power = max(-9, min(3 * order, _GREATEST.get(unit, 9)))
     scaled = float(f"{value / 10.0**power:.{digits}g}")
     text = f"{scaled:.0f}" if 100 <= abs(scaled) < 1e6 else f"{scaled:.{digits}g}"
     return f"{text} {_PREFIXES[power]}{unit}".strip()

@@ -14,6 +14,9 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball.datasets import read
+from bouncing_ball_beyond import SpringDamper
+from bouncing_ball_beyond.error_law import law_errors
+from bouncing_ball_beyond.tables import SINE, Table
 from studies.explorer import BOUND, page
 
 BEYOND = Path(__file__).resolve().parents[1]
@@ -26,7 +29,15 @@ SCREENS = {"desk": (1280, 900), "telephone": (390, 844)}
 
 LOOSE = "#scene=loose&units=dimensionless"
 
-PICTURES = {"": "motion", "#r=0.65&w=6&a=1": "motion", "#scene=contact": "scene", LOOSE: "scene"}
+STIFF = "#r=0.9&w=1000&a=0.5"
+
+PICTURES = {
+    "": "motion",
+    "#r=0.65&w=6&a=1": "motion",
+    STIFF: "motion",
+    "#scene=contact": "scene",
+    LOOSE: "scene",
+}
 """The first picture by the address at which the page is opened."""
 
 SMALLEST = 12
@@ -63,6 +74,7 @@ function look(frame) {
     worst: Number(page.getElementById("badge").dataset.worst),
     warned: !page.getElementById("warning").hidden,
     tab: page.querySelector("[role=tab][aria-selected=true]").textContent,
+    doubling: page.getElementById("waveform-says").textContent,
   };
 }
 addEventListener("load", () => {
@@ -138,6 +150,20 @@ def test_the_self_check_passes(seen, screen):
     assert opened["badge"] == "good"
     assert opened["worst"] <= BOUND
     assert not opened["warned"]
+
+
+def test_a_third_harmonic_changes_the_sign_of_the_shift(seen):
+    ball = SpringDamper(1000.0, restitution=0.9)
+    # The third harmonic that the page opens with.
+    tables = {"third harmonic": Table([(1, 1.0, 0.0), (3, 0.01, -0.87)]), "sine": SINE}
+    shift = {
+        name: 1000 * float(law_errors(ball, amplitude=1.0, table=table)["period_doubling"])
+        for name, table in tables.items()
+    }
+    assert shift["sine"] < 0 < shift["third harmonic"]
+    says = seen[f"desk {STIFF}"]["doubling"]
+    assert f"the shift is {shift['third harmonic']:.3g} with the third harmonic" in says
+    assert f"{shift['sine']:.3g} on a sine" in says
 
 
 def test_a_wrong_number_is_reported_at_the_top(seen):

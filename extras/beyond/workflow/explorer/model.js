@@ -383,6 +383,21 @@ function contactModel(contact) {
   };
 }
 
+// The relative shift of the period doubling by the error law (Eq. R6 of the article), to first order,
+// on a table Λ [sin τ + h sin(3τ + p)].
+function doublingLaw({delay, r, load}, n, {h, p}) {
+  const half = n * Math.PI, line = half * (1 - r) / (1 + r), push = 2 * (1 + r * r) / (1 + r) ** 2;
+  const wave = (order, at) => Math.sin(at + order * Math.PI / 2)
+    + h * 3 ** order * Math.sin(3 * at + p + order * Math.PI / 2);
+  // Where w′ = C and -w″ = Y for one Λ: for h up to 0.02 less than 0.2 from where it is on a sine.
+  const onSine = Math.atan2(push, line);
+  const at = rootOf(x => -line * wave(2, x) - push * wave(1, x), onSine - 0.3, onSine + 0.3);
+  const third = push / -wave(2, at) * wave(3, at);
+  const shift = load / (1 + r), across = shift * (push - 1);
+  const along = ((1 - r) * across + 2 * delay * (push - 1) + half * load * third) / (half * (1 + r));
+  return (push * along - third * across) / (push * push - line * third);
+}
+
 // Height of the ball a time since its impact, in any of the models.
 function heightAt(orbit, since) {
   const period = 2 * Math.PI * orbit.n, s = ((since % period) + period) % period;
@@ -447,8 +462,10 @@ function compareRows({names, rows}, again) {
   return {worst, where, count: rows.length};
 }
 
-function orbitAgain({release, restitution: r, frequency_ratio: omega, n, amplitude}) {
-  const {orbits, limits} = answer({r, omega, amplitude, n, release});
+function orbitAgain({
+  release, restitution: r, frequency_ratio: omega, n, amplitude, third_harmonic: h, third_phase: p,
+}) {
+  const {orbits, limits, signature} = answer({r, omega, amplitude, n, release});
   const [exact, simple, corrected] = orbits, middle = exact.state(exact.contact_duration / 2);
   const {phase, contact_duration, impact_velocity, bounce_velocity, apparent_restitution, max_height,
     trace, determinant} = exact;
@@ -462,5 +479,6 @@ function orbitAgain({release, restitution: r, frequency_ratio: omega, n, amplitu
     corrected_phase: corrected.phase, corrected_max_height: corrected.max_height,
     corrected_trace: corrected.trace, corrected_saddle_node: limits[2].saddle_node,
     corrected_period_doubling: limits[2].period_doubling,
+    doubling_law: doublingLaw(signature, n, {h, p}),
   };
 }

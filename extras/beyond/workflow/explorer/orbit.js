@@ -113,6 +113,32 @@ function drawMultipliers(found) {
     ([re, im]) => plot.mark("dot", re, im, `dot ${NAMES[k]}`, SIZES[k])));
 }
 
+// The shift of the period doubling over r, on a sine and with a third harmonic of the table.
+function drawWaveform(found, {r, n, omega, release, harmonic}) {
+  const coefficient = (x, wave) =>
+    omega * doublingLaw(signatureOf(contactOf(x, omega, release)), n, wave);
+  // The sign changes at large r, where shifts are much smaller.
+  const least = r < 0.5 ? 0.05 : 0.5;
+  const lines = [{h: 0, p: 0}, harmonic].map(wave => Array.from({length: 101}, (_, k) => {
+    const x = least + (1 - least) * k / 100;
+    return [x, coefficient(x, wave)];
+  }));
+  const heights = [0, ...lines.flat().map(([, y]) => y)];
+  const low = Math.min(...heights), high = Math.max(...heights), room = 0.1 * (high - low);
+  const [sine, other] = [{h: 0, p: 0}, harmonic].map(wave => coefficient(r, wave));
+  const exact = omega * found.errors.period_doubling;
+  const first = x => x < 0 ? "doubles first" : "doubles later";
+  $("waveform-says").textContent = `At r = ${shown(r)} the shift is ${shown(other, 3)} with the third `
+    + `harmonic, where the contact ${first(other)}, and ${shown(sine, 3)} on a sine, where it `
+    + `${first(sine)}; exactly, on a sine at ϖ = ${shown(omega)}, ${shown(exact, 3)}.`;
+  const plot = new Plot("waveform", [least, 1], [low - room, high + room], "restitution coefficient r",
+    "ϖ times relative shift", $("waveform-says").textContent);
+  plot.line([[least, 0], [1, 0]], "curve table");
+  plot.line(lines[0], "curve unstable spring-damper");
+  plot.line(lines[1], "curve spring-damper");
+  plot.mark("dot", r, exact, "dot spring-damper");
+}
+
 // ---- Tables.
 function row(name, cells) {
   const made = document.createElement("tr"), head = document.createElement("th");

@@ -47,6 +47,7 @@ function show(hash, kept = DEFAULTS) {
   const onStage = state.tab === "stage";
   for (const id of ["starts", "definition"]) $(id).hidden = onStage;
   $("sides").hidden = state.tab === "design";
+  $("waveform-view").hidden = state.tab !== "orbit";
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   for (const id of ["stage-views", "slice-views"]) $(id).hidden = !onStage;
@@ -94,6 +95,7 @@ function show(hash, kept = DEFAULTS) {
     drawBranch(found, question);
     drawMotion(found, question);
     drawMultipliers(found);
+    if (state.tab === "orbit") drawWaveform(found, question);
   };
   drawOrbit();
 }

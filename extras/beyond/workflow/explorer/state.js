@@ -6,13 +6,13 @@ const $ = id => document.getElementById(id);
 // The stage's: phase and velocity of the first impact, number of balls, by how much each of them
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
-  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, release: "displacement", side: "stable",
+  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, h: 1, p: -0.87, release: "displacement", side: "stable",
   m: 20, f: 20, acc: 0.8, k: 1e5, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
   units: "physical",
 };
 const RANGES = {
-  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
+  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20], h: [0, 2], p: [-10, 10],
   m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], t: [1e-4, 99],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
@@ -111,7 +111,8 @@ function impossible(state) {
 }
 
 const TABS = {
-  orbit: ({t}) => ["tab", "r", "w", "a", "n", "release", "side", ...(t === DEFAULTS.t ? [] : ["t"])],
+  orbit: state => ["tab", "r", "w", "a", "n", "release", "side",
+    ...["t", "h", "p"].filter(name => state[name] !== DEFAULTS[name])],
   design: ({t}) => ["tab", "m", "f", "acc", "k", "r", "n", "release", ...(t === DEFAULTS.t ? [] : ["t"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
     "v", "balls", "dv", "dphi", "from", "pace", "view", "units", "f"],
@@ -122,9 +123,10 @@ const hashOf = state => "#" + TABS[state.tab](state).map(
 // The arguments of the models: of the physical tab, its dimensionless groups.
 function questionOf(state) {
   const {r, n, release, side} = state;
-  // The tolerance is given in percent.
+  // The tolerance and the third harmonic are given in percent.
   if (state.tab === "orbit")
-    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100};
+    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100,
+      harmonic: {h: state.h / 100, p: state.p}};
   const one = caseOf(state);
   // The orbit is that which is stable next to the saddle-node.
   return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,

@@ -10,16 +10,19 @@ from bouncing_ball import restitution
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
+from bouncing_ball_beyond.error_law import contact_values, law_errors, rows_of_orbits
 from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
+from bouncing_ball_beyond.tables import Table
 from studies.orbits import follow_compliant, random_orbits
 from studies.variables import VARIABLES
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
 PLACES = (0.02, 1.2)
+# The largest third harmonic of the page, as a share of the displacement.
+HARMONIC = 0.02
 # Balls that end at rest, on an orbit, on a doubled orbit, and on an orbit with rests. None is near
 # chaos, where the results of two computers differ.
 BALL = {"restitution": 0.5, "frequency_ratio": 80.0}
@@ -48,7 +51,7 @@ def orbits_of(ball: Ball, n: NDArray, amplitude: NDArray, saddle_node: NDArray):
 
 def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
     """One random orbit for each ϖ under a release, over `sample`."""
-    n, zeta, amplitude, _ = random_orbits(ratios.size, seed, release, PLACES)
+    n, zeta, amplitude, random = random_orbits(ratios.size, seed, release, PLACES)
     r = SpringDamper(1.0, damping_ratio=zeta).signature(1.0).restitution
     ball = SpringDamper(ratios, restitution=r, release=release)
     limits = ("saddle_node", "period_doubling")
@@ -61,7 +64,15 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
     instant = contact_values(corrected, amplitude=amplitude, n=n)
     of_instants = OrbitEquations(corrected, 1, n)
     instants = at_orbits(traces, of_instants, rows_of_orbits(of_instants, amplitude))
+    harmonic = random.uniform(0.0, HARMONIC, ratios.size)
+    phase = random.uniform(-np.pi, np.pi, ratios.size)
     values = {
+        "third_harmonic": harmonic,
+        "third_phase": phase,
+        "doubling_law": [
+            doubling_law(equations.rows(row).ball, n[row], harmonic[row], phase[row])
+            for row in range(ratios.size)
+        ],
         "n": n,
         "restitution": r,
         "frequency_ratio": ratios,
@@ -80,6 +91,12 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
         "corrected_period_doubling": instant["period_doubling"],
     }
     return xr.Dataset({name: ("sample", value) for name, value in values.items()})
+
+
+def doubling_law(ball: Ball, n: int, harmonic: float, phase: float) -> float:
+    """The shift of the period doubling by the error law on a table with a third harmonic."""
+    table = Table([(1, 1.0, 0.0), (3, harmonic, phase)])
+    return float(law_errors(ball, amplitude=1.0, n=n, table=table)["period_doubling"])
 
 
 def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
@@ -193,8 +210,9 @@ def explorer(parameters: dict) -> xr.Dataset:
     """One random orbit for each ϖ of a grid, under each release, and some balls.
 
     Of each orbit the dataset has the contact (ζ follows from r by Eq. 16), the quantities of the
-    orbit, its bifurcations, height and force in the middle of the contact, and values of both
-    simple models; NaN where there is no orbit or no bifurcation.
+    orbit, its bifurcations, height and force in the middle of the contact, values of both simple
+    models, and the shift of the period doubling by the error law on a table with a random third
+    harmonic; NaN where there is no orbit or no bifurcation.
     """
     ratios = grid(parameters["frequency_ratio"])
     releases = ["displacement", "force"]

@@ -73,7 +73,7 @@ def test_a_full_device_is_one_line():
 @pytest.mark.parametrize(
     ("line", "offered"),
     [
-        ("design --engine muj", "plain,mujoco"),
+        ("design --engine muj", "plain,mujoco\nplain,mujoco-warp"),
         ("diagnose --engine pyb", "plain,pybullet"),
         ("fit croquet --engine drake-", "plain,drake-sap"),
         ("fit croq", "file,croq"),
@@ -173,7 +173,7 @@ MISTAKES = {
     f"{BALL} --tolerance 0": "not between",
     f"{BALL} --tolerance 5": "not between",
     f"{SHORT} --pick nothing": "is not one that is written here",
-    f"{SHORT} --pick impulse --engine pybullet": "is not one that is written here",
+    f"{SHORT} --pick impulse --engine lammps": "is not one that is written here",
     f'{BALL} --radius "2 mm" --penetration "5 mm"': "is deeper than the radius of 2 mm",
     f"{SHORT} --time-step 10ms --pick impulse --engine drake": "is not one that is written here",
     "design --mass 1 --restitution 0.5 --contact-time 20ms --time-step 1ms --engine pybullet "

@@ -499,6 +499,10 @@ class Problem:
         """Return whether r is within the tolerance."""
         return found.deviation(self.bounce.restitution) <= self.tolerance
 
+    def is_usable(self, found: Outcome) -> bool:
+        """Return whether r is within the tolerance, and the depth one that works in a scene."""
+        return self.is_near(found) and found.depth[1] <= self.usable_depth
+
     def at(self, depth: float, step: float) -> Candidate:
         """Return the contact of an undamped depth in m at a time step in s."""
         return Candidate(depth, self.ratio(depth, step), step)
@@ -578,6 +582,24 @@ class Problem:
         outcome = self.outcome(self.law_of(parameters, contact.step), contact.step)
         return Row(contact.step, stiffness, outcome, parameters)
 
+    def promised(self, found: Outcome) -> tuple[float, float]:
+        """Return the least and the greatest r of a contact in a scene, where bodies may slide."""
+        low, _, high = found.restitution
+        takes, adds, below = self.engine.sliding
+        if self.bounce.friction == 0:
+            return low, high
+        return max(low - takes, 0.0), high + adds * (self.bounce.restitution <= below)
+
+    @property
+    def short_step(self) -> float:
+        """A step in s in which a body by number moves by less than the permitted depth.
+
+        Nor does gravity add more than the share of the tolerance to its speed.
+        """
+        speed = self.bounce.impact_speed
+        slow = self.tolerance * speed / self.bounce.load if self.bounce.load else math.inf
+        return _written(min(0.9 * self.bounce.limit / speed, slow, LONGEST_STEP))
+
     def impulse(self, step: float) -> Row:
         """Return the restitution by number that has the wanted mean r, without a spring.
 
@@ -609,8 +631,7 @@ class Problem:
         # The impulse also keeps r of boxes and of bodies that slide, which implicit springs of
         # several points do not; if nothing is to rebound, a spring stops the body more softly.
         for name in (IMPULSE, YOURS) if self.bounce.restitution > 0 else (YOURS, IMPULSE):
-            found = rows[name].outcome if name in rows else None
-            if found and self.is_near(found) and found.depth[1] <= self.usable_depth:
+            if name in rows and self.is_usable(rows[name].outcome):
                 return name
         return WANTED
 
@@ -681,8 +702,10 @@ def design(
         contact = kept if keeps else problem.stiffest(step)
         if keeps or problem.works(contact):
             rows[YOURS] = problem.row(contact)
-        if problem.engine.number and not one_body:
-            rows[IMPULSE] = problem.impulse(step)
+    if problem.engine.number and not one_body and (step or bounce.restitution):
+        rows[IMPULSE] = problem.impulse(step or problem.short_step)
+        if not (problem.is_usable(rows[IMPULSE].outcome) or bounce.gives_contact):
+            rows[IMPULSE] = problem.impulse(min(step or math.inf, problem.short_step))
     chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
     names = ", ".join(map(repr, rows))
     refuse([(chosen not in rows, f"row {pick!r} is not one that is written here: {names}")])
@@ -725,6 +748,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
         f"{show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
     )
     quarter = "" if bounce.other_mass is None else "a quarter of "
+    is_shorter = found.chosen == IMPULSE and row.step < (found.time_step or 0.0)
     unusable = (
         f"; more than {quarter}the {bounce.size_name} is too deep for a scene, and the row for "
         f"{show(wanted.step, 's')} is written (--pick {YOURS!r} for the other one)"
@@ -739,6 +763,11 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
         [
             (outcome.depth[1] > problem.deepest, problem.lost),
             (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
+            (
+                is_shorter,
+                f"the impulse is for {show(row.step, 's')}: at {at_yours} the body moves "
+                f"{show(bounce.impact_speed * step, 'm')} in a step, or r leaves its tolerance",
+            ),
             (
                 found.time_step and YOURS not in found.rows and found.chosen == WANTED,
                 f"at {at_yours} no spring works in {found.engine}: none keeps r within "
@@ -790,6 +819,11 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 abs(slow.restitution[1] - mean) > TOLERANCE / 2,
                 f"at a third of the speed r is {slow.around}",
             ),
+            (
+                problem.promised(outcome) != (low, high) and found.chosen != IMPULSE,
+                "r is without friction: of a body that slides up to 1.4 times as fast as it falls "
+                f"it is {span(*problem.promised(outcome))}",
+            ),
             (bounce.friction, problem.engine.friction),
             (
                 bounce.friction and "@friction@" not in found.template,
@@ -840,6 +874,7 @@ class Design(Page):
             "friction": self.bounce.friction or 0.0,
             "bodies": "one of both bodies" if self.one_body else "both bodies alike",
             "names": "(one,)" if self.one_body else "(one, other)",
+            "condim": 1 if self.bounce.friction == 0 else 3,
         }
         return filled(self.template, values | self.parameters).rstrip()
 
@@ -887,6 +922,16 @@ class Design(Page):
             *((True, note) for note in engine.notes),
             (isinstance(engine.scheme, Implicit) and not is_impulse, STEP_ONLY),
             (bounce.points > 1, engine.box),
+            (
+                bounce.points > 1,
+                "A box that falls some degrees off flat hits twice, and friction turns one that "
+                "slides fast: no contact keeps r then",
+            ),
+            (
+                bounce.other_mass,
+                "r is along the line of their centres, which turns while they slide past each "
+                "other: no contact keeps r then",
+            ),
             (bounce.other_mass is None, engine.floor),
         ]
         return [f"{text}." for text in holding(said) if text]

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -82,6 +82,17 @@ LEAST = Rule("the least of both", min, lambda x: x, lambda x, other: x)
 PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
 
 
+class Sliding(NamedTuple):
+    """What sliding takes from r at most, and what it adds to an r up to ``below``.
+
+    Measured with speeds along the surface of up to 1.4 times the speed of the fall.
+    """
+
+    takes: float = 0.0
+    adds: float = 0.0
+    below: float = 0.0
+
+
 @dataclass(frozen=True)
 class Engine:
     """A physics engine and one of its contacts.
@@ -122,8 +133,12 @@ class Engine:
         What a user has to know of a body with several points.
     floor : str
         What a user has to know of a fixed table.
+    flat_only : bool
+        Whether r is that of a box which falls flat on a plane and does not slide; `box` says so.
     friction : str
         What friction does to r.
+    sliding : Sliding
+        By how much r of a body that slides may leave the range of one that does not.
     number : str
         The parameter that is a restitution coefficient, if the engine has one.
     threshold : str
@@ -153,7 +168,9 @@ class Engine:
     ran: str = ""
     notes: tuple[str, ...] = ()
     box: str = ""
+    flat_only: bool = False
     floor: str = ""
+    sliding: Sliding = Sliding()
     friction: str = "friction acts along the surface only, and leaves r as it is"
     number: str = ""
     threshold: str = ""
@@ -554,9 +571,10 @@ def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -
     }
 
 
-_SLIDING = (
-    "r holds at every friction, cone and condim, but for a body that slides faster than it falls: "
-    "its damper acts along the surface as well, and at r below 0.5 it leaves faster"
+# In MuJoCo the damper acts along the surface as well.
+_PUSHED_UP = Sliding(adds=0.07, below=0.6)
+_EVERY_FRICTION = (
+    "r holds at every friction, cone and condim; from r = 0.6 on also of bodies that slide"
 )
 _MANIFOLD = (
     "the impulse keeps r at every friction and sliding speed; a spring does as long as the body "
@@ -564,34 +582,43 @@ _MANIFOLD = (
     "energy"
 )
 _DRAKE_BOX = (
-    "A pair of shapes has one contact: a box that falls flat on a HalfSpace bounces as designed, "
-    "but on a Box, on an edge or sliding it had 0.78 to 0.88 for 0.80"
+    "A pair of shapes has one contact: r is that of a box which falls flat on a HalfSpace and does "
+    "not slide; on a Box, on an edge or sliding it had 0.77 to 0.84 for 0.80"
 )
 _LIGGGHTS_DELAY = "Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late"
 _VERLET = SemiImplicit(pulls=True)
 # A depth is the difference of two rounded numbers: below ten of their spacings no digit is certain.
 _SINGLE = 10 * float(np.finfo(np.float32).eps)
+_MUJOCO = Engine(
+    name="mujoco",
+    names=("solref", "solref"),
+    scheme=SemiImplicit(),
+    write=_write_mujoco,
+    beside={"solimp": _DESIGNED_SOLIMP},
+    read=_read_mujoco,
+    meaning="solref = -k/m -c/m, solimp = 0.999 0.999 0.001",
+    rules=_MUJOCO_RULES,
+    of_depth=_impedance_of_depth,
+    defaults={"solref": (0.02, 1.0), "solimp": _DEFAULT_SOLIMP, "refsafe": 1.0},
+    ran="MuJoCo 4.0.0",
+    notes=(
+        "The numbers of solref are per unit of mass: they hold for every mass, and for two free "
+        "bodies",
+        "Give both geoms the class, because MuJoCo averages their solimp",
+    ),
+    friction=_EVERY_FRICTION,
+    sliding=_PUSHED_UP,
+)
 ENGINES: Mapping[str, Engine] = {
     engine.name: engine
     for engine in (
-        Engine(
-            name="mujoco",
-            names=("solref", "solref"),
-            scheme=SemiImplicit(),
-            write=_write_mujoco,
-            beside={"solimp": _DESIGNED_SOLIMP},
-            read=_read_mujoco,
-            meaning="solref = -k/m -c/m, solimp = 0.999 0.999 0.001",
-            rules=_MUJOCO_RULES,
-            of_depth=_impedance_of_depth,
-            defaults={"solref": (0.02, 1.0), "solimp": _DEFAULT_SOLIMP, "refsafe": 1.0},
-            ran="MuJoCo 4.0.0",
-            notes=(
-                "The numbers of solref are per unit of mass: they hold for every mass, and for two "
-                "free bodies",
-                "Give both geoms the class, because MuJoCo averages their solimp",
-            ),
-            friction=_SLIDING,
+        _MUJOCO,
+        replace(
+            _MUJOCO,
+            name="mujoco-warp",
+            ran="MuJoCo Warp 4.0.0",
+            resolution=_SINGLE,
+            notes=(*_MUJOCO.notes, "Without friction it needs condim = 1, or there are no numbers"),
         ),
         Engine(
             name="pybullet",
@@ -644,8 +671,10 @@ ENGINES: Mapping[str, Engine] = {
             "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
             "softer by the default of 1",
             box=_DRAKE_BOX,
-            friction="sliding takes up to 0.06 of r in SAP, and none of it in the lagged "
-            "approximation, the row drake",
+            flat_only=True,
+            notes=("The lagged approximation, the row drake, keeps r of bodies that slide",),
+            friction="r changes in SAP while a body slides",
+            sliding=Sliding(takes=0.08, adds=0.07, below=0.5),
         ),
         DrakeDissipation(
             name="drake",
@@ -661,6 +690,7 @@ ENGINES: Mapping[str, Engine] = {
             ran="Drake 1.51.1",
             notes=("r falls with the speed, and is the wanted one at this speed only",),
             box=_DRAKE_BOX,
+            flat_only=True,
         ),
         Engine(
             name="lammps",
@@ -742,8 +772,9 @@ ENGINES: Mapping[str, Engine] = {
             resolution=_SINGLE,
             ran="Newton 1.8.0",
             notes=("The damper acts while the bodies approach only",),
-            box="The points are those of a face: on an edge or sliding a box had 0.84 to 0.91 for "
-            "0.80",
+            box="The points are those of a face: r is that of a box which falls flat on a plane "
+            "and does not slide; on a box, on an edge or sliding it had 0.78 to 0.91 for 0.80",
+            flat_only=True,
         ),
         NewtonMujoco(
             name="newton-mujoco",
@@ -759,8 +790,9 @@ ENGINES: Mapping[str, Engine] = {
             defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
             resolution=_SINGLE,
             ran="Newton 1.8.0",
-            notes=("Without friction set mujoco:condim = 1, or there are no numbers",),
-            friction=_SLIDING,
+            notes=("Without friction it needs condim = 1, or there are no numbers",),
+            friction=_EVERY_FRICTION,
+            sliding=_PUSHED_UP,
         ),
         Engine(
             name="genesis",
@@ -776,7 +808,8 @@ ENGINES: Mapping[str, Engine] = {
             rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
             defaults={"solimp": _DEFAULT_SOLIMP},
             notes=("The numbers hold for every mass",),
-            friction=_SLIDING,
+            friction=_EVERY_FRICTION,
+            sliding=_PUSHED_UP,
         ),
         PhysX(
             name="physx",
@@ -806,8 +839,10 @@ ENGINES: Mapping[str, Engine] = {
                 "Use the solver PGS",
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
-            box="On springs the points are those of a face: on an edge or sliding a box had 0.84 "
-            "to 0.87 for 0.79; with the impulse one that slides has 0.81 to 0.82 for 0.80",
+            box="r is that of a box which falls flat on a plane and does not slide; on springs, "
+            "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding, "
+            "and with the impulse 0.81 to 0.82 for 0.80 while it slides",
+            flat_only=True,
             number="restitution",
             threshold="bounceThresholdVelocity",
             undisturbed={"bounceThresholdVelocity": 0.0},
@@ -924,12 +959,19 @@ ENGINES: Mapping[str, Engine] = {
 """The engines by name."""
 
 _ALIASES = {
-    "mujoco-warp": "mujoco",
+    "mjwarp": "mujoco-warp",
     "mjx": "mujoco",
+    "mujoco-mjx": "mujoco",
     "bullet": "pybullet",
+    "bullet3": "pybullet",
+    "drake-lagged": "drake",
+    "genesis-world": "genesis",
     "isaac": "physx",
     "isaac-sim": "physx",
     "isaac-lab": "physx",
+    "mercury": "mercurydpm",
+    "omniverse": "physx",
+    "ovphysx": "physx",
     "newton-semi-implicit": "newton",
     "newton-featherstone": "newton",
     "gazebo-classic": "gazebo",

@@ -1,19 +1,23 @@
 """Contacts that PyBullet finds ahead, or when bodies touch.
 
 ``python tests/engine_bullet.py`` lets balls and boxes meet a table or each other, at 16 instants
-within a step, and prints r as diagnosed and in PyBullet. The exit status is 1 if one differs.
+within a step, without friction and with it, and writes r as diagnosed and in PyBullet into
+docs/validation.md. The exit status is 1 if one differs.
 """
 
 import sys
 
 import numpy as np
 import pybullet
+from engine_page import write
 
 from bouncing_ball_contacts import Bounce, diagnose
 
 G = 9.80665
 SPEED = 3.0
 LONG = 1 / 240
+FRICTION = 0.3
+SLIDE = 0.5
 NUMBER = {"restitution": 0.9}
 HALF = {"restitution": 0.5}
 
@@ -56,8 +60,11 @@ def body(shape, size, mass, height):
     return pybullet.createMultiBody(mass, found, basePosition=[0, 0, height])
 
 
-def met(shapes, size, other_mass, step, parameters, gap):
-    """Return r of one impact, as a ratio of speeds, or of the heights above a table."""
+def met(shapes, size, other_mass, step, parameters, gap, friction):
+    """Return r of one impact, as a ratio of speeds, or of the heights above a table.
+
+    With friction a body that falls on a table moves along it as well.
+    """
     pybullet.resetSimulation()
     pybullet.setGravity(0, 0, 0 if other_mass else -G)
     pybullet.setPhysicsEngineParameter(fixedTimeStep=step, numSubSteps=1)
@@ -67,9 +74,11 @@ def met(shapes, size, other_mass, step, parameters, gap):
     one = body(above, size, 1.0, size + gap)
     other = body(below, other_size, other_mass or 0, bottom)
     for each in (one, other):
-        pybullet.changeDynamics(each, -1, **parameters)
+        pybullet.changeDynamics(each, -1, **parameters, lateralFriction=friction**0.5)
     if other_mass:
         pybullet.resetBaseVelocity(one, [0, 0, -SPEED])
+    elif friction:
+        pybullet.resetBaseVelocity(one, [SLIDE, 0, 0])
     heights = [gap]
     speeds = [-SPEED]
     for _ in range(int((0.2 if other_mass else 1.2) / step)):
@@ -88,29 +97,48 @@ def met(shapes, size, other_mass, step, parameters, gap):
     return np.sqrt(max(max(heights[turn : top + 1]), 0) / gap)
 
 
-def main():
-    pybullet.connect(pybullet.DIRECT)
+HEAD = ["bodies", "size, m", "other mass, kg", "step, ms", "parameters", "r", "PyBullet"]
+WORDS = (
+    "A body of 1 kg meets a table or another body with 3 m/s in PyBullet, at 16 instants within a "
+    "step; the column *r* is what `bounce diagnose` says. PyBullet finds some of these contacts "
+    "ahead."
+)
+
+
+def table(friction):
+    """Return the lines of a table, and how many diagnoses differ."""
     wrong = 0
+    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
     for shapes, size, other_mass, step, parameters in CASES:
         asked = dict(mass=1.0, radius=size, speed=SPEED, points=4 if "box, " in shapes else 1)
         found = diagnose(Bounce(**asked, other_mass=other_mass), "pybullet", parameters, step)
         height = 0.01 if other_mass else SPEED**2 / (2 * G)
         measured = [
-            met(shapes, size, other_mass, step, parameters, height + SPEED * step * share)
+            met(shapes, size, other_mass, step, parameters, height + SPEED * step * share, friction)
             for share in np.linspace(0, 1, 16)
         ]
         low, mean, high = found.outcome.restitution
         agrees = low - 2e-3 <= min(measured) and max(measured) <= high + 2e-3
         agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
         wrong += not agrees
-        print(
-            f"{shapes:12} {size:5g} m {other_mass or '-':3} kg {1e3 * step:5.3g} ms "
-            f"{str(parameters):55} {low:.3f} to {high:.3f}, {min(measured):.3f} to "
-            f"{max(measured):.3f}{'' if agrees else ' (differs)'}",
-            flush=True,
-        )
-    print(f"{len(CASES) - wrong} of {len(CASES)} agree with PyBullet.")
-    sys.exit(wrong > 0)
+        given = ", ".join(f"{name} = {value:g}" for name, value in parameters.items())
+        texts = [shapes, f"{size:g}", str(other_mass or "–"), f"{1e3 * step:.3g}", given]
+        texts += [f"{low:.3f} to {high:.3f}", f"{min(measured):.3f} to {max(measured):.3f}"]
+        lines.append("| " + " | ".join(texts) + ("" if agrees else " (differs)") + " |")
+        print(lines[-1], flush=True)
+    said = f"{len(CASES) - wrong} of {len(CASES)} agree with PyBullet."
+    print(said)
+    return [said, "", *lines], wrong
+
+
+def main():
+    pybullet.connect(pybullet.DIRECT)
+    lines, wrong = table(0.0)
+    more, also_wrong = table(FRICTION)
+    rubbed = f"The same at a friction of {FRICTION}, on a table with {SLIDE} m/s along it."
+    page = ["## Contacts of PyBullet that are found ahead", "", WORDS, "", *lines, "", rubbed, ""]
+    write("bullet", [*page, *more])
+    sys.exit(wrong + also_wrong > 0)
 
 
 if __name__ == "__main__":

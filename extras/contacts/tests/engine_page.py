@@ -6,6 +6,11 @@ from pathlib import Path
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
 
 
+def said(pattern):
+    """Return what a pattern finds in the lines of the page."""
+    return re.findall(pattern, PAGE.read_text("utf-8"), re.MULTILINE)
+
+
 def write(name, lines):
     """Replace the part of the page between the comments of a name, or add it at the end."""
     start, end = f"<!-- {name} -->", f"<!-- end of {name} -->"

@@ -1,16 +1,19 @@
 """Bodies of other materials, with defaults or with a restitution by number, in engines.
 
 ``python tests/engine_pairs.py`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m, at 16
-instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine. The
-exit status is 1 if one differs.
+instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine. Then it
+drops them with friction and a speed along the table. The tables are written into
+docs/validation.md. The exit status is 1 if one differs.
 """
 
 import math
 import sys
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import engine_runs
 import numpy as np
+from engine_page import write
 
 from bouncing_ball_contacts import Bounce, diagnose
 from bouncing_ball_contacts.engines import UNDISTURBED
@@ -22,10 +25,18 @@ SHORT = 1e-3
 LONG = 1 / 240
 
 
-def mujoco(one, other, height, step):
+class Rub(NamedTuple):
+    """The friction of both bodies, None for the default of the engine, and a speed along in m/s."""
+
+    friction: float | None = None
+    slide: float = 0.0
+
+
+def mujoco(one, other, height, step, rub):
     import mujoco
 
     def geom(values):
+        values = values if rub.friction is None else {**values, "friction": rub.friction}
         return " ".join(f'{name}="{value}"' for name, value in values.items())
 
     model = mujoco.MjModel.from_xml_string(
@@ -35,6 +46,7 @@ def mujoco(one, other, height, step):
         </worldbody></mujoco>"""
     )
     data = mujoco.MjData(model)
+    data.qvel[0] = rub.slide
     heights = []
     for _ in range(20000):
         mujoco.mj_step(model, data)
@@ -42,7 +54,7 @@ def mujoco(one, other, height, step):
     return heights
 
 
-def pybullet(one, other, height, step):
+def pybullet(one, other, height, step, rub):
     import pybullet
 
     if not pybullet.isConnected():
@@ -60,6 +72,9 @@ def pybullet(one, other, height, step):
         pybullet.changeDynamics(
             body, -1, **{name: value for name, value in values.items() if name not in WORLD}
         )
+        if rub.friction is not None:
+            pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(rub.friction))
+    pybullet.resetBaseVelocity(ball, [rub.slide, 0, 0])
     heights = []
     for _ in range(20000):
         pybullet.stepSimulation()
@@ -67,7 +82,7 @@ def pybullet(one, other, height, step):
     return heights
 
 
-def drake(one, other, height, step):
+def drake(one, other, height, step, rub):
     import pydrake.all as pydrake
 
     builder = pydrake.DiagramBuilder()
@@ -83,7 +98,7 @@ def drake(one, other, height, step):
     }
     for body, (shape, values, place) in shapes.items():
         properties = pydrake.ProximityProperties()
-        friction = pydrake.CoulombFriction(0, 0)
+        friction = pydrake.CoulombFriction(rub.friction or 0, rub.friction or 0)
         pydrake.AddContactMaterial(
             values.get("hunt_crossley_dissipation"),
             values.get("point_contact_stiffness"),
@@ -97,31 +112,35 @@ def drake(one, other, height, step):
     plant.Finalize()
     log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, step)
     simulator = pydrake.Simulator(builder.Build())
+    context = plant.GetMyMutableContextFromRoot(simulator.get_mutable_context())
+    plant.SetVelocities(context, [0, 0, 0, rub.slide, 0, 0])
     simulator.AdvanceTo(20.0)
     return log.FindLog(simulator.get_context()).data()[6, 1:] + height
 
 
 def run_alone(run, seconds):
     """Return the drop of a design of :mod:`engine_runs` with these parameters."""
-    return lambda one, other, height, step: run(trial(one, height, step, seconds))[0]
+    return lambda one, other, height, step, rub: run(trial(one, height, step, seconds, rub))[0]
 
 
-def trial(one, height, step, seconds):
+def trial(one, height, step, seconds, rub):
     written = SimpleNamespace(parameters=one, bounce=BALL, row=SimpleNamespace(step=step))
-    return engine_runs.Trial(written, "ball", float(height), 0.0, int(seconds / step), G)
+    steps = int(seconds / step)
+    rubs = (rub.friction or 0.0, rub.slide)
+    return engine_runs.Trial(written, "ball", float(height), 0.0, steps, G, *rubs)
 
 
-def chrono(one, other, height, step):
-    return engine_runs.chrono(trial(one, height, step, 10.0), other)[0]
+def chrono(one, other, height, step, rub):
+    return engine_runs.chrono(trial(one, height, step, 10.0, rub), other)[0]
 
 
 ODE = run_alone(engine_runs.ode, 60.0)
 GAZEBO = run_alone(engine_runs.gazebo, 20.0)
 
 
-def physx(one, other, height, step):
+def physx(one, other, height, step, rub):
     """PhysX takes 10 ms for a step. The defaults of a table are rigid."""
-    return engine_runs.physx(trial(one, height, step, 1.2), other or {})[0]
+    return engine_runs.physx(trial(one, height, step, 1.2, rub), other or {})[0]
 
 
 DIRECT = {"solref": "-20000 -30", "solimp": "1e-4 1e-4 0.001"}
@@ -221,45 +240,86 @@ def rebound(heights, height):
     return math.sqrt(max(heights[turn:].max(), 0.0) / height)
 
 
-def main():
-    wrong = 0
+def cells(case, rub):
+    """Return the cells of a row of a table, and whether the engine agrees with the diagnosis.
+
+    It is None if the diagnosis says that friction changes r.
+    """
+    name, run, one, other, step = case
+    differs = None if other == one else other or {}
+    found = diagnose(BALL, name, one, step, other=differs)
+    way = math.sqrt(2 * G * HEIGHT) * step
+    measured = []
+    for height in HEIGHT + way * np.linspace(0, 1, 16):
+        heights = np.asarray(run(one, other or {}, height, step, rub))
+        measured.append(rebound(heights, height))
+    # A ball that is still on its way at the end has no depth at rest.
+    last = heights[-200:]
+    is_still = np.ptp(last) < 1e-4
+    rest = -float(np.mean(last)) if is_still else math.nan
+    low, mean, high = found.outcome.restitution
+    agrees = low - 1e-3 <= min(measured) and max(measured) <= high + 1e-3
+    # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
+    agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
+    # Without a threshold the ball never comes to rest, and a depth may be too small.
+    has_rest = found.outcome.rest > 0
+    lies = not has_rest or np.isclose(rest, found.outcome.rest, rtol=0.02)
+    agrees &= not is_still or bool(lies)
+    if rub.friction and any("at a friction of" in note for note in found.notes):
+        agrees = None
+    table = "the same" if other is one else in_words(other)
+    texts = [name, in_words(one), table, f"{step * 1e3:.4g} ms", f"{low:.4f} to {high:.4f}"]
+    texts += [f"{min(measured):.4f} to {max(measured):.4f}"]
+    rests = (found.outcome.rest, rest) if has_rest else (math.nan, math.nan)
+    texts += ["–" if math.isnan(depth) else f"{depth * 1e3:.4g}" for depth in rests]
+    return texts, agrees
+
+
+HEAD = ["engine", "ball", "table", "step", "r", "engine", "at rest, mm", "engine"]
+PAIRS = (
+    "A ball of 1 kg with a radius of 0.1 m is dropped from 0.5 m at 16 instants within a step, "
+    "with parameters that ball and table have, or their defaults. The columns before those of the "
+    "*engine* are what `bounce diagnose` says."
+)
+RUBBED = Rub(0.3, 1.0)
+WITH_FRICTION = (
+    f"The same at a friction of {RUBBED.friction} with {RUBBED.slide:g} m/s along the table. The "
+    "programs for Gazebo and Chrono have no friction."
+)
+
+
+def table(cases, rub):
+    """Return the lines of a table, and how many diagnoses differ."""
+    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
+    agreed = []
     missing = {}
-    print("| engine | ball | table | step | r | engine | at rest, mm | engine |")
-    print("| --- | --- | --- | --- | --- | --- | --- | --- |")
-    for name, run, one, other, step in CASES:
-        differs = None if other == one else other or {}
-        found = diagnose(BALL, name, one, step, other=differs)
-        way = math.sqrt(2 * G * HEIGHT) * step
-        measured = []
+    for case in cases:
         try:
-            for height in HEIGHT + way * np.linspace(0, 1, 16):
-                heights = np.asarray(run(one, other or {}, height, step))
-                measured.append(rebound(heights, height))
+            texts, agrees = cells(case, rub)
         except ImportError as error:
-            missing[name] = error.name
+            missing.setdefault(case[0], []).append(error.name)
             continue
-        # A ball that is still on its way at the end has no depth at rest.
-        last = heights[-200:]
-        is_still = np.ptp(last) < 1e-4
-        rest = -float(np.mean(last)) if is_still else math.nan
-        low, mean, high = found.outcome.restitution
-        agrees = low - 1e-3 <= min(measured) and max(measured) <= high + 1e-3
-        # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
-        agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
-        # Without a threshold the ball never comes to rest, and a depth may be too small.
-        has_rest = found.outcome.rest > 0
-        lies = not has_rest or np.isclose(rest, found.outcome.rest, rtol=0.02)
-        agrees &= not is_still or bool(lies)
-        wrong += not agrees
-        table = "the same" if other is one else in_words(other)
-        texts = [name, in_words(one), table, f"{step * 1e3:.4g} ms", f"{low:.4f} to {high:.4f}"]
-        texts += [f"{min(measured):.4f} to {max(measured):.4f}"]
-        rests = (found.outcome.rest, rest) if has_rest else (math.nan, math.nan)
-        texts += ["–" if math.isnan(depth) else f"{depth * 1e3:.4g}" for depth in rests]
-        print(f"| {' | '.join(texts)} |{'' if agrees else ' (differs)'}", flush=True)
-    for engine, module in missing.items():
-        print(f"Not run, because it is not installed: {engine} ({module}).")
-    sys.exit(wrong > 0)
+        agreed.append(agrees)
+        mark = {True: "", False: " (differs)", None: " (friction changes it, as the answer says)"}
+        lines.append(f"| {' | '.join(texts)}{mark[agrees]} |")
+        print(lines[-1], flush=True)
+    promised = len(agreed) - agreed.count(None)
+    said = f"{agreed.count(True)} of {promised} diagnoses agree with their engines."
+    if None in agreed:
+        said += f" Of {agreed.count(None)} the answer says that friction changes r."
+    if missing:
+        counts = ", ".join(f"{name} ({len(each)})" for name, each in missing.items())
+        said += f" Not run, because they are not installed: {counts}."
+    print(said)
+    return [said, "", *lines], agreed.count(False)
+
+
+def main():
+    lines, wrong = table(CASES, Rub())
+    rubbed = [case for case in CASES if case[0] not in ("gazebo", "chrono")]
+    more, also_wrong = table(rubbed, RUBBED)
+    write("pairs", ["## Diagnoses", "", PAIRS, "", *lines, "", WITH_FRICTION, "", *more])
+    sys.exit(wrong + also_wrong > 0)
 
 
 if __name__ == "__main__":

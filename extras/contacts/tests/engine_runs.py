@@ -174,9 +174,6 @@ def mujoco_warp(trial):
     import mujoco_warp
 
     model, data = _mujoco_model(trial)
-    if not trial.friction:
-        # A pyramid without friction has no numbers there.
-        model.geom_condim[:] = 1
     on_device = mujoco_warp.put_model(model)
     state = mujoco_warp.put_data(model, data, nconmax=32, njmax=128)
     motion = []
@@ -353,22 +350,26 @@ def newton(trial):
     w, *xyz = trial.turned
     place = warp.transform(warp.vec3(*trial.place), warp.quat(*xyz, w))
     attributes = names.get("attributes", {})
-    if attributes and not trial.friction:
-        attributes["mujoco:condim"] = 1
     more = {"custom_attributes": attributes} if attributes else {}
     body = builder.add_body(xform=place)
     if trial.shape == "box":
         builder.add_shape_box(body, hx=r, hy=r, hz=r, cfg=material, **more)
     else:
         builder.add_shape_sphere(body, radius=r, cfg=material, **more)
-    if trial.table == "slab":
+    at_rest = []
+    if trial.shape == "two":
+        below = warp.transform(warp.vec3(0.0, 0.0, -r), warp.quat_identity())
+        material.density = trial.other / trial.volume
+        builder.add_shape_sphere(builder.add_body(xform=below), radius=r, cfg=material, **more)
+        at_rest = [0.0] * 6
+    elif trial.table == "slab":
         below = warp.transform(warp.vec3(0.0, 0.0, -0.01), warp.quat_identity())
         sides = dict(hx=9.0, hy=9.0, hz=0.01)
         builder.add_shape_box(-1, xform=below, cfg=material, **sides, **more)
     else:
         builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
     model = builder.finalize(device="cpu")
-    model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0])
+    model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0, *at_rest])
     kinds = {
         "newton": newton.solvers.SolverSemiImplicit,
         "newton-mujoco": newton.solvers.SolverMuJoCo,
@@ -380,14 +381,17 @@ def newton(trial):
     control = model.control()
     newton.eval_fk(model, model.joint_q, model.joint_qd, states[0])
     poses = []
+    others = []
     for _ in range(trial.steps):
         states[0].clear_forces()
         pipeline.collide(states[0], contacts)
         solver.step(states[0], states[1], control, contacts, trial.step)
         states.reverse()
-        *center_and_axis, w = states[0].body_q.numpy()[0]
+        found = states[0].body_q.numpy()
+        *center_and_axis, w = found[0]
         poses.append([*center_and_axis[:3], w, *center_and_axis[3:]])
-    return moved(trial, poses)
+        others.append(found[-1, :3].copy())
+    return moved(trial, poses, others if trial.shape == "two" else None)
 
 
 def liggghts(trial):
@@ -540,7 +544,9 @@ def Xform "World"
         float physxScene:bounceThreshold = {bounceThresholdVelocity!r}
         uniform token physxScene:broadphaseType = "MBP"
     }}
-{materials}    def {table} "Table" (
+{materials}{bodies}}}
+"""
+_TABLE = """    def {table} "Table" (
         prepend apiSchemas = ["PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
     )
     {{
@@ -549,7 +555,8 @@ def Xform "World"
         float physxCollision:restOffset = 0
         rel material:binding:physics = </World/OfTable>
     }}
-    def {kind} "Body" (
+"""
+_BODY = """    def {kind} "{name}" (
         prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysxRigidBodyAPI", "PhysicsMassAPI",
             "PhysicsCollisionAPI", "PhysxCollisionAPI", "MaterialBindingAPI"]
     )
@@ -558,7 +565,7 @@ def Xform "World"
         double3 xformOp:translate = {place}
         quatd xformOp:orient = {turned}
         uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]
-        vector3f physics:velocity = ({slide!r}, 0, {fall!r})
+        vector3f physics:velocity = {velocity}
         vector3f physics:angularVelocity = (0, {spin!r}, 0)
         float physics:mass = {mass!r}
         float physxRigidBody:linearDamping = 0
@@ -567,10 +574,7 @@ def Xform "World"
         float physxCollision:restOffset = 0
         rel material:binding:physics = </World/OfBody>
     }}
-}}
 """
-
-
 _SLAB = """double size = 1
         double3 xformOp:translate = (0, 0, -0.01)
         float3 xformOp:scale = (18, 18, 0.02)
@@ -600,22 +604,39 @@ def physx(trial, other=None):
     gap = max(trial.gap, 0.0)
     # Contacts are found at twice the way of a step, or the body falls through them.
     ahead = 2 * (math.sqrt(2 * trial.gravity * gap) + trial.speed) * trial.step
-    is_slab = trial.table == "slab"
-    text = _STAGE.format(
-        gravity=trial.gravity,
-        down=tuple(x / (trial.gravity or 1) for x in trial.weight),
-        table="Cube" if is_slab else "Plane",
-        of_table=_SLAB if is_slab else 'uniform token axis = "Z"',
-        place=tuple(trial.place),
-        turned=tuple(trial.turned),
-        slide=float(trial.slide),
-        fall=-float(trial.speed),
-        spin=math.degrees(trial.spin),
+    both = dict(
         ahead=max(ahead, 1e-3),
         kind="Cube" if trial.shape == "box" else "Sphere",
         measure="size" if trial.shape == "box" else "radius",
         extent=2 * r if trial.shape == "box" else r,
+    )
+    bodies = _BODY.format(
+        name="Body",
+        place=tuple(trial.place),
+        turned=tuple(trial.turned),
+        velocity=(float(trial.slide), 0.0, -float(trial.speed)),
+        spin=math.degrees(trial.spin),
         mass=trial.mass,
+        **both,
+    )
+    if trial.shape == "two":
+        bodies += _BODY.format(
+            name="Other",
+            place=(0.0, 0.0, -r),
+            turned=(1.0, 0.0, 0.0, 0.0),
+            velocity=(0.0, 0.0, 0.0),
+            spin=0.0,
+            mass=trial.other,
+            **both,
+        )
+    elif trial.table == "slab":
+        bodies += _TABLE.format(table="Cube", of_table=_SLAB, **both)
+    else:
+        bodies += _TABLE.format(table="Plane", of_table='uniform token axis = "Z"', **both)
+    text = _STAGE.format(
+        gravity=trial.gravity,
+        down=tuple(x / (trial.gravity or 1) for x in trial.weight),
+        bodies=bodies,
         bounceThresholdVelocity=one["bounceThresholdVelocity"],
         materials="".join(
             _MATERIAL.format(of=of, friction=trial.friction, **values)
@@ -633,52 +654,74 @@ def physx(trial, other=None):
     engine.wait_all()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        body = engine.create_tensor_binding(pattern="/World/Body", tensor_type=poses)
-    pose = np.zeros(body.shape, np.float32)
+        found = [
+            engine.create_tensor_binding(pattern=f"/World/{name}", tensor_type=poses)
+            for name in (("Body", "Other") if trial.shape == "two" else ("Body",))
+        ]
+    read = np.zeros((len(found), *found[0].shape), np.float32)
     poses = []
+    others = []
     for _ in range(trial.steps):
         engine.step_sync(trial.step)
-        body.read(pose)
-        poses.append([*pose[0, :3], pose[0, 6], *pose[0, 3:6]])
-    body.destroy()
+        for body, pose in zip(found, read, strict=True):
+            body.read(pose)
+        pose = read[0, 0]
+        poses.append([*pose[:3], pose[6], *pose[3:6]])
+        others.append(read[-1, 0, :3].copy())
+    for body in found:
+        body.destroy()
     engine.wait_task(engine.detach_ovstage())
     stage.destroy()
-    return moved(trial, poses)
+    return moved(trial, poses, others if trial.shape == "two" else None)
 
 
-def genesis(trial):
+@functools.cache
+def _genesis_scene(options, shape, table, size):
+    """Return a scene of Genesis with the lower and the upper body: to build one takes minutes."""
     import genesis
 
     if not genesis._initialized:
         genesis.init(backend=genesis.cpu, precision="64", logging_level="error")
-    r = trial.size
-    options, *of_geoms = trial.design.snippet.split("\n", 1)
     names = {"gs": genesis}
     exec(options, names)
-    names["options"].gravity = tuple(trial.weight)
     scene = genesis.Scene(show_viewer=False, sim_options=names["options"])
-    # Genesis takes the larger friction of both, and no material has less than 0.01.
-    friction = max(trial.friction, 0.01)
+    form = genesis.morphs.Sphere(radius=size)
+    if shape == "box":
+        form = genesis.morphs.Box(size=(2 * size, 2 * size, 2 * size))
     below = genesis.morphs.Plane()
-    if trial.table == "slab":
+    if table == "slab":
         below = genesis.morphs.Box(size=(18.0, 18.0, 0.02), pos=(0.0, 0.0, -0.01), fixed=True)
-    names["one"] = scene.add_entity(below, material=genesis.materials.Rigid(friction=friction))
-    start = dict(pos=tuple(trial.place), quat=tuple(trial.turned))
-    if trial.shape == "box":
-        shape = genesis.morphs.Box(size=(2 * r, 2 * r, 2 * r), **start)
-    else:
-        shape = genesis.morphs.Sphere(radius=r, **start)
-    material = genesis.materials.Rigid(rho=trial.mass / trial.volume, friction=friction)
-    body = scene.add_entity(shape, material=material)
-    names["other"] = body
+    if shape == "two":
+        below = genesis.morphs.Sphere(radius=size)
+    one = scene.add_entity(below)
+    other = scene.add_entity(form)
     scene.build()
-    exec(of_geoms[0], names)
-    body.set_dofs_velocity([trial.slide, 0.0, -trial.speed, 0.0, trial.spin, 0.0])
+    return scene, one, other
+
+
+def genesis(trial):
+    options, of_geoms = trial.design.snippet.split("\n", 1)
+    scene, one, other = _genesis_scene(options, trial.shape, trial.table, trial.size)
+    scene.reset()
+    scene.sim.rigid_solver.set_gravity(trial.weight)
+    exec(of_geoms, {"one": one, "other": other})
+    for entity in (one, other):
+        # Genesis takes the larger friction of both, and no material has less than 0.01.
+        entity.set_friction(max(trial.friction, 0.01))
+    other.set_mass(trial.mass)
+    other.set_pos(trial.place)
+    other.set_quat(trial.turned)
+    other.set_dofs_velocity([trial.slide, 0.0, -trial.speed, 0.0, trial.spin, 0.0])
+    if trial.shape == "two":
+        one.set_mass(trial.other)
+        one.set_pos([0.0, 0.0, -trial.size])
     poses = []
+    others = []
     for _ in range(trial.steps):
         scene.step()
-        poses.append([*map(float, body.get_pos()), *map(float, body.get_quat())])
-    return moved(trial, poses)
+        poses.append([*map(float, other.get_pos()), *map(float, other.get_quat())])
+        others.append([*map(float, one.get_pos())])
+    return moved(trial, poses, others if trial.shape == "two" else None)
 
 
 def _by_program(name, trial, *values):
@@ -752,7 +795,7 @@ def chrono(trial, table=None):
 
 RUNS = {
     "mujoco": mujoco,
-    "mujoco_warp": mujoco_warp,
+    "mujoco-warp": mujoco_warp,
     "pybullet": pybullet,
     "drake-sap": drake,
     "drake": drake,
@@ -794,8 +837,11 @@ def first_bounce(heights):
     return -heights[start:end].min(), after[:again], end
 
 
-def measure(design, shape, instants=13):
-    """Return what a design does in its engine, over instants of the impact within a step."""
+def measure(design, shape, slide=0.0, instants=13):
+    """Return what a design does in its engine, over instants of the impact within a step.
+
+    A ball that is dropped moves along the table with the speed `slide` in m/s.
+    """
     run = RUNS[design.engine]
     bounce = design.bounce
     row = design.row
@@ -810,11 +856,13 @@ def measure(design, shape, instants=13):
             gap = float(speed**2 / (2 * g) + share * speed * step)
             fall = math.sqrt(2 * gap / g)
             seconds = fall * (1.05 + row.outcome.restitution[2]) + lasts
-            heights, peak, *_ = run(Trial(design, shape, gap, 0.0, int(seconds / step), g, rubs))
+            steps = int(seconds / step)
+            trial = Trial(design, shape, gap, 0.0, steps, g, rubs, slide)
         else:
             gap = float((10 + share) * speed * step)
             seconds = 2 * gap / speed + lasts + gap / speed / max(bounce.restitution, 0.05)
-            heights, peak, *_ = run(Trial(design, shape, gap, speed, int(seconds / step), 0, rubs))
+            trial = Trial(design, shape, gap, speed, int(seconds / step), 0, rubs)
+        heights, peak, *_ = run(trial)
         depth, after, end = first_bounce(heights)
         r = 0.0
         if after is not None and g:

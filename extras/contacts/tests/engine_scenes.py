@@ -3,11 +3,13 @@
 Each scene is a bounce that one would use a design for, with the row that is starred. A body starts
 close to the surface with the speed of its drop, at several instants within a step, and r is √ of
 the heights that it would fly to without the contact, before and after. The promise is kept if r is
-within what the answer says. Of two free balls r is along the line of their centres, and of a body
-at rest on a slope the speed is given with which it creeps.
+within what the answer says, for bodies that slide if they do. Nothing is promised of what no
+contact keeps, nor of boxes in engines whose answer says that r is that of a box which falls flat on
+a plane and does not slide. Of two free balls r is along the line of their centres, and of a body at
+rest on a slope the speed is given with which it creeps.
 
 The tables are written into docs/validation.md, for the engines that were run. The exit status is 1
-if a promise is not kept that the page does not list.
+if a promise is not kept.
 """
 
 import math
@@ -15,11 +17,14 @@ import sys
 from functools import cache
 from typing import NamedTuple
 
+import engine_page
 import engine_runs
 import numpy as np
 from engine_page import write
 
 from bouncing_ball_contacts import Bounce, Refused, design
+from bouncing_ball_contacts.designs import IMPULSE, Problem
+from bouncing_ball_contacts.engines import engine_named
 
 BALL = dict(mass=0.5, radius=0.1, restitution=0.8)
 GOLF = dict(mass=0.046, radius=0.0213, restitution=0.8)
@@ -73,6 +78,8 @@ SCENES = [
         Scene(f"r = {r}, 3 m/s along", {**BALL, "restitution": r}, "2 ms", 0.3, dict(slide=3))
         for r in (0.3, 0.5, 0.95)
     ),
+    # Here the damper of MuJoCo pushes most.
+    Scene("r = 0.3, 5 m/s along", {**BALL, "restitution": 0.3}, "4 ms", 0.1, dict(slide=5)),
     Scene("golf ball, table of 2 cm", GOLF, "4 ms", 0.5, dict(table="slab", slide=3)),
     Scene("table tennis ball, 3 m/s along", PING_PONG, "1 ms", 0.3, dict(slide=3)),
     *(Scene(f"box, friction {mu}", BOX, "1 ms", mu) for mu in (0, 0.5, 1)),
@@ -93,10 +100,7 @@ SCENES = [
         for mu in (0.3, 1)
     ),
 ]
-DESIGNS = {"mujoco_warp": "mujoco"}
-"""Engines that have the designs of another one."""
 WITHOUT_BOXES = ("lammps", "lammps-limit-damping", "lammps-hertz")
-WITHOUT_PAIRS = ("newton", "newton-mujoco", "physx", "genesis")
 
 
 @cache
@@ -128,10 +132,11 @@ def restitution(trial, motion):
     if trial.shape == "two":
         apart = motion.poses[:, :3] - motion.others
         distance = np.linalg.norm(apart, axis=1)
-        inside = distance < 2 * size
-        if not inside.any():
+        nearest = int(np.argmin(distance))
+        # An engine that finds contacts ahead turns the ball back within a step of the touch.
+        if distance[nearest] > 2 * size + trial.speed * h:
             return math.nan
-        leaves = np.flatnonzero(~inside & (np.arange(len(inside)) > np.argmax(inside)))
+        leaves = np.flatnonzero((distance >= 2 * size) & (np.arange(len(distance)) >= nearest))
         if not len(leaves) or apart[leaves[0], 2] < 0 or leaves[0] + 1 >= len(apart):
             return math.nan
         after = leaves[0]
@@ -153,7 +158,7 @@ def restitution(trial, motion):
 def run(engine, scene):
     """Return the design, least and greatest r or the creep in m/s, and the depth over the size."""
     bounce = tuple(scene.bounce.items())
-    found = _designed(DESIGNS.get(engine, engine), bounce, scene.step, scene.friction)
+    found = _designed(engine, bounce, scene.step, scene.friction)
     row, wanted = found.row, found.bounce
     h, speed = row.step, wanted.impact_speed
     g = wanted.load
@@ -186,17 +191,31 @@ def run(engine, scene):
     return found, (min(measured), max(measured)), deepest
 
 
+def promise(found, scene):
+    """Return the least and the greatest r that the answer has for a scene, and whether it promises.
+
+    A box has to fall flat on a plane and not to slide, if the answer says so.
+    """
+    engine = engine_named(found.engine)
+    low, _, high = found.row.outcome.restitution
+    slides = "slide" in scene.how or "spin" in scene.how
+    if slides and found.chosen != IMPULSE:
+        low, high = Problem(found.bounce, engine).promised(found.row.outcome)
+    is_excepted = scene.shape == "box" and engine.flat_only and bool(scene.how)
+    return low, high, scene.is_promised and not is_excepted
+
+
 def cells(engine, scene):
     """Return the cells of a scene, and whether the promise is kept (None if there is none)."""
     found, (least, most), deepest = run(engine, scene)
     row = found.row
-    low, _, high = row.outcome.restitution
     texts = [scene.name, f"{scene.friction:g}", f"{found.chosen}, {1e3 * row.step:.4g} ms"]
     if "slope" in scene.how:
         return [*texts, "–", f"creeps at {1e3 * least:.2g} mm/s", "–"], None
+    low, high, is_promised = promise(found, scene)
     # Three digits are printed.
-    kept = bool(low - 5e-4 <= least and most <= high + 5e-4) if scene.is_promised else None
-    said = f"{low:.3f} to {high:.3f}" if scene.is_promised else f"({low:.3f} to {high:.3f})"
+    kept = bool(low - 5e-4 <= least and most <= high + 5e-4) if is_promised else None
+    said = f"{low:.3f} to {high:.3f}" if is_promised else f"({low:.3f} to {high:.3f})"
     does = "lost" if math.isnan(least) else f"{least:.3f} to {most:.3f}"
     depth = f"{row.outcome.depth[1] / found.bounce.size:.2f}, {deepest:.2f}"
     return [*texts, said, does + ("" if kept in (True, None) else " ✗"), depth], kept
@@ -206,12 +225,11 @@ HEAD = ["scene", "friction", "written", "r promised", "r in the engine", "sinks,
 
 
 def table(engine):
-    """Return the lines of the table of an engine, how many promises are kept, and how many are."""
+    """Return the lines of the table of an engine, and of each scene whether a promise is kept."""
     lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
     kept = []
     for scene in SCENES:
         is_missing = scene.shape == "box" and engine in WITHOUT_BOXES
-        is_missing |= scene.shape == "two" and engine in WITHOUT_PAIRS
         is_missing |= "table" in scene.how and engine in WITHOUT_BOXES
         if is_missing:
             continue
@@ -222,8 +240,8 @@ def table(engine):
             continue
         lines.append("| " + " | ".join(texts) + " |")
         print(engine, lines[-1], flush=True)
-        kept += [is_kept] if is_kept is not None else []
-    return lines, sum(kept), len(kept)
+        kept.append(is_kept)
+    return lines, kept
 
 
 def main():
@@ -231,15 +249,26 @@ def main():
     broken = 0
     for name in names:
         try:
-            lines, kept, promised = table(name)
+            lines, kept = table(name)
         except ImportError as missing:
             print(f"Not run, because it is not installed: {name} ({missing.name}).")
             continue
-        broken += promised - kept
-        said = f"{name}: {kept} of {promised} promises are kept."
+        broken += kept.count(False)
+        promised = len(kept) - kept.count(None)
+        said = f"{name}: {kept.count(True)} of {promised} promises are kept in {len(kept)} scenes."
         print(said)
         write(f"scenes of {name}", [f"### {name}", "", said, "", *lines])
+        write("scenes", summary())
     sys.exit(broken > 0)
+
+
+def summary():
+    """Return the lines of a table of all engines on the page, with what their rows promise."""
+    lines = ["| engine | scenes | promised | kept |", "| --- | --- | --- | --- |"]
+    found = engine_page.said(r"^(\S+): (\d+) of (\d+) promises are kept in (\d+) scenes\.$")
+    for name, kept, promised, scenes in found:
+        lines.append(f"| {name} | {scenes} | {promised} | {kept} |")
+    return lines
 
 
 ALONE = ("liggghts", "liggghts-limit-force", "liggghts-hertz", "mercurydpm", "gazebo", "chrono")

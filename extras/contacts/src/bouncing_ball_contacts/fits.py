@@ -8,7 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.designs import Bounce, Design, Page, Quantity, aligned, design
+from bouncing_ball_contacts.designs import (
+    Bounce,
+    Design,
+    Page,
+    Quantity,
+    aligned,
+    design,
+    holding,
+)
 from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
@@ -228,11 +236,17 @@ def fit(
     rounding = rounding_of(recording) if known is None else 0.0
     is_heard = recording.kind == "flights" and not recording.is_free
     if is_heard:
-        recording = without_contacts(recording, durations)
+        recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
+    # So far off the exponents of the curves, which no reading tells apart, decide alone.
+    if not v.min() / 100 <= at <= 100 * v.max():
+        raise Refused(
+            f"{show(at, 'm/s')} is more than 100 times off the measured speeds, "
+            f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there"
+        )
     curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
@@ -258,35 +272,53 @@ def fit(
     by_size = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * v**2)))
     # Both heights of a series are too large.
     by_size *= 1 - r**2 if recording.kind == "heights" else 1.0
-    notes = {
-        f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded": rounding
-        > impacts.usual,
-        f"the drag of the air is not removed: of a tennis ball it would be {by_drag:.2g} of r; "
-        "give the mass and the diameter": does_drag and not drag,
-        f"the drag of the air is removed, {by_drag:.2g} of r": does_drag and drag > 0,
-        "heights are taken as those of the lowest point of the ball: read at its top, a ball of "
-        f"{show(size, 'm')} has an r that is too high by {by_size:.2g} (--read-at bottom or top)": (
-            is_height
+    # The severest first.
+    notes = [
+        (
+            is_far,
+            f"r = {impacts.restitution[farthest]:.3g} at {v[farthest]:.3g} m/s is far from all "
+            "others: is a number wrong? --leave-out leaves its line out",
         ),
-        f"the contact, {show(lasts, 's')}, is taken off each time between two impacts": is_heard
-        and lasts > 0,
-        # Contacts of rubber, the longest ones, last for 10 ms.
-        f"times between impacts include the contact: r is lower by {lower / 1000:.2g} for each ms "
-        f"that it lasts, which matters from {show(matters, 's')} on; give --contact-time": is_heard
-        and not lasts
-        and matters < 0.01,
-        f"r = {r:.4f} is above 1 within its error: 1 is taken": r > 1,
-        f"r = {impacts.restitution[farthest]:.3g} at {v[farthest]:.3g} m/s is far from all others: "
-        "is a number wrong? --leave-out leaves its line out": is_far,
+        (r > 1, f"r = {r:.4f} is above 1 within its error: 1 is taken"),
         # A speed that is typed is rounded.
-        f"{show(at, 'm/s')} is outside of the measured speeds": not 0.99 * v.min()
-        <= at
-        <= 1.01 * v.max(),
-        "too few impacts for an interval of their own: it is wide": len(v) < 3,
-        "no errors are given: a law can only be said to deviate": bool(judged) and known is None,
-        "no law fits: r is that of a smooth curve": bool(judged)
-        and all(each.probability < REJECTED for each in judged),
-    }
+        (
+            not 0.99 * v.min() <= at <= 1.01 * v.max(),
+            f"{show(at, 'm/s')} is outside of the measured speeds",
+        ),
+        *((True, note) for note in recording.notes),
+        (
+            is_height,
+            "heights are taken as those of the lowest point of the ball: read at its top, a ball "
+            f"of {show(size, 'm')} has an r that is too high by {by_size:.2g} (--read-at bottom or "
+            "top)",
+        ),
+        (
+            does_drag and not drag,
+            "the drag of the air is not removed: of a tennis ball it would be "
+            f"{by_drag:.2g} of r; give the mass and the diameter",
+        ),
+        # Contacts of rubber, the longest ones, last for 10 ms.
+        (
+            is_heard and not lasts and matters < 0.01,
+            f"times between impacts include the contact: r is lower by {lower / 1000:.2g} for each "
+            f"ms that it lasts, which matters from {show(matters, 's')} on; give --contact-time",
+        ),
+        (len(v) < 3, "too few impacts for an interval of their own: it is wide"),
+        (
+            judged and all(each.probability < REJECTED for each in judged),
+            "no law fits: r is that of a smooth curve",
+        ),
+        (judged and known is None, "no errors are given: a law can only be said to deviate"),
+        (
+            is_heard and lasts,
+            f"the contact, {show(lasts, 's')}, is taken off each time between two impacts",
+        ),
+        (does_drag and drag, f"the drag of the air is removed, {by_drag:.2g} of r"),
+        (
+            rounding > impacts.usual,
+            f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded",
+        ),
+    ]
     r = min(r, 1.0)
     return Fit(
         recording=recording,
@@ -302,5 +334,5 @@ def fit(
         times=by_contact_time(impacts, durations, judged, r, at, kilograms) if lasts else (),
         mass=kilograms,
         diameter=metres,
-        notes=recording.notes + tuple(text for text, holds in notes.items() if holds),
+        notes=tuple(holding(notes)),
     )

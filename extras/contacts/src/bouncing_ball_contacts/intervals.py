@@ -143,21 +143,20 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     return Impacts(before, np.log(after / before), readings, KINDS[kind][1], arithmetic)
 
 
-def without_contacts(recording: Recording, durations: Array) -> Recording:
+def without_contacts(recording: Recording, lasts: float) -> Recording:
     """Return a recording of flights from release to touch, in place of from touch to touch.
 
     Raises
     ------
     Refused
-        If a contact would last longer than half of the flights, or than two touches are apart.
+        If a contact in s lasts longer than half of the flights, or than two touches are apart.
     """
-    # A recording with a duration for each touch has one chain.
-    lasting = durations if len(durations) == 1 else durations[:-1]
-    chains = tuple(flights - lasting for flights in recording.chains)
+    chains = tuple(flights - lasts for flights in recording.chains)
     rest = np.concatenate(chains)
     if rest.min() <= 0 or rest.sum() < np.concatenate(recording.chains).sum() / 2:
-        longest = show(float(np.max(durations)), "s")
-        raise Refused(f"contact time: {longest} is longer than flights are: is its unit right?")
+        raise Refused(
+            f"contact time: {show(lasts, 's')} is longer than flights are: is its unit right?"
+        )
     return replace(recording, chains=chains)
 
 
@@ -281,31 +280,29 @@ def curves_of(
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
     prior[1:] -= (np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER) ** 2 / 2
-    # With the weights w, e for the ones, b for the bends and means m = Σ w e y/Σ w e² and
-    # d = Σ w e b/Σ w e², the slope is (Σ w b y - d m Σ w e²)/(Σ w b² - d² Σ w e² + 1/0.25²), and β
-    # is m - d c. The middle of ln r is subtracted against rounding errors.
-    bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
+    # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading:
+    # A = Xᵀ W X + diag(0, 1/0.25²), (β, c) = A⁻¹ Xᵀ W y. The posterior of the ratio, the size and
+    # the exponent has the determinants of W and of A. The middle of ln r is subtracted against
+    # rounding errors.
     middle = float(np.mean(impacts.log_r))
-    one = basis.sum(axis=0)
-    bend = bends @ basis
     y = (impacts.log_r - middle) @ basis
+    bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
+    columns = basis.T @ np.stack([np.ones_like(bends), bends], axis=-1)
     weights = 1 / variances
-    ones = (weights @ one**2)[:, None]
-    both = weights @ (one * bend).T / ones
-    mean = (weights @ (one * y))[:, None] / ones
-    precision = (1 / sizes**2)[:, None]
-    of_bends = (weights @ (bend**2).T - ones * both**2)[:, None] * precision + _SLOPE**-2
-    pull = (weights @ (bend * y).T - ones * both * mean)[:, None] * precision
-    slope = pull / of_bends
-    squares = ((weights @ y**2)[:, None] - ones * mean**2)[:, None] * precision - pull * slope
-    logarithms = np.sum(np.log(variances), axis=1)[:, None] + 2 * (n - 1) * np.log(sizes)
-    volume = (logarithms + np.log(ones))[..., None] + np.log(of_bends)
-    posterior = prior[..., None] - (squares + volume) / 2
-    value = middle + mean[:, None] - both[:, None] * slope
+    precision = (1 / sizes**2)[:, None, None]
+    both = np.einsum("rn,eni,enj->reij", weights, columns, columns)[:, None]
+    inverse = np.linalg.inv(both * precision[..., None] + np.diag([0.0, _SLOPE**-2]))
+    pull = np.einsum("rn,eni,n->rei", weights, columns, y)[:, None] * precision
+    found = np.einsum("rseij,rsej->rsei", inverse, pull)
+    squares = (weights @ y**2)[:, None, None] * precision[..., 0] - np.sum(pull * found, axis=-1)
+    volume = np.sum(np.log(variances), axis=1)[:, None] + 2 * n * np.log(sizes)
+    posterior = (
+        prior[..., None] - (squares + volume[..., None] - np.log(np.linalg.det(inverse))) / 2
+    )
     shares = special.softmax(posterior)
-    curve = np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
+    means = np.sum(shares[..., None] * found, axis=(0, 1))
+    curve = middle + np.sum(means[:, :1] + means[:, 1:] * bends, axis=0)
     errors_of_r = np.exp(curve) - impacts.restitution
-    columns = np.stack([np.broadcast_to(one, bend.shape), bend], axis=-1)
     # Two impacts leave no deviation, and have the posterior of all s > 0.
     confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
     if n > 2:
@@ -319,9 +316,9 @@ def curves_of(
         rounded=error * rounded,
         posterior=posterior,
         confidence=confidence,
-        value=value,
-        slope=slope,
-        spread=np.sqrt(1 / (ones[:, None] * precision) + both[:, None] ** 2 / of_bends),
+        value=middle + found[..., 0],
+        slope=found[..., 1],
+        spread=np.sqrt(inverse[..., 0, 0]),
         # A curve has two parameters.
         scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 2, 1)),
     )

@@ -232,13 +232,11 @@ def by_contact_time(
 ) -> tuple[Timed, ...]:
     """Return the laws whose contacts last as long as measured ones.
 
-    There is one time, or one for each impact or each touch of flights; the first and the last touch
-    have no r. A law that was not judged has the restitution coefficient at the speed.
+    There is one time, or one for each impact. A law that was not judged has the restitution
+    coefficient at the speed.
     """
     v = impacts.speed
-    measured = durations[1:-1] if len(durations) == len(v) + 2 else durations
-    if len(measured) != len(v):
-        measured = measured.mean(keepdims=True)
+    if len(durations) != len(v):
         v = np.exp(np.mean(np.log(v), keepdims=True))
     parameters = {each.law: each.parameter for each in laws}
     found = []
@@ -247,12 +245,12 @@ def by_contact_time(
         # T = (M/K)^(1/(n + 1)) v^power D, where D is over L/v.
         power = (1 - law.n) / (1 + law.n)
         lasts = v**power * law.duration(a, v)
-        scale = math.exp(float(np.mean(np.log(measured / lasts))))
+        scale = math.exp(float(np.mean(np.log(durations / lasts))))
         found.append(
             Timed(
                 law=name,
                 duration=scale * at**power * float(law.duration(a, np.array(at))),
-                rms=root_mean_square(measured / (scale * lasts) - 1) if len(v) > 1 else math.nan,
+                rms=root_mean_square(durations / (scale * lasts) - 1) if len(v) > 1 else math.nan,
                 stiffness=(mass or 1.0) / scale ** (law.n + 1),
                 damping=a * scale ** (law.n - law.m),
                 unit=("N/m" if law.n == 1 else f"N/m^{law.n:g}") + ("" if mass else "/kg"),

@@ -64,8 +64,8 @@ class Recording:
     of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
     ``digit`` is the last digit with which readings are written, in SI units, or 0; heights from
     which a ball is dropped and speeds of coefficients are set, and not read. ``uncertainty`` has
-    standard deviations of r, ``durations`` contact times in s, one or one for each impact (of
-    flights: for each touch); ``head`` has what the file says of the ball.
+    standard deviations of r, ``durations`` contact times in s, one or one for each impact, and
+    ``head`` what the file says of the ball.
     """
 
     name: str

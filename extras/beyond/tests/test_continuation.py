@@ -9,18 +9,12 @@ from scipy.optimize import brentq, fsolve
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
-from bouncing_ball_beyond.continuation import (
-    TURN,
-    FollowedBranch,
-    cascade,
-    follow,
-    kind_named,
-    limits,
-)
+from bouncing_ball_beyond.continuation import FollowedBranch, cascade, follow, limits
+from bouncing_ball_beyond.equations import kind_named
+from bouncing_ball_beyond.march import TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.paths import ParameterPath
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
-from bouncing_ball_beyond.special_orbits import doubled_of
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.
 LOCATED = 1e-10
@@ -77,7 +71,7 @@ def test_only_an_orbit_of_even_numbers_has_halves():
     two = orbits(Rigid(0.8), impacts=2, periods=3, amplitude=1.3)[0]
     assert (two.equations.halves(two.z[np.newaxis]) == 1).all()
     one = orbit(Rigid(0.8), amplitude=1.0)
-    twice, z = doubled_of(one.equations, one.z[np.newaxis])
+    twice, z = one.equations.doubled(one.z[np.newaxis])
     assert np.abs(twice.halves(z)).max() == 0
 
 

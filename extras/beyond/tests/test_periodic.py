@@ -12,7 +12,9 @@ from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.equations import OrbitEquations, dense, newton, solve_bordered
+from bouncing_ball_beyond.chains import dense, solve_bordered
+from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.periodic import (
     OrbitNotFound,

@@ -20,10 +20,10 @@ from bouncing_ball_beyond import (
     special_curve,
     to_dataset,
 )
-from bouncing_ball_beyond.curves import DEGENERATE
+from bouncing_ball_beyond.equations import KINDS
 from bouncing_ball_beyond.periodic import orbits
 from bouncing_ball_beyond.pictures import MARKS
-from bouncing_ball_beyond.special_orbits import KINDS
+from bouncing_ball_beyond.special_orbits import DEGENERATE
 
 BALLS = [
     Rigid(0.5),

@@ -13,45 +13,37 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, brief, whole_number
-from bouncing_ball_beyond.equations import Linear, OrbitEquations, newton, solve_bordered
-from bouncing_ball_beyond.forms import one_impact_more
-from bouncing_ball_beyond.paths import Path, path_of, place_on
-from bouncing_ball_beyond.periodic import (
+from bouncing_ball_beyond.chains import solve_bordered
+from bouncing_ball_beyond.equations import (
+    KINDS,
+    MULTIPLIERS,
+    OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
-    near_instants,
-    rows_of,
-    shortest_contacts,
-    single,
+    kind_named,
 )
+from bouncing_ball_beyond.forms import RESONANT, one_impact_more
+from bouncing_ball_beyond.march import (
+    AT_GOAL,
+    CLOSED,
+    Points,
+    Start,
+    ends_at,
+    march,
+    newton,
+    tangents,
+    unit,
+)
+from bouncing_ball_beyond.paths import Path, path_of, place_on
+from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts, single
 from bouncing_ball_beyond.special_orbits import (
-    KINDS,
-    SINGULAR,
+    GENERALIZED,
     Crossings,
     crossings_of,
-    doubled_of,
     halved_at,
-    halves_of,
-    kind_named,
     located,
-    scales,
 )
 from bouncing_ball_beyond.tables import SINE, Table, check_table
-
-FIRST_STEP = 0.1
-LONGEST_STEP = 0.4
-SHORTEST_STEP = 1e-9
-"""Lengths of steps: root mean squares of the changes of the unknowns over the impacts, and relative
-changes of the parameter."""
-
-STRAIGHT = 0.95
-"""The least cosine of the angle between the tangents at the ends of a step."""
-
-TURN = 0.3
-"""The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
-
-BEFORE_END = 1e-3
-"""The share of a step to an end of a branch that is left to the end in a point before it."""
 
 SHARES = (0.5, 0.9, 0.2, 2.0, 4.0)
 AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
@@ -144,12 +136,11 @@ class FollowedBranch:
 
         Orbits follow one another at most so far apart, as root mean square of the changes of the
         times and speeds of the impacts and as relative change of the parameter; but there are no
-        more than 50 in a step of the branch. All are solved as those of the branch are. A curve in
-        two parameters has short steps, and remains as it is.
+        more than 50 in a step of the branch. All are solved as those of the branch are.
         """
-        if len(self) < 2 or len(self.equations.along) > 1:
+        if len(self) < 2:
             return self
-        units = scales(self.equations, self.z[:-1])
+        units = self.equations.scales(self.z[:-1])
         chords = np.diff(self.z, axis=0)
         counts = np.ceil(np.linalg.norm(chords / units, axis=1) / spacing).astype(int).clip(1, 50)
         which = np.repeat(np.arange(len(chords)), counts)
@@ -179,223 +170,12 @@ class FollowedBranch:
         raise OrbitNotFound(f"no {kind} on {where}: {others}")
 
 
-class _Start(NamedTuple):
-    """Where branches start, by rows.
-
-    The orbits z and the directions from there, the values of the parameter that are to be reached,
-    and the reasons for no branch, "" if there is one; the length of the first steps, and the
-    special orbits before z, if there are any.
-    """
-
-    equations: OrbitEquations
-    z: NDArray
-    direction: NDArray
-    goal: NDArray
-    reasons: NDArray
-    step: float | NDArray = FIRST_STEP
-    origin: NDArray | None = None
-
-    def take(self, which) -> "_Start":
-        """Some of the rows."""
-        taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
-        return self._replace(equations=self.equations.rows(which), **taken)
-
-
-def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
-    linear = equations.linear(z)
-    normal = np.ones(z.shape)
-    for _ in range(2):
-        normal = _unit(equations.bordered(z, linear, normal)[..., 1])
-    return normal
-
-
-def _unit(vectors: NDArray) -> NDArray:
-    """Rows of the length 1."""
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
-
-
-class _Points(NamedTuple):
-    """One orbit of each row: orbits, tangents, tests on the way, and differences of halves.
-
-    Tests have the shape (rows, tests).
-    """
-
-    z: NDArray
-    tangents: NDArray
-    tests: NDArray
-    halves: NDArray
-
-    def take(self, which) -> "_Points":
-        """Some of the rows."""
-        return _Points(*(each[which] for each in self))
-
-
-def _points_at(equations, z, tangents, linear: Linear) -> _Points:
-    """Orbits with their tests."""
-    return _Points(z, tangents, equations.tests(z, linear), equations.halves(z))
-
-
-def _same_sign(before: _Points, after: _Points) -> _Points:
-    """The points after a step, whose distances from a period halving change their sign at one."""
-    merged = np.sum(before.halves * after.halves, axis=1) < 0
-    tests = after.tests.copy()
-    tests[:, -1] *= np.where(merged, -1, 1) * np.sign(before.tests[:, -1])
-    return after._replace(tests=tests)
-
-
-def _predicted(here: _Points, step, units, low, high) -> tuple:
-    """Steps along the tangents; one that would leave its window ends there, at this parameter.
-
-    Returns the lengths of the steps, the predicted orbits, the normals of the planes of the
-    corrector, and which steps end where the window ends.
-    """
-    ahead = _unit(here.tangents / units)
-    rate = ahead[:, -1] * units[:, -1]
-    target = np.where(rate > 0, high, low)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        whole = (target - here.z[:, -1]) / rate
-    last = whole <= step
-    length = np.where(last, whole, step)
-    z = here.z + length[:, np.newaxis] * ahead * units
-    z[last, -1] = target[last]
-    normal = ahead / units
-    normal[last] = 0.0
-    normal[last, -1] = np.sign(rate[last])
-    return length, z, normal, last
-
-
-def _march(start: _Start, window, until, points: int) -> list[tuple[_Points, str]]:
-    """The accepted points of each branch, and why it ends: its window, or another reason.
-
-    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
-    too much. Where an impact or a release ends a branch, the multipliers beyond it tell nothing of
-    those before it: such a step has a point in between, just before the end.
-    """
-    equations = start.equations
-    here = _points_at(equations, start.z, start.direction, equations.linear(start.z))
-    first = here
-    rows = np.arange(len(start.z))
-    paths = [[here.take([row])] for row in rows]
-    ends = [""] * len(rows)
-    step = np.broadcast_to(start.step, len(rows))
-    farthest = np.zeros(len(rows))
-    while rows.size:
-        low, high = window[rows].T
-        units = scales(equations, here.z)
-        length, guess, normal, last = _predicted(here, step, units, low, high)
-        solution = newton(equations, guess, normal, iterations=7)
-        solution.z[last, -1] = guess[last, -1]
-        with np.errstate(all="ignore"):
-            there = _points_at(equations, solution.z, solution.tangent, solution.linear)
-            there = _same_sign(here, there)
-            crossed = here.tests * there.tests < 0
-            ending = crossed[:, SINGULAR].any(axis=1)
-            inner = there
-            if ending.any():
-                inner = _before_end(equations, here, there, normal)
-            # The determinant is positive up to there, so that tr/(1 + det) has no pole.
-            angles = np.arctan([each.tests[:, 1] - 1 for each in (here, inner)])
-            turned = np.abs(angles[1] - angles[0])
-            cosine = _cosine(there, here, units)
-            missed = np.linalg.norm((there.z - guess) / units, axis=1)
-            inside = (there.z[:, -1] >= low) & (there.z[:, -1] <= high)
-        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
-        good &= (turned < TURN) | (length < 1e-6)
-        easy = (cosine > 0.99) & (turned < TURN / 2)
-        moved = zip(here, there, strict=True)
-        here = _Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
-        longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
-        step = np.where(good, longer, length / 2)
-        away = _from_start(equations, first, here, units)
-        back = (away < step / 2) & (farthest > 2 * step)
-        back &= _cosine(here, first, units) > STRAIGHT
-        farthest = np.maximum(farthest, away)
-        for j in np.flatnonzero(good):
-            if ending[j] and np.isfinite(inner.tests[j]).all():
-                paths[rows[j]].append(inner.take([j]))
-            paths[rows[j]].append(here.take([j]))
-            kind = until[rows[j]]
-            passed = np.array(equations.watched)[crossed[j]]
-            ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
-            if not ends[rows[j]] and len(paths[rows[j]]) >= points:
-                ends[rows[j]] = f"all {points} points are used"
-        for j in np.flatnonzero(step < SHORTEST_STEP):
-            ends[rows[j]] = ends[rows[j]] or "no further orbit is found"
-        going = np.array([not ends[row] for row in rows])
-        if not going.all():
-            rows = rows[going]
-            equations = start.equations.rows(rows)
-            here = here.take(going)
-            first = first.take(going)
-            step = step[going]
-            farthest = farthest[going]
-    units = scales(start.equations, start.z)
-    whole = zip(paths, ends, units, strict=True)
-    return [(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
-
-
-def _before_end(equations, here: _Points, there: _Points, normal) -> _Points:
-    """Points of steps just before the first of the ends that they cross, NaN if not found."""
-    before = here.tests[:, SINGULAR]
-    after = there.tests[:, SINGULAR]
-    share = np.where(before * after < 0, before / (before - after), 1.0).min(axis=1)
-    share = (1 - BEFORE_END) * share[:, np.newaxis]
-    solution = newton(equations, here.z + share * (there.z - here.z), normal)
-    inner = _points_at(equations, solution.z, solution.tangent, solution.linear)
-    inner.tests[~solution.found] = np.nan
-    return _same_sign(here, inner)
-
-
-def _cosine(points: _Points, others: _Points, units) -> NDArray:
-    """Cosines of the angles between tangents."""
-    return np.sum(_unit(points.tangents / units) * _unit(others.tangents / units), axis=1)
-
-
-_AT_GOAL = "the end of the window"
-_CLOSED = "the branch is closed: it is back at its start"
-
-
-def _end_of_step(passed, last, back, until) -> str:
-    """Why a branch ends with a step in which some kinds of special orbits are passed, or ""."""
-    for name in passed:
-        if _ends_at(name, until):
-            return str(name)
-    if last:
-        return _AT_GOAL
-    return _CLOSED if back else ""
-
-
-def _ends_at(kind: str, until: str | None) -> bool:
-    """Whether a branch ends at a kind of special orbit."""
-    return kind == until or KINDS[kind].end != ""
-
-
-def _from_start(equations, first: _Points, here: _Points, units) -> NDArray:
-    """How far branches are from their starts, up to whole turns of the table."""
-    away = here.z - first.z
-    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
-    away[:, : equations.size : equations.unknowns] -= turns
-    return np.linalg.norm(away / units, axis=1)
-
-
-def _path_of(path: list[_Points], end: str, equations, units) -> _Points:
-    """The points of one row; a closed branch ends exactly at its start."""
-    if end == _CLOSED:
-        ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0
-        turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
-        z = path[0].z.copy()
-        z[:, : equations.size : equations.unknowns] += turns
-        path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
-    return _Points(*(np.concatenate(each) for each in zip(*path, strict=True)))
-
-
-def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]:
+def followed(start: Start, window, until, points, own) -> list[FollowedBranch]:
     """Branches from their starts to a value of their parameter, with their special orbits.
 
     ``own`` is the kind of the special orbits at the starts, which are not listed.
     """
-    steps = _march(start, window, until, points)
+    steps = march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
     z, slopes, tests, _ = (np.concatenate(each) for each in every)
@@ -406,37 +186,80 @@ def _followed(start: _Start, window, until, points, own) -> list[FollowedBranch]
     branches = []
     for i, (path, end) in enumerate(steps):
         equations = single(start.equations, i)
-        name = equations.along[-1].name
         passed = []
         for j in np.flatnonzero(crossings.row == i):
             kind = str(crossings.kind[j])
             number = crossings.number[j]
             here = z[j] if found[j] else None
             if kind == "period halving":
-                here = halved_at(equations, crossings.ends[:, j])
+                here = _merged(equations, crossings.ends[:, j])
             if here is not None and not (number == 0 and kind == own):
                 place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
                 passed.append(_Passed(number, place, equations.orbit(here, kind)))
-        passed.sort(key=lambda each: each[:2])
         orbits = path.z
-        last = _first_end([each for each in passed if _ends_at(each.orbit.kind, until[i])])
+        passed += _resonant(equations, path)
+        passed.sort(key=lambda each: each[:2])
+        last = _first_end([each for each in passed if ends_at(each.orbit.kind, until[i])])
         if last is not None:
             passed = [*(each for each in passed if each[:2] < last[:2]), last]
             orbits = np.vstack([orbits[: last.number + 1], last.orbit.z])
-            end = f"{last.orbit.kind} at {name} = {orbits[-1, -1]:.10g}"
-            end = ": ".join(filter(None, [end, KINDS[last.orbit.kind].end]))
+            end = f"{last.orbit.kind} at {_place(equations, orbits[-1])}"
+            if last.orbit.kind in KINDS:
+                end = ": ".join(filter(None, [end, KINDS[last.orbit.kind].end]))
         elif end in KINDS:
             # Newton's method does not find it, but it is between the last two points.
-            near = orbits[-1, -1]
-            end = f"{end} near {name} = {near:.4g}: {KINDS[end].end}"
+            end = f"{end} near {_place(equations, orbits[-1], 4)}: {KINDS[end].end}"
             orbits = orbits[:-1]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
         else:
-            end = _in_words(end, name, orbits[-1, -1], start.goal[i], passed)
-            end += _in_words_of_symmetry(crossings, i, name)
+            end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
+            end += _in_words_of_symmetry(crossings, i, equations.along[-1].name)
         special = tuple(each.orbit for each in passed)
         branches.append(FollowedBranch(equations, orbits, special, "", end))
     return branches
+
+
+def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
+    """Where orbits merge with those of half their period.
+
+    Curves of saddle-nodes do so where the doubling of half the period is a generalized one.
+    """
+    if not equations.kind:
+        return halved_at(equations, ends)
+    half, near = equations.halved(ends)
+    half = replace(half, kind="period doubling")
+    start = newton(half, near.mean(axis=0, keepdims=True))
+    if equations.kind != "saddle-node" or not start.found[0]:
+        return None
+    direction = tangents(half, start.z)
+    reach = float(np.linalg.norm((ends[1] - ends[0]) / equations.scales(ends[:1])[0]))
+    both = Start(
+        half.rows(np.array([0, 0])),
+        np.tile(start.z, (2, 1)),
+        np.concatenate([direction, -direction]),
+        np.full(2, np.nan),
+        np.full(2, ""),
+        step=reach / 2,
+    )
+    window = start.z[0, half.size :] + reach * np.array([[-1.0], [1.0]])
+    until = np.full(2, GENERALIZED)
+    for branch in followed(both, np.array([window, window]), until, 20, ""):
+        for each in branch.special:
+            if each.kind == GENERALIZED:
+                return half.doubled(each.z[np.newaxis])[1][0]
+    return None
+
+
+def _resonant(equations: OrbitEquations, path: Points) -> list:
+    """The resonance at the end of a curve, if it ends with one."""
+    if equations.kind not in MULTIPLIERS:
+        return []
+    column = equations.kinds.index(equations.kind)
+    resonant = np.abs(path.tests[:, column]) < RESONANT
+    if not resonant[-1] or resonant.all():
+        return []
+    orbit = equations.orbit(path.z[-1], equations.watched[column])
+    return [_Passed(len(path.z) - 1, 0.0, orbit)]
 
 
 class _Passed(NamedTuple):
@@ -452,22 +275,27 @@ def _first_end(ends: list[_Passed]) -> _Passed | None:
     # Where a flight vanishes, an impact and a release do so at the same place.
     same = [each for each in ends if each.number == ends[0].number]
     same = [each for each in same if each.place < ends[0].place + 1e-6]
-    return min(same, key=lambda each: _rank(each.orbit), default=None)
+    watched = [*KINDS, GENERALIZED]
+    return min(same, key=lambda each: watched.index(each.orbit.kind), default=None)
 
 
-def _rank(orbit: PeriodicOrbit) -> int:
-    """The place of a kind among those that a march watches."""
-    return orbit.equations.watched.index(orbit.kind)
+def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:
+    """The values of what changes."""
+    values = zip(equations.along, z[equations.size :], strict=True)
+    return ", ".join(f"{path.name} = {value:.{digits}g}" for path, value in values)
 
 
-def _in_words(end: str, name: str, value: float, goal: float, passed: list[_Passed]) -> str:
+def _in_words(end: str, equations, z: NDArray, window: NDArray, goal, passed: list[_Passed]) -> str:
     """Why a branch ends at an orbit that is not special."""
-    here = f"{name} = {value:.10g}"
-    if end == _CLOSED:
+    if end == CLOSED:
         return end
-    if end != _AT_GOAL:
-        return f"{end}; the last one is at {here}"
-    if abs(value - goal) <= 1e-12 * abs(goal):
+    if end != AT_GOAL:
+        return f"{end}; the last one is at {_place(equations, z)}"
+    values = z[equations.size :]
+    j = np.flatnonzero((values == window).any(axis=0))[-1]
+    name = equations.along[j].name
+    here = f"{name} = {values[j]:.10g}"
+    if len(values) > 1 or abs(values[j] - goal) <= 1e-12 * abs(goal):
         return f"{here} is reached"
     folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
@@ -746,9 +574,9 @@ def _from_special(task: _Task, way: int, kind, points) -> list:
         return found
     # The parameter stays between the goal and a value as far behind the start.
     behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
-    window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going]
+    window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
     until = task.until[going]
-    branches = _followed(start.take(going), window, until, points, kind)
+    branches = followed(start.take(going), window, until, points, kind)
     for i, branch in zip(going, branches, strict=True):
         path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
         text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
@@ -770,7 +598,7 @@ def _on_side(reasons, away, task: _Task, goal, what: str) -> None:
         reasons[i] = what.format(side=side, place=f"{name} = {here[i]:.10g}")
 
 
-def _ordinary_start(task: _Task, way: int) -> _Start:
+def _ordinary_start(task: _Task, way: int) -> Start:
     """The branch through orbits."""
     goal = task.goals[:, way]
     ahead = goal - task.z[:, -1]
@@ -780,16 +608,16 @@ def _ordinary_start(task: _Task, way: int) -> _Start:
     for i in np.flatnonzero(ahead == 0):
         name = task.equations.along[-1].name
         reasons[i] = f"{name} = {goal[i]:.10g} is that of the orbit already"
-    return _Start(task.equations, task.z, direction, goal, reasons)
+    return Start(task.equations, task.z, direction, goal, reasons)
 
 
-def _fold_start(task: _Task, way: int) -> _Start:
+def _fold_start(task: _Task, way: int) -> Start:
     """The branch that is stable next to a saddle-node; also the other one, if both are followed.
 
     Both are on the same side of the parameter.
     """
-    units = scales(task.equations, task.z)
-    direction = _unit(tangents(task.equations, task.z) / units)
+    units = task.equations.scales(task.z)
+    direction = unit(tangents(task.equations, task.z) / units)
     near = newton(task.equations, task.z + 1e-3 * direction * units, direction / units)
     away = near.z[:, -1] - task.z[:, -1]
     stable = np.sign(1 - task.equations.turn(near.linear))
@@ -799,10 +627,10 @@ def _fold_start(task: _Task, way: int) -> _Start:
     reasons = _none(task)
     reasons[~near.found] = "no orbit is found beside the saddle-node"
     _on_side(reasons, away, task, goal, "the orbits of the saddle-node at {place} are {side} it")
-    return _Start(task.equations, task.z, direction, goal, reasons)
+    return Start(task.equations, task.z, direction, goal, reasons)
 
 
-def _grazing_start(task: _Task, way: int) -> _Start:
+def _grazing_start(task: _Task, way: int) -> Start:
     """The branch with one impact more, from orbits with a flight that touches the table."""
     more = replace(task.equations, impacts=task.equations.impacts + 1)
     origin = np.zeros((len(task.z), more.length))
@@ -814,34 +642,34 @@ def _grazing_start(task: _Task, way: int) -> _Start:
         except OrbitNotFound as error:
             reasons[i] = str(error)
     # One step away from the touch, where the added impact has the speed 0.
-    units = scales(more, origin)
-    ahead = _unit(direction / units)
+    units = more.scales(origin)
+    ahead = unit(direction / units)
     start = newton(more, origin + 1e-3 * ahead * units, ahead / units)
     reasons[(reasons == "") & ~start.found] = "the orbits with one impact more are not found"
     goal = task.goals[:, way]
     away = start.z[:, -1] - origin[:, -1]
     what = "the orbits with one impact more are {side} the grazing at {place}"
     _on_side(reasons, away, task, goal, what)
-    return _Start(more, start.z, start.z - origin, goal, reasons, step=1e-3, origin=origin)
+    return Start(more, start.z, start.z - origin, goal, reasons, step=1e-3, origin=origin)
 
 
-def _halved_start(task: _Task, way: int) -> _Start:
+def _halved_start(task: _Task, way: int) -> Start:
     """The branch of half the period."""
-    equations, z = halves_of(task.equations, task.z)
+    equations, z = task.equations.halved(task.z)
     return _ordinary_start(task._replace(equations=equations, z=z), way)
 
 
-def _doubled_start(task: _Task, way: int) -> _Start:
+def _doubled_start(task: _Task, way: int) -> Start:
     """The branch of twice the period.
 
     The parameter and tr/(1 + det), which is 1 at the doubling, change there with the square of the
     distance. The first step is halved until both fall by about four from it to half of it, and
     until the latter has hardly changed: then no bifurcation is between the doubling and the step.
     """
-    twice, origin = doubled_of(task.equations, task.z)
+    twice, origin = task.equations.doubled(task.z)
     rows = len(origin)
-    units = scales(twice, origin)
-    direction = _unit(_flip(task.equations, task.z) / units)
+    units = twice.scales(origin)
+    direction = unit(_flip(task.equations, task.z) / units)
     pair = twice.rows(np.tile(np.arange(rows), 2))
     start = origin.copy()
     step = np.full(rows, 0.02)
@@ -882,7 +710,7 @@ def _doubled_start(task: _Task, way: int) -> _Start:
         reasons[short & ~solution.found] = (
             "the start of the orbits of twice the period is not found"
         )
-    return _Start(twice, start, start - origin, goal, reasons, step=step, origin=origin)
+    return Start(twice, start, start - origin, goal, reasons, step=step, origin=origin)
 
 
 def _about_four(pair: NDArray) -> NDArray:

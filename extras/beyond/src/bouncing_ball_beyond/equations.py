@@ -1,4 +1,4 @@
-"""The equations of periodic orbits with k impacts in m periods of the table, and Newton's method.
+"""Periodic orbits with k impacts in m periods of the table: their equations and their quantities.
 
 The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T.
 Times grow along an orbit, so that a flight ends where the next impact starts, and nothing has to
@@ -15,20 +15,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, Impact
+from bouncing_ball_beyond.chains import dense, product_of, solve_bordered, solved_or_nan
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables import SINE, Table
 
 FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
 
-ROUNDING = 4 * np.finfo(float).eps
-"""Rounding errors of the equations, relative to their largest terms."""
+
+POINT = (1.0, -1.0), (0.5, -0.5), 1e-6
+CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
+"""Nodes, weights and steps of the differences for gradients of tests. Errors of 1e-10 do not move
+the points that Newton's method finds; tangents of curves have errors of 1e-12."""
+
+LASTING = 4 * np.pi
+"""The T from which on its changes count relatively: two free oscillations."""
 
 VANISHED = 1e-12
 """A flight that is no longer than this is none: its times are some thousand roundings."""
-
-DENSE = 16
-"""Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
 
 
 class Linear(NamedTuple):
@@ -100,6 +104,8 @@ class OrbitEquations:
         What may change. Its values are the last entries of z.
     table : Table
         The waveform of the table; its parameters are numbers, or arrays of the shape (rows,).
+    kind : str
+        The kind of special orbits, whose test is one more equation, and "" for all orbits.
     """
 
     ball: Ball
@@ -108,6 +114,7 @@ class OrbitEquations:
     amplitude: float | NDArray = np.nan
     along: tuple[Path, ...] = (AMPLITUDE,)
     table: Table = SINE
+    kind: str = ""
 
     @cached_property
     def unknowns(self) -> int:
@@ -156,10 +163,7 @@ class OrbitEquations:
 
     def orbit(self, z: NDArray, kind: str = ""):
         """One orbit, shape (N,), with its quantities."""
-        # The module of orbits imports this one.
-        from bouncing_ball_beyond.periodic import PeriodicOrbit
-
-        return PeriodicOrbit(self, z, kind)
+        return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
     def split(self, z) -> tuple[NDArray, Ball, NDArray]:
         """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
@@ -171,6 +175,18 @@ class OrbitEquations:
         sizes = 1 + np.abs(z)
         sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
         return sizes
+
+    def scales(self, z) -> NDArray:
+        """Units of the unknowns in which steps are measured, shape (rows, N).
+
+        Changes of T count relatively where a contact lasts for many free oscillations.
+        """
+        units = np.full(z.shape, np.sqrt(self.impacts))
+        if self.ball.lasts:
+            lasts = np.s_[:, 2 : self.size : 3]
+            units[lasts] *= np.maximum(np.abs(z[lasts]) / LASTING, 1.0)
+        units[:, self.size :] = np.maximum(np.abs(z[:, self.size :]), 1e-2)
+        return units
 
     def following(self, x) -> NDArray:
         """For each impact the next one; after the last the first, m periods later."""
@@ -226,39 +242,86 @@ class OrbitEquations:
     def bordered(self, z, linear: Linear, normal: NDArray) -> NDArray:
         """The step of Newton's method to the plane through z across a normal, and the tangent.
 
-        Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations.
+        Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations. With
+        one parameter special orbits are points, which need no plane.
         """
-        right = np.zeros((*linear.legs.shape, 2))
-        right[..., 0] = -linear.legs
-        border_right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
-        return solve_bordered(linear.derivatives, right, normal[:, np.newaxis], border_right)
+        border = normal[:, np.newaxis]
+        right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
+        if self.kind:
+            value, gradient = self.condition(z)
+            special = np.stack([-value, 0 * value], axis=-1)[:, np.newaxis]
+            points = len(self.along) == 1
+            border = np.concatenate([gradient[:, np.newaxis], border[:, points:]], axis=1)
+            right = np.concatenate([special, right[:, points:]], axis=1)
+        return self.solve(linear, border, right)
+
+    def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
+        """The solutions of the linear equations and the border, for -legs and for no legs."""
+        legs = np.stack([-linear.legs, 0 * linear.legs], axis=-1)
+        return solve_bordered(linear.derivatives, legs, border, right)
+
+    def condition(self, z) -> tuple[NDArray, NDArray]:
+        """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
+
+        For a multiplier μ = 1 or -1 it is χ = μ² - μ tr + det = 0. Where a release is lost, the
+        rate ρ of the release function is zero and χ has a pole beside the orbits. But χ ∏ρ has
+        none, and its differences give the gradient.
+        """
+        rows, length = z.shape
+        nodes, weights, step = CURVE if len(self.along) > 1 else POINT
+        shift = step * self.scales(z)
+        nudges = np.concatenate([np.zeros((1, length)), *np.multiply.outer(nodes, np.eye(length))])
+        nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
+        each = self.rows(np.tile(np.arange(rows), len(nudges)))
+        linear = each.linear(nearby)
+        rates = np.ones(len(nearby))
+        if self.kind in MULTIPLIERS:
+            trace, determinant = each.trace_and_determinant(linear)
+            values = 1 - MULTIPLIERS[self.kind] * trace + determinant
+            if self.ball.lasts:
+                rates = linear.derivatives[..., 0, 2].prod(axis=-1)
+        else:
+            values = KINDS[self.kind].test(each, nearby, linear)
+        beside = np.stack([values * rates, rates])[:, rows:].reshape(2, len(nodes), length, rows)
+        slopes = np.einsum("n,inlr->irl", weights, beside) / shift
+        value = values[:rows]
+        gradient = slopes[0] - value[:, np.newaxis] * slopes[1]
+        return value, gradient / rates[:rows, np.newaxis]
+
+    kinds = (
+        "saddle-node",
+        "period doubling",
+        "vanishing flight",
+        "grazing of an impact",
+        "lost release",
+        "period halving",
+    )
+    """The kinds of special orbits that a march watches: they cost little, or end a curve."""
+
+    @cached_property
+    def watched(self) -> tuple[str, ...]:
+        """The names of the tests; on a curve of a kind that of a resonance is in its place."""
+        return tuple(
+            RESONANCES.get(name, name) if name == self.kind else name for name in self.kinds
+        )
 
     def tests(self, z, linear: Linear) -> NDArray:
         """What is zero at the special orbits that a march watches, shape (rows, tests).
 
         That of a period halving is the distance from one.
         """
-        turn = self.turn(linear)
-        columns = [
-            1 - turn,
-            1 + turn,
-            linear.flights.min(axis=1),
-            self.least_speed(z),
-            self.least_release(linear, z),
-            np.linalg.norm(self.halves(z), axis=1),
-        ]
-        return np.stack(columns, axis=1)
-
-    @property
-    def watched(self) -> tuple[str, ...]:
-        """The kinds of special orbits of these tests: they cost little, or end a branch."""
-        return (
-            "saddle-node",
-            "period doubling",
-            "vanishing flight",
-            "grazing of an impact",
-            "lost release",
-            "period halving",
+        trace, determinant = self.trace_and_determinant(linear)
+        turn = trace / (1 + determinant)
+        return np.stack(
+            [
+                determinant - 1 if self.kind == "saddle-node" else 1 - turn,
+                determinant - 1 if self.kind == "period doubling" else 1 + turn,
+                linear.flights.min(axis=1),
+                self.least_speed(z),
+                self.least_release(linear, z),
+                np.linalg.norm(self.halves(z), axis=1),
+            ],
+            axis=1,
         )
 
     def residuals(self, z) -> tuple[NDArray, NDArray]:
@@ -423,6 +486,24 @@ class OrbitEquations:
         """
         return self.halves(z)[:, 1 if self.impacts % 2 == 0 else 0]
 
+    def halved(self, z) -> tuple["OrbitEquations", NDArray]:
+        """The equations of half the period, and the mean of the halves of orbits."""
+        k = self.impacts // 2
+        half = replace(self, impacts=k, periods=np.asarray(self.periods) // 2)
+        x = z[:, : self.size].reshape(len(z), 2 * k, -1).copy()
+        x[:, k:, 0] -= 2 * np.pi * np.reshape(half.periods, (-1, 1))
+        mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
+        return half, np.concatenate([mean, z[:, self.size :]], axis=1)
+
+    def doubled(self, z) -> tuple["OrbitEquations", NDArray]:
+        """The equations of twice the period, and orbits taken twice."""
+        twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
+        x = z[:, : self.size].reshape(len(z), self.impacts, -1)
+        again = x.copy()
+        again[..., 0] += 2 * np.pi * np.reshape(self.periods, (-1, 1))
+        both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
+        return twice, np.concatenate([both, z[:, self.size :]], axis=1)
+
     def admissible(self, z) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
         x, ball, _ = self.split(z)
@@ -508,163 +589,323 @@ def turns_back(slope, value, ends, *, first: bool = False, among=None, waves: in
     return np.minimum(least, FAR)
 
 
-def product_of(maps: NDArray) -> NDArray:
-    """The product of the maps of the legs, the last one at the left, shape (rows, 2, 2)."""
-    while maps.shape[1] > 1:
-        even = maps.shape[1] // 2 * 2
-        pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
-        maps = np.concatenate([pairs, maps[:, even:]], axis=1)
-    return maps[:, 0]
+class OrbitNotFound(ValueError):
+    """There is no such orbit, or it is not found: one line with what was looked for, and why."""
 
 
-def dense(derivatives: NDArray) -> NDArray:
-    """The Jacobian (rows, k, q, N) from the derivatives of legs."""
-    rows, k, q, columns = derivatives.shape
-    matrix = np.zeros((rows, k, q, k * q + columns - q - 2))
-    for i in range(k):
-        after = (i + 1) % k * q
-        matrix[:, i, :, i * q : (i + 1) * q] += derivatives[:, i, :, :q]
-        matrix[:, i, :, after : after + 2] += derivatives[:, i, :, q : q + 2]
-    matrix[..., k * q :] = derivatives[..., q + 2 :]
-    return matrix
+@dataclass(frozen=True, eq=False, repr=False)
+class PeriodicOrbit:
+    """A periodic orbit: its equations and their solution.
 
-
-def solved_or_nan(matrix, values) -> NDArray:
-    """Solutions of linear equations, NaN where a matrix is singular."""
-    try:
-        return np.linalg.solve(matrix, values)
-    except np.linalg.LinAlgError:
-        singular = np.linalg.det(matrix) == 0
-        return np.linalg.solve(
-            np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix), values
-        )
-
-
-def solve_bordered(derivatives, right, border, border_right) -> NDArray:
-    """Solve the linear equations of the legs together with p further ones.
-
-    Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the
-    impact between the two and the other half is a leg from the first impact to the one after the
-    second. The number of legs is halved until one matrix is small. This is stable for
-    orbits of any instability, and its work is proportional to the number of legs.
-
-    Parameters
-    ----------
-    derivatives : ndarray, shape (rows, k, q, q + 2 + p)
-    right : ndarray, shape (rows, k, q, m)
-        Right sides of the legs.
-    border : ndarray, shape (rows, p, N)
-    border_right : ndarray, shape (rows, p, m)
-
-    Returns
-    -------
-    ndarray, shape (rows, N, m)
-        NaN for singular equations.
-    """
-    rows, k, q, columns = derivatives.shape
-    m = right.shape[-1]
-    if k <= DENSE:
-        matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
-        values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
-        return solved_or_nan(matrix, values)
-    p = columns - q - 2
-    pairs = k // 2
-    first = derivatives[:, 0 : 2 * pairs : 2]
-    second = derivatives[:, 1 : 2 * pairs : 2]
-    between = np.zeros((rows, pairs, 2 * q, q))
-    between[:, :, :q, :2] = first[..., q : q + 2]
-    between[:, :, q:] = second[..., :q]
-    others = np.zeros((rows, pairs, 2 * q, columns + m))
-    others[:, :, :q, :q] = first[..., :q]
-    others[:, :, q:, q : q + 2] = second[..., q : q + 2]
-    others[:, :, :q, q + 2 : columns] = first[..., q + 2 :]
-    others[:, :, q:, q + 2 : columns] = second[..., q + 2 :]
-    others[:, :, :q, columns:] = right[:, 0 : 2 * pairs : 2]
-    others[:, :, q:, columns:] = right[:, 1 : 2 * pairs : 2]
-    orthogonal, triangle = np.linalg.qr(between, mode="complete")
-    others = orthogonal.swapaxes(-1, -2) @ others
-    eliminated = solved_or_nan(triangle[..., :q, :], others[..., :q, :])
-    legs = np.concatenate([others[..., q:, :columns], derivatives[:, 2 * pairs :]], axis=1)
-    legs_right = np.concatenate([others[..., q:, columns:], right[:, 2 * pairs :]], axis=1)
-    # What the impacts between the pairs add to the border.
-    blocks = border[..., : k * q].reshape(rows, p, k, q).swapaxes(1, 2)
-    kept = blocks[:, ::2].copy()
-    added = blocks[:, 1 : 2 * pairs : 2] @ eliminated
-    after = np.arange(1, pairs + 1) % kept.shape[1]
-    kept[:, :pairs] -= added[..., :q]
-    kept[:, after, :, :2] -= added[..., q : q + 2]
-    total = added.sum(axis=1)
-    kept = kept.swapaxes(1, 2).reshape(rows, p, -1)
-    outer = np.concatenate([kept, border[..., k * q :] - total[..., q + 2 : columns]], axis=-1)
-    solution = solve_bordered(legs, legs_right, outer, border_right - total[..., columns:])
-    states = solution[:, :-p].reshape(rows, -1, q, m)
-    whole = np.empty((rows, k, q, m))
-    whole[:, ::2] = states
-    whole[:, 1 : 2 * pairs : 2] = (
-        eliminated[..., columns:]
-        - eliminated[..., :q] @ states[:, :pairs]
-        - eliminated[..., q : q + 2] @ states[:, after, :2]
-        - eliminated[..., q + 2 : columns] @ solution[:, np.newaxis, -p:]
-    )
-    return np.concatenate([whole.reshape(rows, k * q, m), solution[:, -p:]], axis=1)
-
-
-class Solution(NamedTuple):
-    """What Newton's method ends with, by rows.
-
-    ``z`` are the orbits, NaN where the equations are not finite; ``found`` says which of them are
-    solutions; ``tangent`` is the direction of the curve of orbits, with normal · tangent = 1;
-    ``linear`` are the legs and derivatives at z.
-    """
-
-    z: NDArray
-    found: NDArray
-    tangent: NDArray
-    linear: Linear
-
-
-@np.errstate(all="ignore")
-def newton(
-    equations: OrbitEquations,
-    z: NDArray,
-    normal: NDArray | None = None,
-    iterations: int = 12,
-    tolerance: float = 1e-11,
-) -> Solution:
-    """Orbits on the planes through z across a normal, by Newton's method, for one free parameter.
+    Quantities of the impacts are floats for one impact, and arrays of the shape (impacts,)
+    otherwise. Velocities are absolute unless their names say relative, in units of g/Ω; times are
+    in units of 1/Ω, heights in units of g/Ω².
 
     Parameters
     ----------
     equations : OrbitEquations
-    z : ndarray, shape (rows, N)
-    normal : ndarray, shape (rows, N), optional
-        By default the parameter is fixed.
-    iterations : int
-    tolerance : float
-        The largest last step, in units of `OrbitEquations.sizes`. Steps fall quadratically, so that
-        the error after one of 1e-11 is that of rounding.
-
-    Returns
-    -------
-    Solution
+        Those of one ball.
+    z : ndarray, shape (N,)
+        τ, u and, in contacts of finite duration, T of each impact, and the values of what changes.
+    kind : str
+        The kind of a special orbit, such as "saddle-node", and "" for others.
     """
-    if normal is None:
-        normal = np.zeros_like(z)
-        normal[:, -1] = 1.0
-    for _ in range(iterations):
-        linear = equations.linear(z)
-        solution = equations.bordered(z, linear, normal)
-        step = solution[..., 0]
-        z = z + step
-        defect = np.abs(linear.legs).max(axis=(1, 2))
-        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
-        # Lengths in the equations are of the size of Λ, or of the times and the speeds.
-        _, amplitude = equations.at(z[:, equations.size :])
-        size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
-        # Steps become small, or they are made of nothing but rounding errors of the equations.
-        found = (moved < tolerance) | (defect < ROUNDING * (1 + size))
-        if (found | np.isnan(moved)).all():
-            break
-    # Far away, where times have no digits left, steps are small as well.
-    found &= defect < 1e-7
-    return Solution(z, found, solution[..., 1], linear)
+
+    equations: OrbitEquations
+    z: NDArray
+    kind: str = ""
+
+    def __repr__(self):
+        rows = {
+            **({"kind": self.kind} if self.kind else {}),
+            "impacts": self.impacts,
+            "periods": self.periods,
+            **self.parameters,
+            "phase": self.phase,
+            "contact_duration": self.contact_duration,
+            "impact_velocity": self.impact_velocity,
+            "bounce_velocity": self.bounce_velocity,
+            "apparent_restitution": self.apparent_restitution,
+            "max_height": self.max_height,
+            "stable": self.stable,
+            "admissible": self.admissible,
+        }
+        width = max(map(len, rows))
+        return "\n".join(
+            ["PeriodicOrbit", *(f"  {name:{width}}  {_short(row)}" for name, row in rows.items())]
+        )
+
+    @property
+    def impacts(self) -> int:
+        """Their number k in one period of the orbit."""
+        return self.equations.impacts
+
+    @property
+    def periods(self) -> int:
+        """The number m of periods of the table in one period of the orbit."""
+        return int(self.equations.periods)
+
+    @cached_property
+    def _changed(self) -> tuple[Ball, float, Table]:
+        ball = self.equations.ball
+        amplitude = self.equations.amplitude
+        table = self.equations.table
+        for path, value in zip(self.equations.along, self.z[self.equations.size :], strict=True):
+            ball, amplitude = path.apply(ball, amplitude, value)
+            table = path.shape(table, float(value)) if table.parameters else table
+        return ball, float(amplitude), table
+
+    @property
+    def ball(self) -> Ball:
+        """The ball with the parameters of this orbit."""
+        return self._changed[0]
+
+    @property
+    def amplitude(self) -> float:
+        """Λ."""
+        return self._changed[1]
+
+    @property
+    def table(self) -> Table:
+        """The waveform of the table."""
+        return self._changed[2]
+
+    @property
+    def parameters(self) -> dict[str, float]:
+        """Λ, the parameters of ball and table, and the variables of the paths of the orbit."""
+        values = {"amplitude": self.amplitude, **self.ball.parameters, **self.table.parameters}
+        names = [path.name for path in self.equations.along]
+        values |= dict(zip(names, self.z[self.equations.size :], strict=True))
+        return {name: float(value) for name, value in values.items()}
+
+    @cached_property
+    def _impacts(self) -> NDArray:
+        return self.z[: self.equations.size].reshape(self.impacts, -1)
+
+    @cached_property
+    def _ends(self):
+        ends = self.equations.ends(self.z[np.newaxis])
+        return type(ends)(*(each[0] for each in ends[:5]), self.table)
+
+    @cached_property
+    def _linear(self) -> Linear:
+        return self.equations.linear(self.z[np.newaxis])
+
+    def _each(self, values):
+        """A float for one impact, an array for several."""
+        return float(values[0]) if self.impacts == 1 else values
+
+    @property
+    def times(self) -> NDArray:
+        """The times of the impacts, shape (impacts,)."""
+        return self._impacts[:, 0]
+
+    @property
+    def speeds(self) -> NDArray:
+        """The closing speeds u = -δ′ of the impacts, shape (impacts,)."""
+        return self._impacts[:, 1]
+
+    @property
+    def phase(self):
+        """Phase of the table as an impact starts, in (-π, π]."""
+        return self._each(np.pi - (np.pi - self.times) % (2 * np.pi))
+
+    @property
+    def release_phase(self):
+        """Phase of the table at the end of the contact, in (-π, π]."""
+        return self._each(np.pi - (np.pi - self._ends.leaves) % (2 * np.pi))
+
+    @property
+    def contact_duration(self):
+        """Duration of the contact."""
+        return self._each(self._ends.leaves - self.times)
+
+    @property
+    def flight_time(self):
+        """Duration of the flight after the contact."""
+        return self._each(self._ends.flight)
+
+    @property
+    def relative_impact_velocity(self):
+        """δ′ as an impact starts, negative but where a contact resumes."""
+        return self._each(-self.speeds)
+
+    @property
+    def relative_bounce_velocity(self):
+        """δ′ as the contact ends."""
+        return self._each(self._ends.speed)
+
+    @property
+    def impact_velocity(self):
+        """Absolute velocity of the ball as an impact starts, in units of g/Ω."""
+        return self._each(self.amplitude * self.table(self.times, 1) - self.speeds)
+
+    @property
+    def bounce_velocity(self):
+        """Velocity of the ball as the contact ends."""
+        velocity = self.amplitude * self.table(self._ends.leaves, 1)
+        return self._each(velocity + self._ends.speed)
+
+    @property
+    def apparent_restitution(self):
+        """r_a = -δ′_b/δ′_i (Eq. 17)."""
+        return self._each(self._ends.speed / self.speeds)
+
+    @cached_property
+    def max_height(self) -> float:
+        """The greatest height of the ball, in a flight or in a contact."""
+        return float(self.equations.max_height(self.z[np.newaxis])[0])
+
+    @property
+    def monodromy(self) -> NDArray:
+        """Derivative of the return map in (τ, δ′) as the first impact starts, shape (2, 2)."""
+        signs = np.diag([1.0, -1.0])
+        return signs @ product_of(self.equations.maps(self._linear))[0] @ signs
+
+    @cached_property
+    def trace_and_determinant(self) -> tuple[float, float]:
+        """Trace and determinant of the derivative of the return map."""
+        trace, determinant = self.equations.trace_and_determinant(self._linear)
+        return float(trace[0]), float(determinant[0])
+
+    @property
+    def multipliers(self) -> NDArray:
+        """The two Floquet multipliers, complex, that of the larger modulus first."""
+        trace, determinant = self.trace_and_determinant
+        root = np.sqrt(complex(trace**2 / 4 - determinant))
+        larger = trace / 2 - root if trace < 0 else trace / 2 + root
+        return np.array([larger, determinant / larger])
+
+    @property
+    def turn(self) -> float:
+        """tr/(1 + det): 1 at a saddle-node, -1 at a period doubling.
+
+        Where an impact grazes or a release is lost, rounding decides on it, and it may be infinite.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return float(self.equations.turn(self._linear)[0])
+
+    @property
+    def stable(self) -> bool:
+        """Whether no neighbouring motion leaves; those of an elastic ball stay near."""
+        return bool(self.equations.stable(self._linear)[0])
+
+    @cached_property
+    def admissible(self) -> bool:
+        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
+        return bool(self.equations.admissible(self.z[np.newaxis])[0])
+
+    @property
+    def defect(self) -> float:
+        """The largest residual of the equations."""
+        return float(np.abs(self._linear.legs).max())
+
+    @cached_property
+    def digits_left(self) -> float:
+        """How many decimal places of the times and speeds of the impacts are certain.
+
+        The rounding errors of the numbers z and of the terms of the equations, eps |J| |z|, move
+        the solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
+        """
+        _, jacobian = self.equations.residuals(self.z[np.newaxis])
+        size = self.equations.size
+        # A phase is known no better than the time from which it is computed.
+        z = np.abs(self.z)
+        rounding = np.finfo(float).eps * np.abs(jacobian[0]) @ z
+        error = np.abs(np.linalg.pinv(jacobian[0, :, :size])) @ rounding
+        return float(-np.log10(error.max()))
+
+    def distance(self, other: "PeriodicOrbit") -> float:
+        """The largest difference of the impacts of two orbits, from whichever of them one starts.
+
+        It is that of the phases, closing speeds and unknowns T; infinite for other numbers of
+        impacts or periods.
+        """
+        if (self.impacts, self.periods) != (other.impacts, other.periods):
+            return np.inf
+        shifts = [np.roll(other._impacts, j, axis=0) - self._impacts for j in range(self.impacts)]
+        for shift in shifts:
+            shift[:, 0] = (shift[:, 0] + np.pi) % (2 * np.pi) - np.pi
+        return float(min(np.abs(shift).max() for shift in shifts))
+
+
+def _short(value) -> str:
+    """A value of a quantity with six digits."""
+    if isinstance(value, np.ndarray):
+        text = " ".join(f"{each:.6g}" for each in value[:4])
+        return f"[{text}{' …' if len(value) > 4 else ''}]"
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+class Kind(NamedTuple):
+    """A kind of special orbit.
+
+    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says
+    why branches end there, and is empty if they go on.
+    """
+
+    test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
+    end: str = ""
+
+
+KINDS = {
+    "saddle-node": Kind(lambda equations, z, linear: 1 - equations.turn(linear)),
+    "period doubling": Kind(lambda equations, z, linear: 1 + equations.turn(linear)),
+    "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z)),
+    "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z)),
+    "vanishing flight": Kind(
+        lambda equations, z, linear: linear.flights.min(axis=1),
+        "the contacts before and after a flight merge",
+    ),
+    "grazing of an impact": Kind(
+        lambda equations, z, linear: equations.least_speed(z),
+        "the ball lands with the speed of the table: an impact vanishes, or is one that resumes",
+    ),
+    "lost release": Kind(
+        lambda equations, z, linear: equations.least_release(linear, z),
+        "the ball no longer leaves the table as a contact ends",
+    ),
+    "period halving": Kind(
+        lambda equations, z, linear: equations.halving(z),
+        "the orbit merges with one of half its period",
+    ),
+    "end of a rest": Kind(
+        lambda equations, z, linear: equations.rest(z),
+        "the ball no longer comes to rest before it leaves the table",
+    ),
+    "lost lift-off": Kind(
+        lambda equations, z, linear: equations.fall(z),
+        "the table no longer falls faster than a ball",
+    ),
+}
+"""The kinds of special orbits of a branch, by name."""
+
+
+OF_RESTS = ("end of a rest", "lost lift-off")
+"""Those of orbits with a rest."""
+
+
+SINGULAR = slice(2, 5)
+"""Those tests of `OrbitEquations.watched` at which multipliers have poles or jump: beyond them
+there are no orbits."""
+
+MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
+"""The multiplier that a kind of special orbit has."""
+
+RESONANCES = {"saddle-node": "1:1 resonance", "period doubling": "1:2 resonance"}
+"""Where on curves of a kind both multipliers are the same: their product is 1."""
+
+
+def kind_named(name: str) -> str:
+    """The name of a kind that is written with spaces or hyphens.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    plain = {kind.replace("-", " "): kind for kind in KINDS}
+    found = plain.get(str(name).replace("-", " ").lower())
+    if found is None:
+        raise ValueError(f"kind = {name!r}: must be one of {', '.join(KINDS)}")
+    return found

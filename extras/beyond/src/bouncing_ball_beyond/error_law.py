@@ -26,9 +26,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball_beyond.balls import Ball, H, SpringDamper, brief, checked, whole_number
-from bouncing_ball_beyond.equations import OrbitEquations, newton
+from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
-from bouncing_ball_beyond.periodic import guess_of_instants, rows_of
+from bouncing_ball_beyond.march import newton
+from bouncing_ball_beyond.search import guess_of_instants, rows_of
 from bouncing_ball_beyond.special_orbits import special_near
 from bouncing_ball_beyond.tables import SINE, Table
 

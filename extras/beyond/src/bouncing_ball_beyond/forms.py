@@ -25,18 +25,25 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import OrbitEquations, dense, flight, newton
-from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit
-from bouncing_ball_beyond.special_orbits import doubled_of
-
-MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
-"""The multiplier that a kind of special orbit has."""
+from bouncing_ball_beyond.chains import dense
+from bouncing_ball_beyond.equations import (
+    MULTIPLIERS,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    flight,
+)
+from bouncing_ball_beyond.march import newton
 
 NODES = np.arange(-4.0, 5.0)
 FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 """Weights of the central differences of the first and the second derivative over the nodes, exact
 for polynomials up to the eighth degree."""
+
+RESONANT = 1e-6
+"""A special orbit is in resonance if the product of its multipliers differs from 1 by less. Located
+at a range's end, the determinant has at least ten digits."""
 
 SHARE = 0.1
 """Step of the differences: the largest change of an unknown over the least speed, or over 1."""
@@ -72,7 +79,7 @@ def curvature(
 
     They are those of the first half of the orbit taken twice, along which v is periodic.
     """
-    twice, row = doubled_of(equations, z[np.newaxis])
+    twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
     derivatives = twice.linear(rows).derivatives[:, : equations.impacts]
@@ -90,16 +97,38 @@ def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> flo
     return float(w @ (closed(bent.first, 1) @ h + closed(bent.second, multiplier) @ v / 6))
 
 
-def null_vectors(matrix: NDArray) -> tuple[NDArray, NDArray]:
-    """v and w of length 1, which are those of the least singular value."""
-    left, _, right = np.linalg.svd(matrix)
-    return right[-1], left[:, -1]
+def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
+    """v and w, scaled so that |v_0| = 1 and p v_0 = 1."""
+    q = derivatives.shape[-2]
+    left, _, right = np.linalg.svd(closed(derivatives, multiplier))
+    v, w = right[-1], left[:, -1]
+    # The direction in which δ′ = -u or τ grows, whichever changes more.
+    start = v[:2] * [1.0, -1.0]
+    v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
+    return v, w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
 
 
-def longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
+def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
     """The step of differences along v."""
     speeds = z[1 : equations.size : equations.unknowns]
     return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
+
+
+@np.errstate(all="ignore")
+def degeneracy(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """b (det - 1)² at period doublings, shape (rows,), which is zero where b is.
+
+    At a resonance, where det = 1, b has a double pole; there this is NaN.
+    """
+    linear = equations.linear(z)
+    apart = equations.trace_and_determinant(linear)[1] - 1
+    values = np.full(len(z), np.nan)
+    for i in np.flatnonzero(np.abs(apart) > RESONANT):
+        v, w = _vectors(linear.derivatives[i], -1)
+        single = equations.rows([i])
+        bent = curvature(single, z[i], v, -1, _longest_step(single, z[i], v))
+        values[i] = coefficient(bent, v, w, -1) * apart[i] ** 2
+    return values
 
 
 @dataclass(frozen=True)
@@ -173,12 +202,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     multiplier = MULTIPLIERS[orbit.kind]
     q = equations.unknowns
     derivatives = equations.linear(z[np.newaxis]).derivatives[0]
-    v, w = null_vectors(closed(derivatives, multiplier))
-    signs = np.array([1.0, -1.0])
-    start = v[:2] * signs
-    v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
-    w = w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
-    step = longest_step(equations, z, v)
+    v, w = _vectors(derivatives, multiplier)
+    step = _longest_step(equations, z, v)
     coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
     value = coefficient(fine, v, w, multiplier)
     by_parameter = derivatives[..., q + 2].ravel()
@@ -193,7 +218,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
         error=abs(value - coefficient(coarse, v, w, multiplier)),
         rate=float(rate),
         along=equations.along[0].name,
-        direction=tuple((v[:2] * signs).tolist()),
+        direction=(float(v[0]), -float(v[1])),
         other=orbit.trace_and_determinant[1] / multiplier,
     )
 

@@ -15,9 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, check_ball, whole_number
-from bouncing_ball_beyond.equations import FAR, Flights, Linear, OrbitEquations, flight, newton
-from bouncing_ball_beyond.equations import solved_or_nan as solve
-from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, one_amplitude
+from bouncing_ball_beyond.chains import solved_or_nan
+from bouncing_ball_beyond.equations import (
+    FAR,
+    Flights,
+    Linear,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    flight,
+)
+from bouncing_ball_beyond.march import newton
+from bouncing_ball_beyond.periodic import one_amplitude
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 TAIL = 1e-2
@@ -48,11 +57,15 @@ class RestEquations(OrbitEquations):
         """2k + 1."""
         return 2 * self.impacts + 1
 
-    @property
-    def watched(self) -> tuple[str, ...]:
-        """There are no multipliers: both are zero."""
-        kinds = ("vanishing flight", "grazing of an impact", "lost lift-off", "end of a rest")
-        return ("saddle-node", "period doubling", *kinds)
+    kinds = (
+        "saddle-node",
+        "period doubling",
+        "vanishing flight",
+        "grazing of an impact",
+        "lost lift-off",
+        "end of a rest",
+    )
+    """The first two have no tests: both multipliers are zero."""
 
     def orbit(self, z, kind=""):
         """One orbit with a rest."""
@@ -95,13 +108,11 @@ class RestEquations(OrbitEquations):
         """Which of the speeds are those of the last slow bounces, shape (rows, k)."""
         return np.cumprod(np.abs(speeds[:, ::-1]) < TAIL, axis=1)[:, ::-1].astype(bool)
 
-    def bordered(self, z, linear, normal):
+    def solve(self, linear, border, right):
         """As of orbits without a rest, by one matrix."""
-        matrix = np.concatenate([linear.derivatives, normal[:, np.newaxis]], axis=1)
-        right = np.zeros((*z.shape, 2))
-        right[:, :-1, 0] = -linear.legs[..., 0]
-        right[:, -1, 1] = 1.0
-        return solve(matrix, right)
+        legs = np.stack([-linear.legs[..., 0], 0 * linear.legs[..., 0]], axis=-1)
+        matrix = np.concatenate([linear.derivatives, border], axis=1)
+        return solved_or_nan(matrix, np.concatenate([legs, right], axis=1))
 
     def tests(self, z, linear):
         """What is zero at the kinds that are watched."""

@@ -24,7 +24,6 @@ from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.paths import OF_TABLES, Path, path_of
 from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.rests import RestEquations, RestOrbit
-from bouncing_ball_beyond.special_orbits import scales
 from bouncing_ball_beyond.tables import SINE, Table
 
 OF_IMPACTS = {
@@ -170,7 +169,7 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
 def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
     """The orbits of a branch with its special orbits, each in the step where it makes no detour."""
     orbits = list(branch.orbits)
-    units = scales(branch.equations, branch.z)[0]
+    units = branch.equations.scales(branch.z)[0]
     points = branch.z / units
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     for special in reversed(branch.special):
@@ -267,6 +266,7 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     z = np.array([each.z for each in rows])
     equations = rows[0].equations
     special = [replace(each, equations=equations) for each in orbits if each.kind != common]
+    equations = replace(equations, kind=common)
     given = equations, z, tuple(special), data.attrs["start"], data.attrs["end"]
     return SpecialCurve(*given, common) if form == "SpecialCurve" else FollowedBranch(*given)
 

@@ -1,107 +1,23 @@
-"""Special orbits: their kinds, and how they are located between two orbits or near a guess."""
+"""Special orbits: where they are between two orbits of a march, or near a guess."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import (
-    Linear,
-    OrbitEquations,
-    dense,
-    newton,
-    solved_or_nan,
-)
+from bouncing_ball_beyond.equations import KINDS, RESONANCES, SINGULAR, Linear, OrbitEquations
+from bouncing_ball_beyond.forms import RESONANT, degeneracy
+from bouncing_ball_beyond.march import ends_at, newton
 
-LONG = 2.0
-"""A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
-contacts that last for many periods, and seldom back."""
-
-
-LASTING = 4 * np.pi
-"""The T from which on its changes count relatively: two free oscillations."""
-
-
-class Kind(NamedTuple):
-    """A kind of special orbit.
-
-    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says
-    why branches end there, and is empty if they go on.
-    """
-
-    test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
-    end: str = ""
-
-
-KINDS = {
-    "saddle-node": Kind(lambda equations, z, linear: 1 - equations.turn(linear)),
-    "period doubling": Kind(lambda equations, z, linear: 1 + equations.turn(linear)),
-    "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z)),
-    "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z)),
-    "vanishing flight": Kind(
-        lambda equations, z, linear: linear.flights.min(axis=1),
-        "the contacts before and after a flight merge",
-    ),
-    "grazing of an impact": Kind(
-        lambda equations, z, linear: equations.least_speed(z),
-        "the ball lands with the speed of the table: an impact vanishes, or is one that resumes",
-    ),
-    "lost release": Kind(
-        lambda equations, z, linear: equations.least_release(linear, z),
-        "the ball no longer leaves the table as a contact ends",
-    ),
-    "period halving": Kind(
-        lambda equations, z, linear: equations.halving(z),
-        "the orbit merges with one of half its period",
-    ),
-    "end of a rest": Kind(
-        lambda equations, z, linear: equations.rest(z),
-        "the ball no longer comes to rest before it leaves the table",
-    ),
-    "lost lift-off": Kind(
-        lambda equations, z, linear: equations.fall(z),
-        "the table no longer falls faster than a ball",
-    ),
+DEGENERATE = {
+    "saddle-node": ("cusp", "1:1 resonance"),
+    "period doubling": ("generalized period doubling", "1:2 resonance"),
 }
-"""The kinds of special orbits of a branch, by name."""
+"""On curves of a kind: where a or b of the normal form is zero, and where both multipliers are the
+same."""
 
-
-OF_RESTS = ("end of a rest", "lost lift-off")
-"""Those of orbits with a rest."""
-
-SINGULAR = slice(2, 5)
-"""Those tests of `OrbitEquations.watched` at which multipliers have poles or jump: beyond them
-there are no orbits."""
-
-
-def kind_named(name: str) -> str:
-    """The name of a kind that is written with spaces or hyphens.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    plain = {kind.replace("-", " "): kind for kind in KINDS}
-    found = plain.get(str(name).replace("-", " ").lower())
-    if found is None:
-        raise ValueError(f"kind = {name!r}: must be one of {', '.join(KINDS)}")
-    return found
-
-
-def scales(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Units of the unknowns in which steps are measured, shape (rows, N).
-
-    Changes of T count relatively where a contact lasts for many free oscillations.
-    """
-    units = np.full(z.shape, np.sqrt(equations.impacts))
-    if equations.ball.lasts:
-        lasts = np.s_[:, 2 : equations.size : 3]
-        units[lasts] *= np.maximum(np.abs(z[lasts]) / LASTING, 1.0)
-    units[:, equations.size :] = np.maximum(np.abs(z[:, equations.size :]), 1e-2)
-    return units
+CUSP, GENERALIZED = (names[0] for names in DEGENERATE.values())
 
 
 class Crossings(NamedTuple):
@@ -131,16 +47,32 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     """
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
-    columns = [*tests.T, every.clearance(z), every.contact_clearance(z)]
-    names = np.array([*equations.watched, "grazing of a flight", "grazing of a release"])
+    others = {
+        "grazing of a flight": every.clearance,
+        "grazing of a release": every.contact_clearance,
+    }
+    if equations.kind == "period doubling":
+        others[GENERALIZED] = lambda z: degeneracy(every, z)
+    columns = [*tests.T, *(test(z) for name, test in others.items() if name != equations.kind)]
+    names = [*equations.watched, *(name for name in others if name != equations.kind)]
+    if equations.kind == "saddle-node":
+        # At a cusp both parameters turn back.
+        rates = slopes[:, equations.size :]
+        signs = np.where(np.sum(rates[1:] * rates[:-1], axis=1) < 0, -1.0, 1.0)
+        columns.append(np.cumprod([1.0, *signs]) * np.linalg.norm(rates, axis=1))
+        names.append(CUSP)
     values = np.array(columns)
+    if equations.kind in RESONANCES:
+        resonance = values[equations.kinds.index(equations.kind)]
+        resonance[np.abs(resonance) < RESONANT] = 0.0
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
     # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
     crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
-    return Crossings(row[at], number[at], names[which], z[both], slopes[both], values[which, both])
+    kinds = np.array(names)[which]
+    return Crossings(row[at], number[at], kinds, z[both], slopes[both], values[which, both])
 
 
 def _cubic(part, ends, slopes):
@@ -151,13 +83,23 @@ def _cubic(part, ends, slopes):
     return ends[0] + x * (slopes[0] + x * (chord - slopes[0] - bend + x * bend))
 
 
-def _tests_of(kinds, equations, solution) -> NDArray:
-    """The tests of orbits, each that of its kind."""
+def _tests_of(kinds, equations, solution, turns) -> NDArray:
+    """The tests of orbits, each that of its kind; ``turns`` are directions of the parameters."""
     values = np.zeros(len(kinds))
     for name in np.unique(kinds):
         these = kinds == name
+        part = equations.rows(these)
+        z = solution.z[these]
         linear = Linear(*(each[these] for each in solution.linear))
-        values[these] = KINDS[name].test(equations.rows(these), solution.z[these], linear)
+        if name == CUSP:
+            rates = solution.tangent[these, equations.size :]
+            values[these] = np.sum(rates * turns[these], axis=1)
+        elif name == GENERALIZED:
+            values[these] = degeneracy(part, z)
+        elif name in KINDS:
+            values[these] = KINDS[name].test(part, z, linear)
+        else:
+            values[these] = part.trace_and_determinant(linear)[1] - 1
     return values
 
 
@@ -171,25 +113,37 @@ def located(equations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     equations = equations.rows(crossings.row)
     ends = crossings.ends.copy()
     values = crossings.values.copy()
-    weights = values.copy()
-    units = scales(equations, ends[0])
+    units = equations.scales(ends[0])
     chord = (ends[1] - ends[0]) / units
     normal = chord / units / np.sum(chord**2, axis=1, keepdims=True)
     slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
+    # At a cusp, the parameters change in this direction and back.
+    turns = np.diff(slopes[..., equations.size :], axis=0)[0]
+    cusps = crossings.kind == CUSP
+    values[:, cusps] = np.sum(slopes[:, cusps, equations.size :] * turns[cusps], axis=-1)
+    weights = values.copy()
     each = np.arange(len(chord))
     place = np.array([0 * each, 0 * each + 1.0])
     latest = 0 * each - 1
     # The equations are singular at a period halving, which is found by those of half the period.
     found = crossings.kind != "period halving"
+    singular = np.array([ends_at(name, None) for name in crossings.kind])
     z = ends[0]
     for _ in range(60):
         step = place[1] - place[0]
         part = weights[0] / (weights[0] - weights[1])
         guess = _cubic(part, ends, slopes * step[:, np.newaxis])
         solution = newton(equations, guess, normal)
+        if equations.kind:
+            # Curves are smooth where they end, but their equations are singular there.
+            lost = ~solution.found & singular
+            solution.z[lost] = guess[lost]
+            solution.tangent[lost] = slopes[0, lost]
+            solution.found[lost] = True
+            solution = solution._replace(linear=equations.linear(solution.z))
         found &= solution.found
         z = np.where(found[:, np.newaxis], solution.z, guess)
-        value = _tests_of(crossings.kind, equations, solution)
+        value = _tests_of(crossings.kind, equations, solution, turns)
         side = (value * values[1] > 0).astype(int)
         ratio = 1 - value / values[side, each]
         again = np.where(ratio > 0, ratio, 0.5)
@@ -207,77 +161,12 @@ def located(equations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     return z, found & (np.abs(value) < 1e-6 * np.maximum(largest, 1e-3))
 
 
-def value_and_gradient(
-    equations: OrbitEquations, kind: str, z: NDArray
-) -> tuple[NDArray, NDArray, Linear]:
-    """The test of a kind of special orbit, shape (rows,), its gradient, shape (rows, N), and the
-    legs.
-
-    The gradient is a central difference. Its errors, some 1e-10, slow Newton's method down a little
-    and do not move what it finds.
-    """
-    rows, length = z.shape
-    shift = 1e-6 * np.maximum(1.0, np.abs(z))
-    nudges = np.concatenate([np.zeros((1, length)), np.eye(length), -np.eye(length)])
-    nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
-    each = equations.rows(np.tile(np.arange(rows), len(nudges)))
-    linear = each.linear(nearby)
-    values = KINDS[kind].test(each, nearby, linear).reshape(-1, rows)
-    above, below = values[1:].reshape(2, length, rows)
-    return values[0], (above - below).T / (2 * shift), Linear(*(x[:rows] for x in linear))
-
-
-@np.errstate(all="ignore")
 def special_near(
     equations: OrbitEquations, kind: str, z: NDArray, iterations: int = 20
 ) -> tuple[NDArray, NDArray]:
-    """Special orbits of a kind near guesses, shape (rows, N), and which of them are found.
-
-    Newton's method for the equations of orbits together with the test of the kind.
-    """
-    z = z.copy()
-    found = np.zeros(len(z), bool)
-    left = np.arange(len(z))
-    for _ in range(iterations):
-        part = equations.rows(left)
-        value, gradient, linear = value_and_gradient(part, kind, z[left])
-        jacobian = dense(linear.derivatives).reshape(-1, part.size, part.length)
-        matrix = np.concatenate([jacobian, gradient[:, np.newaxis]], axis=1)
-        right = np.column_stack([linear.legs.reshape(-1, part.size), value])
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(right).all(axis=1)
-        matrix[~finite] = np.eye(z.shape[1])
-        step = solved_or_nan(matrix, right[..., np.newaxis])[..., 0]
-        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
-        finite &= size < LONG
-        z[left] = np.where(finite[:, np.newaxis], z[left] - step, np.nan)
-        small = np.all(np.abs(step) < 1e-11 * part.sizes(z[left]), axis=1)
-        found[left] = finite & small
-        left = left[finite & ~small]
-        if left.size == 0:
-            break
-    return z, found
-
-
-def halves_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The equations of half the period, and the mean of the halves of orbits."""
-    k = equations.impacts // 2
-    half = replace(equations, impacts=k, periods=np.asarray(equations.periods) // 2)
-    x = z[:, : equations.size].reshape(len(z), 2 * k, -1).copy()
-    x[:, k:, 0] -= 2 * np.pi * np.reshape(half.periods, (-1, 1))
-    mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
-    return half, np.concatenate([mean, z[:, equations.size :]], axis=1)
-
-
-def doubled_of(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The equations of twice the period, and orbits taken twice."""
-    twice = replace(
-        equations, impacts=2 * equations.impacts, periods=2 * np.asarray(equations.periods)
-    )
-    x = z[:, : equations.size].reshape(len(z), equations.impacts, -1)
-    again = x.copy()
-    again[..., 0] += 2 * np.pi * np.reshape(equations.periods, (-1, 1))
-    both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
-    return twice, np.concatenate([both, z[:, equations.size :]], axis=1)
+    """Special orbits of a kind near guesses, shape (rows, N), and which of them are found."""
+    solution = newton(replace(equations, kind=kind), z, iterations=iterations)
+    return solution.z, solution.found
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
@@ -285,13 +174,13 @@ def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
 
     The equations of the longer orbit are singular there, those of the shorter one are not.
     """
-    half, near = halves_of(equations, ends)
+    half, near = equations.halved(ends)
     solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))
     if not found[0]:
         return None
-    z = doubled_of(half, solution)[1][0]
+    z = half.doubled(solution)[1][0]
     turns = 2 * np.pi * np.round((ends[0, 0] - z[0]) / (2 * np.pi))
     z[: equations.size : equations.unknowns] += turns
-    units = scales(equations, ends[:1])[0]
+    units = equations.scales(ends[:1])[0]
     reach = np.abs((ends[1] - ends[0]) / units).max()
     return z if np.abs((z - ends[0]) / units).max() < 3 * reach else None

@@ -30,7 +30,7 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.periodic import guess_of_instants
+from bouncing_ball_beyond.search import guess_of_instants
 from studies.orbits import damping, flight_height, last_zero, solved
 from studies.variables import VARIABLES
 

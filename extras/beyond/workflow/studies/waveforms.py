@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import SpringDamper
-from bouncing_ball_beyond.equations import OrbitEquations, newton
+from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 WAVEFORMS: dict[str, Table] = {

@@ -1,0 +1,108 @@
+"""Chains of legs: their matrices, and linear equations of them with a border."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+DENSE = 16
+"""Systems of more legs are halved: libraries of linear algebra start threads for large matrices."""
+
+
+def product_of(maps: NDArray) -> NDArray:
+    """The product of the maps of the legs, the last one at the left, shape (rows, 2, 2)."""
+    while maps.shape[1] > 1:
+        even = maps.shape[1] // 2 * 2
+        pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
+        maps = np.concatenate([pairs, maps[:, even:]], axis=1)
+    return maps[:, 0]
+
+
+def dense(derivatives: NDArray) -> NDArray:
+    """The Jacobian (rows, k, q, N) from the derivatives of legs."""
+    rows, k, q, columns = derivatives.shape
+    matrix = np.zeros((rows, k, q, k * q + columns - q - 2))
+    for i in range(k):
+        after = (i + 1) % k * q
+        matrix[:, i, :, i * q : (i + 1) * q] += derivatives[:, i, :, :q]
+        matrix[:, i, :, after : after + 2] += derivatives[:, i, :, q : q + 2]
+    matrix[..., k * q :] = derivatives[..., q + 2 :]
+    return matrix
+
+
+def solved_or_nan(matrix, values) -> NDArray:
+    """Solutions of linear equations, NaN where a matrix is singular."""
+    try:
+        return np.linalg.solve(matrix, values)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        return np.linalg.solve(
+            np.where(singular[..., np.newaxis, np.newaxis], np.nan, matrix), values
+        )
+
+
+def solve_bordered(derivatives, right, border, border_right) -> NDArray:
+    """Solve the linear equations of the legs together with p further ones.
+
+    Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the
+    impact between the two and the other half is a leg from the first impact to the one after the
+    second. The number of legs is halved until one matrix is small. This is stable for
+    orbits of any instability, and its work is proportional to the number of legs.
+
+    Parameters
+    ----------
+    derivatives : ndarray, shape (rows, k, q, q + 2 + p)
+    right : ndarray, shape (rows, k, q, m)
+        Right sides of the legs.
+    border : ndarray, shape (rows, p, N)
+    border_right : ndarray, shape (rows, p, m)
+
+    Returns
+    -------
+    ndarray, shape (rows, N, m)
+        NaN for singular equations.
+    """
+    rows, k, q, columns = derivatives.shape
+    m = right.shape[-1]
+    if k <= DENSE:
+        matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
+        values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
+        return solved_or_nan(matrix, values)
+    p = columns - q - 2
+    pairs = k // 2
+    first = derivatives[:, 0 : 2 * pairs : 2]
+    second = derivatives[:, 1 : 2 * pairs : 2]
+    between = np.zeros((rows, pairs, 2 * q, q))
+    between[:, :, :q, :2] = first[..., q : q + 2]
+    between[:, :, q:] = second[..., :q]
+    others = np.zeros((rows, pairs, 2 * q, columns + m))
+    others[:, :, :q, :q] = first[..., :q]
+    others[:, :, q:, q : q + 2] = second[..., q : q + 2]
+    others[:, :, :q, q + 2 : columns] = first[..., q + 2 :]
+    others[:, :, q:, q + 2 : columns] = second[..., q + 2 :]
+    others[:, :, :q, columns:] = right[:, 0 : 2 * pairs : 2]
+    others[:, :, q:, columns:] = right[:, 1 : 2 * pairs : 2]
+    orthogonal, triangle = np.linalg.qr(between, mode="complete")
+    others = orthogonal.swapaxes(-1, -2) @ others
+    eliminated = solved_or_nan(triangle[..., :q, :], others[..., :q, :])
+    legs = np.concatenate([others[..., q:, :columns], derivatives[:, 2 * pairs :]], axis=1)
+    legs_right = np.concatenate([others[..., q:, columns:], right[:, 2 * pairs :]], axis=1)
+    # What the impacts between the pairs add to the border.
+    blocks = border[..., : k * q].reshape(rows, p, k, q).swapaxes(1, 2)
+    kept = blocks[:, ::2].copy()
+    added = blocks[:, 1 : 2 * pairs : 2] @ eliminated
+    after = np.arange(1, pairs + 1) % kept.shape[1]
+    kept[:, :pairs] -= added[..., :q]
+    kept[:, after, :, :2] -= added[..., q : q + 2]
+    total = added.sum(axis=1)
+    kept = kept.swapaxes(1, 2).reshape(rows, p, -1)
+    outer = np.concatenate([kept, border[..., k * q :] - total[..., q + 2 : columns]], axis=-1)
+    solution = solve_bordered(legs, legs_right, outer, border_right - total[..., columns:])
+    states = solution[:, :-p].reshape(rows, -1, q, m)
+    whole = np.empty((rows, k, q, m))
+    whole[:, ::2] = states
+    whole[:, 1 : 2 * pairs : 2] = (
+        eliminated[..., columns:]
+        - eliminated[..., :q] @ states[:, :pairs]
+        - eliminated[..., q : q + 2] @ states[:, after, :2]
+        - eliminated[..., q + 2 : columns] @ solution[:, np.newaxis, -p:]
+    )
+    return np.concatenate([whole.reshape(rows, k * q, m), solution[:, -p:]], axis=1)

@@ -1,0 +1,347 @@
+"""One Newton's method and one march for all curves of solutions.
+
+A problem is F(z) = 0 with one equation less than unknowns: orbits along a parameter, special orbits
+of a kind along two, or orbits with a rest. Its curves are followed by pseudo-arclength
+continuation: the predictor goes along the tangent, and the corrector is Newton's method on the
+plane across it. Many of them, rows, are followed side by side.
+
+Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.equations import KINDS, SINGULAR, Linear, OrbitEquations
+
+ROUNDING = 4 * np.finfo(float).eps
+"""Rounding errors of the equations, relative to their largest terms."""
+
+TOLERANCE = 1e-11
+"""The largest last step, in units of `OrbitEquations.sizes`. Steps fall quadratically, so that the
+error after such a step is that of rounding."""
+
+SPECIAL = 1e-9
+"""The same for special orbits. A step is wrong by its square and by 1e-10 of itself, the error of
+the gradient, so that the error is again that of rounding."""
+
+LONG = 2.0
+"""A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
+contacts that last for many periods, and seldom back."""
+
+FIRST_STEP = 0.1
+LONGEST_STEP = 0.4
+SHORTEST_STEP = 1e-9
+"""Lengths of steps: root mean squares of the changes of the unknowns over the impacts, and relative
+changes of the parameter."""
+
+STRAIGHT = 0.95
+"""The least cosine of the angle between the tangents at the ends of a step."""
+
+TURN = 0.3
+"""The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
+
+BEFORE_END = 1e-3
+"""The share of a step to an end of a branch that is left to the end in a point before it."""
+
+
+class Solution(NamedTuple):
+    """What Newton's method ends with, by rows.
+
+    ``z`` are the orbits, NaN where the equations are not finite; ``found`` says which of them are
+    solutions; ``tangent`` is the direction of the curve of orbits, with normal · tangent = 1;
+    ``linear`` are the legs and derivatives at z.
+    """
+
+    z: NDArray
+    found: NDArray
+    tangent: NDArray
+    linear: Linear
+
+
+@np.errstate(all="ignore")
+def newton(
+    equations: OrbitEquations,
+    z: NDArray,
+    normal: NDArray | None = None,
+    iterations: int = 12,
+) -> Solution:
+    """Solutions on the planes through z across a normal, by Newton's method.
+
+    With one free parameter, special orbits of a kind are points, and need no plane.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+    z : ndarray, shape (rows, N)
+    normal : ndarray, shape (rows, N), optional
+        By default the last parameter is fixed.
+    iterations : int
+
+    Returns
+    -------
+    Solution
+    """
+    if normal is None:
+        normal = np.zeros_like(z)
+        normal[:, -1] = 1.0
+    if equations.kind:
+        return _special(equations, z, normal, iterations)
+    for _ in range(iterations):
+        linear = equations.linear(z)
+        solution = equations.bordered(z, linear, normal)
+        step = solution[..., 0]
+        z = z + step
+        defect = np.abs(linear.legs).max(axis=(1, 2))
+        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
+        # Lengths in the equations are of the size of Λ, or of the times and the speeds.
+        _, amplitude = equations.at(z[:, equations.size :])
+        size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
+        # Steps become small, or they are made of nothing but rounding errors of the equations.
+        found = (moved < TOLERANCE) | (defect < ROUNDING * (1 + size))
+        if (found | np.isnan(moved)).all():
+            break
+    # Far away, where times have no digits left, steps are small as well.
+    found &= defect < 1e-7
+    return Solution(z, found, solution[..., 1], linear)
+
+
+def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
+    """Special orbits; only rows that are not found yet go on, because their gradients cost."""
+    z = z.copy()
+    tangent = np.full(z.shape, np.nan)
+    found = np.zeros(len(z), bool)
+    left = np.arange(len(z))
+    part = equations
+    for _ in range(iterations):
+        solution = part.bordered(z[left], part.linear(z[left]), normal[left])
+        step = solution[..., 0]
+        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
+        step[size > LONG] = np.nan
+        z[left] += step
+        tangent[left] = solution[..., 1]
+        moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
+        found[left] = moved < SPECIAL
+        left = left[moved >= SPECIAL]
+        if not left.size:
+            break
+        part = equations.rows(left)
+    return Solution(z, found, tangent, equations.linear(z))
+
+
+class Start(NamedTuple):
+    """Where branches start, by rows.
+
+    The orbits z and the directions from there, the values of the parameter that are to be reached,
+    and the reasons for no branch, "" if there is one; the length of the first steps, and the
+    special orbits before z, if there are any.
+    """
+
+    equations: OrbitEquations
+    z: NDArray
+    direction: NDArray
+    goal: NDArray
+    reasons: NDArray
+    step: float | NDArray = FIRST_STEP
+    origin: NDArray | None = None
+
+    def take(self, which) -> "Start":
+        """Some of the rows."""
+        taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
+        return self._replace(equations=self.equations.rows(which), **taken)
+
+
+def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    linear = equations.linear(z)
+    normal = np.ones(z.shape)
+    for _ in range(2):
+        normal = unit(equations.bordered(z, linear, normal)[..., 1])
+    return normal
+
+
+def unit(vectors: NDArray) -> NDArray:
+    """Rows of the length 1."""
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+class Points(NamedTuple):
+    """One orbit of each row: orbits, tangents, tests on the way, and differences of halves.
+
+    Tests have the shape (rows, tests).
+    """
+
+    z: NDArray
+    tangents: NDArray
+    tests: NDArray
+    halves: NDArray
+
+    def take(self, which) -> "Points":
+        """Some of the rows."""
+        return Points(*(each[which] for each in self))
+
+
+def points_at(equations, z, tangents, linear: Linear) -> Points:
+    """Orbits with their tests."""
+    return Points(z, tangents, equations.tests(z, linear), equations.halves(z))
+
+
+def _same_sign(before: Points, after: Points) -> Points:
+    """The points after a step, whose distances from a period halving change their sign at one."""
+    merged = np.sum(before.halves * after.halves, axis=1) < 0
+    tests = after.tests.copy()
+    tests[:, -1] *= np.where(merged, -1, 1) * np.sign(before.tests[:, -1])
+    return after._replace(tests=tests)
+
+
+def _predicted(equations: OrbitEquations, here: Points, step, units, window) -> tuple:
+    """Steps along the tangents; one that would leave its window ends there, at this parameter.
+
+    Returns the lengths of the steps, the predicted solutions, the normals of the planes of the
+    corrector, which steps end where the window ends, and the numbers of the parameters that do so.
+    """
+    low, high = window.swapaxes(0, 1)
+    ahead = unit(here.tangents / units)
+    rate = (ahead * units)[:, equations.size :]
+    ends = np.where(rate > 0, high, low)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        whole = np.where(rate == 0, np.inf, (ends - here.z[:, equations.size :]) / rate)
+    first = np.arange(len(whole)), whole.argmin(axis=1)
+    last = whole[first] <= step
+    length = np.where(last, whole[first], step)
+    z = here.z + length[:, np.newaxis] * ahead * units
+    normal = ahead / units
+    bound = equations.size + first[1]
+    normal[last] = 0.0
+    normal[last, bound[last]] = np.sign(rate[first])[last]
+    z[last, bound[last]] = ends[first][last]
+    return length, z, normal, last, bound
+
+
+AT_GOAL = "the end of the window"
+
+
+CLOSED = "the branch is closed: it is back at its start"
+
+
+def march(start: Start, window, until, points: int) -> list[tuple[Points, str]]:
+    """The accepted points of each branch, and why it ends: its window, or another reason.
+
+    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
+    too much. Where an impact or a release ends a branch, the multipliers beyond it tell nothing of
+    those before it: such a step has a point in between, just before the end.
+    """
+    equations = start.equations
+    here = points_at(equations, start.z, start.direction, equations.linear(start.z))
+    first = here
+    rows = np.arange(len(start.z))
+    paths = [[here.take([row])] for row in rows]
+    ends = [""] * len(rows)
+    step = np.broadcast_to(start.step, len(rows))
+    farthest = np.zeros(len(rows))
+    while rows.size:
+        units = equations.scales(here.z)
+        low, high = window[rows].swapaxes(0, 1)
+        length, guess, normal, last, bound = _predicted(equations, here, step, units, window[rows])
+        solution = newton(equations, guess, normal, iterations=7)
+        solution.z[last, bound[last]] = guess[last, bound[last]]
+        with np.errstate(all="ignore"):
+            there = points_at(equations, solution.z, solution.tangent, solution.linear)
+            there = _same_sign(here, there)
+            crossed = here.tests * there.tests < 0
+            ending = crossed[:, SINGULAR].any(axis=1)
+            inner = there
+            if ending.any():
+                inner = _before_end(equations, here, there, normal)
+            # The determinant is positive up to there, so that tr/(1 + det) has no pole.
+            angles = np.arctan([each.tests[:, 1] - 1 for each in (here, inner)])
+            turned = np.abs(angles[1] - angles[0])
+            cosine = _cosine(there, here, units)
+            missed = np.linalg.norm((there.z - guess) / units, axis=1)
+            values = there.z[:, equations.size :]
+            inside = ((values >= low) & (values <= high)).all(axis=1)
+        good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
+        good &= (turned < TURN) | (length < 1e-6)
+        easy = (cosine > 0.99) & (turned < TURN / 2)
+        moved = zip(here, there, strict=True)
+        here = Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
+        longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
+        step = np.where(good, longer, length / 2)
+        away = _from_start(equations, first, here, units)
+        back = (away < step / 2) & (farthest > 2 * step)
+        back &= _cosine(here, first, units) > STRAIGHT
+        farthest = np.maximum(farthest, away)
+        for j in np.flatnonzero(good):
+            if ending[j] and np.isfinite(inner.tests[j]).all():
+                paths[rows[j]].append(inner.take([j]))
+            paths[rows[j]].append(here.take([j]))
+            kind = until[rows[j]]
+            passed = np.array(equations.watched)[crossed[j]]
+            ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
+            if not ends[rows[j]] and len(paths[rows[j]]) >= points:
+                ends[rows[j]] = f"all {points} points are used"
+        for j in np.flatnonzero(step < SHORTEST_STEP):
+            ends[rows[j]] = ends[rows[j]] or "no further orbit is found"
+        going = np.array([not ends[row] for row in rows])
+        if not going.all():
+            rows = rows[going]
+            equations = start.equations.rows(rows)
+            here = here.take(going)
+            first = first.take(going)
+            step = step[going]
+            farthest = farthest[going]
+    units = start.equations.scales(start.z)
+    whole = zip(paths, ends, units, strict=True)
+    return [(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
+
+
+def _before_end(equations, here: Points, there: Points, normal) -> Points:
+    """Points of steps just before the first of the ends that they cross, NaN if not found."""
+    before = here.tests[:, SINGULAR]
+    after = there.tests[:, SINGULAR]
+    share = np.where(before * after < 0, before / (before - after), 1.0).min(axis=1)
+    share = (1 - BEFORE_END) * share[:, np.newaxis]
+    solution = newton(equations, here.z + share * (there.z - here.z), normal)
+    inner = points_at(equations, solution.z, solution.tangent, solution.linear)
+    inner.tests[~solution.found] = np.nan
+    return _same_sign(here, inner)
+
+
+def _cosine(points: Points, others: Points, units) -> NDArray:
+    """Cosines of the angles between tangents."""
+    return np.sum(unit(points.tangents / units) * unit(others.tangents / units), axis=1)
+
+
+def _end_of_step(passed, last, back, until) -> str:
+    """Why a branch ends with a step in which some kinds of special orbits are passed, or ""."""
+    for name in passed:
+        if ends_at(name, until):
+            return str(name)
+    if last:
+        return AT_GOAL
+    return CLOSED if back else ""
+
+
+def ends_at(kind: str, until: str | None) -> bool:
+    """Whether a curve ends at a kind of special orbit."""
+    return kind == until or (kind in KINDS and KINDS[kind].end != "")
+
+
+def _from_start(equations, first: Points, here: Points, units) -> NDArray:
+    """How far branches are from their starts, up to whole turns of the table."""
+    away = here.z - first.z
+    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
+    away[:, : equations.size : equations.unknowns] -= turns
+    return np.linalg.norm(away / units, axis=1)
+
+
+def _path_of(path: list[Points], end: str, equations, units) -> Points:
+    """The points of one row; a closed branch ends exactly at its start."""
+    if end == CLOSED:
+        ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0
+        turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
+        z = path[0].z.copy()
+        z[:, : equations.size : equations.unknowns] += turns
+        path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
+    return Points(*(np.concatenate(each) for each in zip(*path, strict=True)))

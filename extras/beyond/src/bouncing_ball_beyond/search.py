@@ -1,0 +1,272 @@
+"""Where periodic orbits are: near those of instants, or near motions that come back.
+
+Rows are searched side by side.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
+from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrbit
+from bouncing_ball_beyond.march import newton
+from bouncing_ball_beyond.tables import SINE, Table
+
+TOGETHER = 16
+"""Rows whose orbits are searched for at a time, with 3072 impacts each."""
+
+
+def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
+    """A ball and further numbers as rows of one length, and the shape which these had."""
+    check_ball(ball)
+    fields = ball.parameters
+    broadcast = broadcast_named([*fields.items(), *others.items()])
+    shape = broadcast[0].shape if broadcast else ()
+    arrays = [np.array(each).reshape(-1) for each in broadcast]
+    names = list(fields)
+    row = ball.at(**dict(zip(names, arrays[: len(names)], strict=True))) if names else ball
+    return row, arrays[len(names) :], shape
+
+
+def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Orbits whose first impact is in the first period of the table, at a time in [0, 2π)."""
+    z = z.copy()
+    turns = 2 * np.pi * np.floor(z[:, [0]] / (2 * np.pi))
+    z[:, : equations.size : equations.unknowns] -= turns
+    return z
+
+
+def guess_of_instants(
+    ball: Ball, periods, amplitude, side: int = 1, table: Table = SINE
+) -> NDArray:
+    """Rows z near n-T orbits, from impacts as instants of free impacts (the corrected model).
+
+    At the centroid of its force, which is at the phase ψ, an impact has the speed u with
+    (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node, ψ is the phase at
+    which the table rises fastest.
+
+    Parameters
+    ----------
+    ball : Ball
+        With parameters of the shape (rows,) or numbers.
+    periods, amplitude : ndarray, shape (rows,)
+    side : {1, -1}
+        The side of the saddle-node: 1 for the orbits that are stable next to it.
+    table : Table
+        With numbers as its parameters.
+    """
+    u = np.full(amplitude.shape, 1.2 * np.pi) * periods
+    psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
+    step, before = np.zeros((2, *amplitude.shape))
+    at = np.inf
+    with np.errstate(all="ignore"):
+        for _ in range(30):
+            # For a guess, the signature at a speed is that at another one within some percent.
+            if np.any(np.abs(u - at) > 0.05 * u):
+                at = u
+                r, _, centroid, loss = ball.signature(u)
+            known = np.isfinite(r)
+            load = np.where(known, loss * (1 + amplitude * table(psi, 2)), 0.0)
+            excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
+            # The secant method, with a slope of -2 at first, and limited as the phase nears 0.
+            slope = np.where(step == 0, -2.0, np.clip((excess - before) / step, -8.0, -1.0))
+            step = -excess / slope
+            before = excess
+            u = u + step
+            psi = table.phase_of_slope((u - np.pi * periods) / amplitude, side)
+            if np.all(np.abs(step) < 1e-7 * u):
+                break
+    # The impacts of a corrected ball are at the centroids themselves.
+    touch = psi if ball.sinks else psi - np.where(known, centroid, 0.0)
+    columns = [touch, u, amplitude]
+    if ball.lasts:
+        free = ball.free(u)
+        columns.insert(2, np.where(np.isfinite(free), free, np.pi))
+    return np.stack(np.broadcast_arrays(*columns), axis=-1)
+
+
+def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
+    """Orbits with one impact near those of the corrected model, as rows, and which of them are
+    found on a side of the saddle-node.
+    """
+    on_table = sign, equations.table
+    guess = guess_of_instants(equations.ball, equations.periods, amplitude, *on_table)
+    solution = newton(equations, guess, iterations=40)
+    good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
+    z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
+    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
+    return z, good
+
+
+def shortest_contacts(
+    equations: OrbitEquations, amplitude: NDArray, sign: int
+) -> list[list[PeriodicOrbit]]:
+    """Orbits with one impact on a side of the saddle-node, a list for each row.
+
+    Those that a ball follows, and of these those with short contacts, come first.
+    """
+    found = []
+    for i, z in enumerate(all_orbits(equations, amplitude)):
+        orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
+        on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
+        found.append(sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration)))
+    return found
+
+
+def single(equations: OrbitEquations, i: int) -> OrbitEquations:
+    """The equations of one row alone, with numbers in place of arrays."""
+    return replace(
+        equations,
+        ball=equations.ball.rows(i),
+        periods=int(np.ravel(equations.periods)[i if np.ndim(equations.periods) else 0]),
+        amplitude=float(np.ravel(equations.amplitude)[i if np.ndim(equations.amplitude) else 0]),
+        table=equations.table.rows(i),
+    )
+
+
+def all_orbits(equations: OrbitEquations, amplitude: NDArray) -> list[NDArray]:
+    """Solutions of the equations at the amplitudes of rows, also those no ball follows.
+
+    An array of the shape (orbits, N) for each row; with several impacts there is one row.
+    """
+    found = []
+    for first in range(0, len(amplitude), TOGETHER):
+        block = np.arange(first, min(first + TOGETHER, len(amplitude)))
+        part = equations.rows(block)
+        nearby = _returns if part.impacts == 1 else _motions
+        starts, row = nearby(part, amplitude[block])
+        good = np.isfinite(starts).all(axis=1)
+        z, row = _solutions_near(part, starts[good], row[good])
+        z, row = _motions_among(part, z, row)
+        each = [_distinct(part.rows(i), z[row == i]) for i in range(len(block))]
+        row = np.repeat(np.arange(len(block)), [len(z) for z in each])
+        # Some starts lead to orbits many periods later, at times with fewer digits.
+        z = newton(part.rows(row), np.concatenate(each)).z if len(row) else np.concatenate(each)
+        found += [z[row == i] for i in range(len(block))]
+    return found
+
+
+def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions to which Newton's method leads from starts of rows, and their rows.
+
+    Where impacts become much faster or longer than all of those at the starts, it is lost.
+    """
+
+    def sizes(z):
+        x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
+        return np.abs(x[..., 1:]).max(axis=1)
+
+    largest = np.zeros((row.max(initial=0) + 1, equations.unknowns - 1))
+    np.maximum.at(largest, row, 2 * sizes(z))
+    found = [z[:0]]
+    rows = [row[:0]]
+    for _ in range(30):
+        if not len(z):
+            break
+        solution = newton(equations.rows(row), z, iterations=1)
+        found.append(solution.z[solution.found])
+        rows.append(row[solution.found])
+        z = solution.z
+        inside = np.isfinite(z).all(axis=1) & (sizes(z) <= largest[row]).all(axis=1)
+        z = z[inside & ~solution.found]
+        row = row[inside & ~solution.found]
+    return np.concatenate(found), np.concatenate(rows)
+
+
+@np.errstate(all="ignore")
+def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+    """Starts near all orbits with one impact, and their rows: impacts whose speed is the same after
+    m periods.
+
+    Orbits lie on the curves of such impacts, which are crossed at 96 phases.
+    """
+    table = equations.table
+    longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
+    speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]
+    phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)[:, np.newaxis]
+    tau, u = np.broadcast_arrays(phases, speeds)
+
+    def impacts(tau, u, row):
+        columns = [tau, u, amplitude[row]]
+        ball = equations.ball.rows(row)
+        if ball.lasts:
+            # Contacts of an orbit are shorter than its period.
+            periods = np.broadcast_to(equations.periods, len(amplitude))[row]
+            columns.insert(2, ball.first_release(*columns, periods=periods, table=table))
+        return np.stack(columns, axis=-1)
+
+    row = np.repeat(np.arange(len(amplitude)), tau[0].size)
+    some = np.arange(tau.size).reshape(tau.shape)[:, ::4, ::4].ravel()
+    if not np.isfinite(impacts(tau.flat[some], u.flat[some], row[some])).any(axis=0).all():
+        # Balls that never leave the table take long to follow.
+        return np.zeros((0, equations.length)), row[:0]
+    z = impacts(tau.ravel(), u.ravel(), row)
+    change = equations.rows(row).legs(z)[:, 0, -1].reshape(tau.shape)
+    row, at, number = np.nonzero(change[..., :-1] * change[..., 1:] < 0)
+    low = change[row, at, number]
+    part = low / (low - change[row, at, number + 1])
+    between = u[row, at, number] + part * np.diff(u)[row, at, number]
+    return impacts(tau[row, at, 0], between, row), row
+
+
+def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+    """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
+    # The simulation is not needed by orbits with one impact.
+    from bouncing_ball_beyond.simulation import Balls, follow
+
+    k = equations.impacts
+    turn = 2 * np.pi
+    (amplitude,) = amplitude
+    fastest = 1.1 * np.pi * int(equations.periods) + amplitude * equations.table.bounds[1]
+    phases = np.linspace(0, turn, 54, endpoint=False)
+    tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
+    none = np.zeros(tau.size)
+    first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel(), equations.table)
+    record, going, after = follow(first, k)
+    turns, phase, speed, T, *_ = np.moveaxis(record[..., going], 1, 0)
+    times = turn * turns + phase
+    length = turn * after.turns + after.phase - times[0]
+    near = np.abs(length - turn * equations.periods) < np.pi
+    columns = [times, speed, T][: equations.unknowns]
+    x = np.stack(columns, axis=-1)[:, near].swapaxes(0, 1)
+    x = x.reshape(len(x), equations.size)
+    return np.column_stack([x, np.full(len(x), amplitude)]), np.zeros(len(x), int)
+
+
+def _motions_among(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
+    """The solutions whose impacts and flights last, and their rows."""
+    x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
+    good = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
+    good &= (x[..., 1] > 0).all(axis=1)
+    good[good] &= (equations.rows(row[good]).ends(z[good]).flight > 0).all(axis=1)
+    return z[good], row[good]
+
+
+def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """One row for each orbit: its first impact is the one of the greatest speed.
+
+    Orbits of a shorter period, taken several times, are left out.
+    """
+    if not len(z):
+        return z
+    k = equations.impacts
+    x = z[:, : equations.size].reshape(len(z), k, equations.unknowns)
+    later = x.copy()
+    later[..., 0] += 2 * np.pi * equations.periods
+    # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.
+    rank = x[..., 1].round(6) - 1e-8 * (x[..., 0] % (2 * np.pi))
+    first = rank.argmax(axis=1)[:, np.newaxis] + np.arange(k)
+    x = np.take_along_axis(np.concatenate([x, later], axis=1), first[..., np.newaxis], axis=1)
+    x[..., 0] -= 2 * np.pi * np.floor(x[:, :1, 0] / (2 * np.pi) + 1e-9)
+    for j in range(1, k):
+        change = np.roll(x, j, axis=1) - x
+        change[..., 0] -= 2 * np.pi * np.round(change[..., 0] / (2 * np.pi))
+        again = np.abs(change).max(axis=(1, 2)) < 1e-7
+        x = x[~again] if k % j == 0 else x
+    rows = x.reshape(len(x), equations.size)
+    rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]
+    # Two roundings of one orbit.
+    apart = np.abs(rows[:, np.newaxis] - rows).max(axis=-1, initial=0.0)
+    rows = rows[~np.tril(apart < 1e-5, -1).any(axis=1)]
+    return np.concatenate([rows, np.full((len(rows), 1), z[0, -1])], axis=1)

@@ -253,6 +253,37 @@ def test_a_mistake_is_one_line(typed, line):
     assert "1.2 %" not in err
 
 
+EXTREMES = ("1e-300", "1e300", "0", "-1", "nan", "inf")
+DROPS = "diagnose --engine lammps kn=1e5 gamma_n=9 --mass 1 --time-step 1ms"
+EXTREME = [
+    *(
+        f"design --mass 1 --restitution 0.5 --time-step 1ms --engine mujoco --{option}={{}}"
+        for option in ("mass", "restitution", "drop-height", "speed", "radius", "density")
+    ),
+    *(
+        f"{SHORT} --engine mujoco --{option}={{}}"
+        for option in ("gravity", "other-mass", "friction", "tolerance", "time-step")
+    ),
+    *(f"{BALL} --{option}={{}}" for option in ("penetration", "stiffness", "contact-time")),
+    "design --engine jolt --restitution {} --time-step 1/60",
+    "diagnose --engine rapier restitution={} --time-step 1/60",
+    "diagnose --engine jolt restitution=0.5 --time-step {}",
+    *(f"{DROPS.replace(was, '{}')}" for was in ("1e5", "9", "1ms")),
+    *(f"fit croquet --{option}={{}}" for option in ("speed", "resolution", "mass", "contact-time")),
+]
+
+
+@pytest.mark.parametrize("line", EXTREME)
+def test_an_extreme_number_has_an_answer_or_one_line(typed, line):
+    for value in EXTREMES:
+        status, out, err = typed(line.replace("{}", value, 1))
+        if status:
+            assert (status, out) == (2, "")
+            assert err.startswith("bounce: ") and err.count("\n") == 1
+        else:
+            assert err == "" and not re.search(r"\b(nan|inf)\b", out), (line, value)
+
+
 def test_the_command_starts_quickly():
     """Neither pint nor SciPy is imported for a design with common units."""
     code = (

@@ -599,6 +599,12 @@ def test_an_engine_of_the_table_stands_for_its_name():
     light = replace(ENGINES["generic"], scheme=SemiImplicit(approach=True))
     ours, theirs = (design(wanted, each).parameters["damping"] for each in (light, "generic"))
     assert ours > 1.5 * theirs
+    # One of another name has no snippet here, and a diagnosis as well.
+    named = replace(light, name="ours")
+    assert f"\n\nstiffness = {design(wanted, named).parameters['stiffness']}" in str(
+        design(wanted, named)
+    )
+    assert str(diagnose(wanted, named, {"stiffness": 1e4, "damping": 1}, 1e-3)).startswith("ours")
 
 
 @pytest.mark.parametrize("name", ["mujoco", "lammps"])

@@ -377,6 +377,10 @@ def test_a_stated_resolution_is_used():
     assert fine.interval[1] - fine.interval[0] < coarse.interval[1] - coarse.interval[0]
     with pytest.raises(Refused, match="does not fit"):
         fit(recording, resolution="1 mm")
+    with pytest.raises(Refused, match="an error of 1000 s say nothing of r"):
+        fit(recording, resolution=1000)
+    with pytest.raises(Refused, match="more than 100 times off the measured speeds"):
+        fit(recording, speed=1e-3)
 
 
 def test_contact_laws_in_closed_form():

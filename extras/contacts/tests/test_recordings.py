@@ -148,6 +148,9 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
             "line 2: '36 in' below 'drop' is no number; a unit stands in the",
         ),
         ("time\n0:58.3\n0:59.2", "line 2: '0:58.3' below 'time' is no number"),
+        ("t,y\n0,1\n0.1,inf", "line 3: 'inf' below 'y' is no number"),
+        ("v,COR\n1,1e300", "line 2: '1e300' below 'COR' is no number"),
+        ("v,COR\n1,1e-300", "line 2: a restitution coefficient of 1e-300 below 'COR' is too small"),
         ("COR,v\n0.82 ± 0.01,1", "'0.82 ± 0.01' below 'COR' is no number"),
         ('drop (mm),rebound (mm)\n"1,000","640"', "'1,000' below 'drop' is no number"),
         ("0.3\n1.2\n1.9", "line 1: a table begins with headings: name them"),
@@ -280,6 +283,13 @@ def test_a_note_says_what_was_done(text, said, tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text(text)
     assert [note for note in fit(path).notes if re.search(said, note)]
+
+
+def test_a_line_without_r_has_no_error_either():
+    """Errors of four impacts met five lines: a traceback of NumPy."""
+    r = [0.8, None, 0.79, 0.81, 0.8]
+    found = fit({"speed (m/s)": [1, 2, 3, 4, 5], "COR": r, "std": [0.01] * 5})
+    assert len(found.impacts.speed) == 4 and "missing in line 3" in found.notes[0]
 
 
 def test_a_line_is_left_out_with_the_impacts_beside_it(tmp_path):

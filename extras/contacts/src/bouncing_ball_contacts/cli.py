@@ -101,7 +101,7 @@ def _values(found: Any) -> dict[str, Any]:
         values |= {"snippet": found.snippet, "notes": found.notes}
     if isinstance(found, Design):
         values |= {"parameters": found.parameters, "snippet": found.snippet}
-        del values["source"]
+    values.pop("source", None)
     return values
 
 

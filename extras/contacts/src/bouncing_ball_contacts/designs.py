@@ -868,7 +868,9 @@ class Design(Page):
 
     @property
     def snippet(self) -> str:
-        """What is pasted into the engine."""
+        """What is pasted into the engine; the parameters of one that is not known here."""
+        if not self.template:
+            return "\n".join(f"{name} = {value}" for name, value in self.parameters.items())
         values = {
             "step": self.row.step,
             "friction": self.bounce.friction or 0.0,

@@ -163,6 +163,7 @@ class Diagnosis(Page):
     """
 
     engine: str
+    source: Engine
     bounce: Bounce
     time_step: float
     parameters: Parameters
@@ -179,7 +180,7 @@ class Diagnosis(Page):
     """Why the body is lost; empty if it is not."""
 
     def __str__(self) -> str:
-        row = engine_named(self.engine)
+        row = self.source
         wanted = self.bounce.restitution
         given = [
             _assigned(self.given),
@@ -290,6 +291,7 @@ def diagnose(
     spring = _spring(contact.law)
     found = Diagnosis(
         engine=row.name,
+        source=row,
         bounce=bounce,
         time_step=contact.step,
         parameters=contact.one,

@@ -449,6 +449,8 @@ def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
     return v, np.sqrt(2 * gravity * height)
 
 
+# Bodies that have left are moved on with the others, and may be thrown ever faster.
+@np.errstate(over="ignore", invalid="ignore")
 def drop(
     law: Law,
     scheme: SemiImplicit | Implicit | OfSolver,

@@ -68,8 +68,10 @@ def orbit(n, ratio, zeta, release, duration):
     repeating = velocity - start[3] - start[1]
     repeating[..., 3] -= flight
     rows = np.stack([release, landing, repeating], axis=-2)
-    x, lift, u = np.moveaxis(np.linalg.solve(rows[..., :3], -rows[..., 3:])[..., 0], -1, 0)
-    return np.stack([np.hypot(x, lift), np.arctan2(lift, x), u + x, ratio * duration])
+    x, impact_height, u = np.moveaxis(np.linalg.solve(rows[..., :3], -rows[..., 3:])[..., 0], -1, 0)
+    return np.stack(
+        [np.hypot(x, impact_height), np.arctan2(impact_height, x), u + x, ratio * duration]
+    )
 
 
 def monodromy(n, ratio, zeta, release, duration):

@@ -206,12 +206,12 @@ def stiff_errors(data: dict[str, xr.Dataset]) -> dict[str, float]:
     for name, n in zip(article.STIFF_CURVES, (1, 1, 2), strict=True):
         curve = data[name].sel(frequency_ratio=slice(99.9, None))
         x = n * np.pi * (1 - curve.restitution) / (1 + curve.restitution)
-        lift = np.sqrt(curve.amplitude**2 - x**2)
+        impact_height = np.sqrt(curve.amplitude**2 - x**2)
         errors = {
-            "height": curve.max_height / (lift + (n * np.pi) ** 2 / 2) - 1,
+            "height": curve.max_height / (impact_height + (n * np.pi) ** 2 / 2) - 1,
             "velocity": curve.bounce_velocity / (n * np.pi) - 1,
             "restitution": curve.apparent_restitution / curve.restitution - 1,
-            "phase": (curve.phase - np.arctan2(lift, x)) / (2 * np.pi),
+            "phase": (curve.phase - np.arctan2(impact_height, x)) / (2 * np.pi),
         }
         found.append({key: 100 * float(abs(error).max()) for key, error in errors.items()})
     return {key: max(each[key] for each in found) for key in found[0]}

@@ -88,12 +88,12 @@ class Parameters:
 
 def free_flight(p):
     """y = -g(t - t₀)²/2 + (t - t₀)ẏ₀ + y₀ and ẏ = -g(t - t₀) + ẏ₀."""
-    lift = p.amplitude * np.sin(p.phase)
+    impact_height = p.amplitude * np.sin(p.phase)
     t = p.flight_time / p.frequency
-    start = lift * p.length
+    start = impact_height * p.length
     speed = p.n * np.pi * p.length * p.frequency
     found = [
-        restitution.height(p.n, lift, p.flight_time) * p.length,
+        restitution.height(p.n, impact_height, p.flight_time) * p.length,
         restitution.velocity(p.n, p.flight_time) * p.length * p.frequency,
     ]
     return found, [-GRAVITY * t**2 / 2 + t * speed + start, -GRAVITY * t + speed]
@@ -119,9 +119,9 @@ def velocity_before_an_impact(p):
 def dimensionless_flight(p):
     """z = -(τ - τ₀)²/2 + (τ - τ₀)z₀′ + z₀ and z′ = -(τ - τ₀) + z₀′."""
     s = p.flight_time
-    lift = p.amplitude * np.sin(p.phase)
-    found = [restitution.height(p.n, lift, s), restitution.velocity(p.n, s)]
-    return found, [-(s**2) / 2 + s * p.n * np.pi + lift, -s + p.n * np.pi]
+    impact_height = p.amplitude * np.sin(p.phase)
+    found = [restitution.height(p.n, impact_height, s), restitution.velocity(p.n, s)]
+    return found, [-(s**2) / 2 + s * p.n * np.pi + impact_height, -s + p.n * np.pi]
 
 
 def iterated_map(p):
@@ -167,9 +167,9 @@ def gained(p, acceleration):
     """
     nodes, weights = np.polynomial.legendre.leggauss(60)
     s = p.duration * (nodes + 1) / 2
-    x, lift, u = p.start
-    table = x * np.sin(s) + lift * np.cos(s), x * np.cos(s) - lift * np.sin(s)
-    displacement, velocity, _ = p.family.contact.motion(s, u, x, lift)
+    x, impact_height, u = p.start
+    table = x * np.sin(s) + impact_height * np.cos(s), x * np.cos(s) - impact_height * np.sin(s)
+    displacement, velocity, _ = p.family.contact.motion(s, u, x, impact_height)
     return p.duration / 2 * np.sum(weights * acceleration(*table, displacement, velocity))
 
 
@@ -302,9 +302,9 @@ def bounce_from_the_impact(p):
 
 def relative_motion(p):
     """δ = z - w."""
-    x, lift, u = p.start
+    x, impact_height, u = p.start
     s = p.contact_time
-    found = p.family.contact.motion(s, u, x, lift).displacement
+    found = p.family.contact.motion(s, u, x, impact_height).displacement
     return found, p.contact_height(s) - p.y[0] * np.sin(s + p.y[1])
 
 
@@ -390,7 +390,7 @@ def error_of_the_height(p):
     """|max z_SD(ϖ_h) - max z_CR|/max z_CR = 0.01."""
     ratios = np.array([20.0, 60.0, 180.0, 540.0])
     reference = restitution.max_height(1, 0.65, 1.0)
-    error = errors.orbit_errors(1, 0.65, 1.0, ratios, "displacement")["max_height"]
+    error = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "displacement")["max_height"]
     found = errors.threshold(ratios, error, 0.01).ratio
     zeta = independent.restitution_to_damping(0.65)
     (angle,) = independent.roots(

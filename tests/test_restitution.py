@@ -48,23 +48,23 @@ def test_the_map_and_its_derivative_are_those_of_an_independent_flight(seed):
 
 
 def test_a_dip_below_the_table_between_two_steps_of_the_search_ends_a_flight():
-    # The 3-T orbit of r = 0.9 touches the table at the grazing lift; just below it, its flight
+    # The 3-T orbit of r = 0.9 touches the table at the grazing height; just below it, its flight
     # ends there, after a dip that is shorter than a step.
-    lift = restitution.grazing_lift(3, 0.9)
+    impact_height = restitution.grazing_height(3, 0.9)
     x = restitution.saddle_node(3, 0.9)
     for change, whole in ((1e-5, True), (-1e-5, False)):
-        amplitude = np.hypot(x, lift + change)
-        phase = np.arctan2(lift + change, x)
+        amplitude = np.hypot(x, impact_height + change)
+        phase = np.arctan2(impact_height + change, x)
         flight = restitution.flight_time(amplitude, phase, 3 * np.pi)
         assert (abs(flight - 6 * np.pi) < 1e-9) == whole
 
 
 @pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.85), (2, 0.05), (4, 0.3), (5, 0.99)])
-def test_the_flight_at_the_grazing_lift_touches_the_table_without_crossing_it(n, r):
-    lift = restitution.grazing_lift(n, r)
+def test_the_flight_at_the_grazing_height_touches_the_table_without_crossing_it(n, r):
+    impact_height = restitution.grazing_height(n, r)
     s = np.linspace(0, 2 * np.pi * n, 400_001)[100:-100]
-    table = n * np.pi * (1 - r) / (1 + r) * np.sin(s) + lift * np.cos(s)
-    height = lift + n * np.pi * s - s**2 / 2 - table
+    table = n * np.pi * (1 - r) / (1 + r) * np.sin(s) + impact_height * np.cos(s)
+    height = impact_height + n * np.pi * s - s**2 / 2 - table
     # Between samples the lowest point is missed by the square of their distance, some 1e-9.
     assert -1e-11 * n < height.min() < 1e-8
 
@@ -72,31 +72,31 @@ def test_the_flight_at_the_grazing_lift_touches_the_table_without_crossing_it(n,
 @pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.65), (3, 0.95)])
 def test_fixed_points_and_their_multipliers(n, r):
     x = restitution.saddle_node(n, r)
-    lifts = {
-        "stable": 0.5 * restitution.period_doubling_lift(r),
-        "period doubling": restitution.period_doubling_lift(r),
+    impact_heights = {
+        "stable": 0.5 * restitution.period_doubling_height(r),
+        "period doubling": restitution.period_doubling_height(r),
         "saddle-node": 0.0,
-        "unstable": max(-0.02, restitution.grazing_lift(n, r) / 2),
+        "unstable": max(-0.02, restitution.grazing_height(n, r) / 2),
     }
     multipliers = {}
-    for name, lift in lifts.items():
-        amplitude = np.hypot(x, lift)
-        phase = np.arctan2(lift, x)
+    for name, impact_height in impact_heights.items():
+        amplitude = np.hypot(x, impact_height)
+        phase = np.arctan2(impact_height, x)
         following, after, derivative = restitution.impact_map(r, amplitude, phase, n * np.pi)
         assert following == pytest.approx(phase + 2 * np.pi * n, rel=ROUNDING)
         assert after == pytest.approx(n * np.pi, rel=ROUNDING)
         assert restitution.impact_phase(n, r, amplitude) == pytest.approx(abs(phase), abs=1e-7)
         # Products of terms of up to 1e2 cancel in the determinant.
-        assert restitution.trace(r, lift) == pytest.approx(np.trace(derivative), abs=1e-10)
+        assert restitution.trace(r, impact_height) == pytest.approx(np.trace(derivative), abs=1e-10)
         assert np.linalg.det(derivative) == pytest.approx(r**2, abs=1e-10)
         multipliers[name] = np.linalg.eigvals(derivative)
         inside = np.abs(multipliers[name]).max() < 1 - 1e-6
-        assert restitution.stable(r, lift) == inside == (name == "stable")
+        assert restitution.stable(r, impact_height) == inside == (name == "stable")
     assert np.abs(multipliers["period doubling"] + 1).min() < 1e-9
     # At the saddle-node the phase is 0, of which multipliers depend on the square root of errors.
     assert np.abs(multipliers["saddle-node"] - 1).min() < 1e-6
     assert restitution.saddle_node(n, r) == pytest.approx(x)
-    assert restitution.period_doubling(n, r) == np.hypot(x, lifts["period doubling"])
+    assert restitution.period_doubling(n, r) == np.hypot(x, impact_heights["period doubling"])
     assert np.isnan(restitution.impact_phase(n, r, 0.999 * x))
 
 
@@ -118,13 +118,13 @@ def test_an_orbit_within_rounding_errors_of_a_bifurcation_is_not_stable():
 def test_height_and_velocity_over_a_cycle():
     n, r, amplitude = 2, 0.65, 1.5
     phase = restitution.impact_phase(n, r, amplitude)
-    lift = amplitude * np.sin(phase)
+    impact_height = amplitude * np.sin(phase)
     s = np.linspace(0, 4 * np.pi, 2001)[:-1]
-    height = restitution.height(n, lift, s)
-    np.testing.assert_allclose(height, lift + 2 * np.pi * s - s**2 / 2)
+    height = restitution.height(n, impact_height, s)
+    np.testing.assert_allclose(height, impact_height + 2 * np.pi * s - s**2 / 2)
     np.testing.assert_allclose(restitution.velocity(n, s), 2 * np.pi - s)
     for function in (
-        lambda t: restitution.height(n, lift, t),
+        lambda t: restitution.height(n, impact_height, t),
         lambda t: restitution.velocity(n, t),
     ):
         np.testing.assert_allclose(function(s[1:] + 4 * np.pi), function(s[1:]), atol=1e-12)
@@ -160,10 +160,12 @@ def test_a_simulation_is_that_of_an_independent_search_for_impacts():
 def test_the_lyapunov_exponent_of_a_periodic_ball_is_that_of_its_largest_multiplier():
     n, r = 2, 0.65
     x = restitution.saddle_node(n, r)
-    lift = 0.02
-    trace = 1 + r**2 - (1 + r) ** 2 * lift
+    impact_height = 0.02
+    trace = 1 + r**2 - (1 + r) ** 2 * impact_height
     largest = trace / 2 + np.sqrt(trace**2 / 4 - r**2)
-    path = restitution.iterate(r, np.hypot(x, lift), np.arctan2(lift, x), n * np.pi, 400)
+    path = restitution.iterate(
+        r, np.hypot(x, impact_height), np.arctan2(impact_height, x), n * np.pi, 400
+    )
     exponent, error = restitution.lyapunov_exponent(path)
     # The other multiplier is smaller by a factor of two and is gone after a quarter of the impacts.
     assert exponent == pytest.approx(np.log(largest) / n, abs=1e-11)

@@ -171,11 +171,11 @@ def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
 def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
     given = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 41}
     data = module("restitution_model").fig03(given)
-    # Eq. 6: X = Λ cos φ is nπ(1 - r)/(1 + r) on a whole branch, and lifts are at equal steps.
+    # Eq. 6: X = Λ cos φ is nπ(1 - r)/(1 + r) on a whole branch, at equal steps of Λ sin φ.
     x = data.n * np.pi * 0.15 / 1.85
     xr.testing.assert_allclose((data.amplitude * np.cos(data.phase) / x), 0 * data.amplitude + 1)
-    lift = data.amplitude * np.sin(data.phase)
-    steps = lift.diff("point")
+    impact_height = data.amplitude * np.sin(data.phase)
+    steps = impact_height.diff("point")
     assert float((steps.max("point") / steps.min("point") - 1).max()) < 1e-9
     ends = data.amplitude.isel(point=[0, -1])
     assert ends.values == pytest.approx(np.full((3, 2), 2.0))

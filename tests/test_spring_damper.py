@@ -35,13 +35,13 @@ def test_the_motion_in_contact_is_that_of_an_integration(ratio, zeta, weight, du
     )
     contact = Contact(ratio, zeta, weight=weight)
     x = amplitude * np.cos(phase)
-    lift = amplitude * np.sin(phase)
+    impact_height = amplitude * np.sin(phase)
     # The error of the integration is its relative tolerance, 1e-12, for each of up to 100 steps.
-    found = contact.motion(expected.duration, u, x, lift)
+    found = contact.motion(expected.duration, u, x, impact_height)
     assert ratio * found.displacement == pytest.approx(ratio * expected.gap, abs=1e-10)
     assert found.velocity == pytest.approx(expected.rate, abs=1e-10)
     # Its interpolant is of the seventh order in steps of at most 0.5.
-    along = contact.motion(expected.times, u, x, lift)
+    along = contact.motion(expected.times, u, x, impact_height)
     np.testing.assert_allclose(ratio * along.displacement, expected.gaps, atol=1e-8)
     np.testing.assert_allclose(along.velocity, expected.rates, atol=1e-8)
     force = amplitude * np.sin(expected.times + phase) - weight
@@ -62,23 +62,23 @@ def test_the_motion_of_an_array_of_contacts_is_that_of_each_and_exact_to_roundin
 @pytest.mark.parametrize(("ratio", "zeta"), [(1.0, 0.0), (5.0, 0.2)])
 def test_the_ball_gains_the_work_of_the_table_and_loses_that_of_the_damper(ratio, zeta):
     x = 0.5
-    lift = 0.8
+    impact_height = 0.8
     u = -3.0
     duration = 2.5 / ratio
     contact = Contact(ratio, zeta)
     # Sixty nodes of Gauss integrate less than a turn of sines and exponentials to rounding.
     nodes, weights = np.polynomial.legendre.leggauss(60)
     s = duration * (nodes + 1) / 2
-    motion = contact.motion(s, u, x, lift)
+    motion = contact.motion(s, u, x, impact_height)
     force = -(2 * zeta * ratio * motion.velocity + ratio**2 * motion.displacement)
     damper = 2 * zeta * ratio * motion.velocity**2
-    table_velocity = x * np.cos(s) - lift * np.sin(s)
+    table_velocity = x * np.cos(s) - impact_height * np.sin(s)
     work = duration / 2 * np.sum(weights * (force * table_velocity - damper))
-    end = contact.motion(duration, u, x, lift)
-    height = end.displacement + x * np.sin(duration) + lift * np.cos(duration)
-    velocity = end.velocity + x * np.cos(duration) - lift * np.sin(duration)
+    end = contact.motion(duration, u, x, impact_height)
+    height = end.displacement + x * np.sin(duration) + impact_height * np.cos(duration)
+    velocity = end.velocity + x * np.cos(duration) - impact_height * np.sin(duration)
     energy = velocity**2 / 2 + height + ratio**2 * end.displacement**2 / 2
-    assert energy - (u + x) ** 2 / 2 - lift == pytest.approx(work, rel=ROUNDING)
+    assert energy - (u + x) ** 2 / 2 - impact_height == pytest.approx(work, rel=ROUNDING)
 
 
 @pytest.mark.parametrize("r", [1.0, 0.85, 0.3, 0.05])

@@ -224,16 +224,16 @@ def residual(figure: xr.Dataset) -> NDArray:
         )
     )
     x = amplitude * np.cos(phase)
-    lift = amplitude * np.sin(phase)
+    impact_height = amplitude * np.sin(phase)
     contact = Contact(ratio, figure["damping_ratio"].item())
-    motion = contact.motion(duration, before - x, x, lift)
+    motion = contact.motion(duration, before - x, x, impact_height)
     flight = 2 * np.pi * n - duration
     landing = motion.displacement + amplitude * np.sin(end) + after * flight - flight**2 / 2
     return np.stack(
         [
             ratio * motion.displacement,
             motion.velocity + amplitude * np.cos(end) - after,
-            landing - lift,
+            landing - impact_height,
             after - flight - before,
         ]
     )

@@ -82,12 +82,12 @@ def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
     Newton's method down a little, and do not change the orbit to which it converges.
     """
     step = 1e-6
-    shifts = step * np.hstack([np.eye(4), -np.eye(4)])
+    shifts = step * np.hstack([np.zeros((4, 1)), np.eye(4), -np.eye(4)])
 
     def condition(family, y):
-        around = y[:, np.newaxis] + shifts.reshape(4, 8, *np.ones(y.ndim - 1, dtype=int))
+        around = y[:, np.newaxis] + shifts.reshape(4, 9, *np.ones(y.ndim - 1, dtype=int))
         values = test(family, around)
-        return test(family, y), (values[:4] - values[4:]) / (2 * step)
+        return values[0], (values[1:5] - values[5:]) / (2 * step)
 
     return condition
 
@@ -145,7 +145,7 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
     return np.moveaxis(np.linalg.solve(rows, columns)[..., 0], -1, 0)
 
 
-def stiff_guess(family: Family, x: Numbers, lift: Numbers) -> NDArray:
+def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:
     """The orbit of the restitution model with X and Y as a guess for a stiff contact.
 
     The contact lasts half a free oscillation, or less with the force release.
@@ -157,37 +157,38 @@ def stiff_guess(family: Family, x: Numbers, lift: Numbers) -> NDArray:
         zeta = contact.damping_ratio
         angle = angle - np.arctan2(2 * zeta * damped, 1 - 2 * np.asarray(zeta) ** 2) / damped
     numbers = np.broadcast_arrays(
-        np.hypot(x, lift), np.arctan2(lift, x), -restitution.bounce_velocity(family.n), angle
+        np.hypot(x, impact_height),
+        np.arctan2(impact_height, x),
+        -restitution.bounce_velocity(family.n),
+        angle,
     )
     return np.stack(numbers).astype(float)
 
 
-def walk(
-    family: Family, ratios: NDArray, condition: Condition, x: NDArray, lift: NDArray
-) -> NDArray:
+def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArray) -> NDArray:
     """Orbits under a condition along ϖ, shape (4, cases, ratios), NaN where they are not reached.
 
     The walk starts at WALK_START, or at twice the largest ratio, with the orbit of the restitution
     model, and goes in equal steps of log ϖ to the most compliant contact; each orbit is predicted
-    from the two before it. The orbits at the given ratios are then corrected side by side, from
-    predictions of the same kind.
+    from the two before it. The orbits at the ratios of the family are then corrected side by side,
+    from predictions of the same kind.
 
     Parameters
     ----------
     family : Family
-        With n, ζ and the release of the cases, numbers or of the shape (cases, 1); its frequency
-        ratio is replaced by those of the walk.
-    ratios : ndarray, shape (ratios,)
+        With one frequency ratio or several, shape (ratios,); n and ζ are numbers or have the shape
+        (cases, 1).
     condition : Condition
         For orbits of the shapes (4, cases, 1) and (4, cases, ratios).
-    x, lift : ndarray, shape (cases, 1)
+    x, impact_height : ndarray, shape (cases, 1)
         X and Y of the orbits of the restitution model.
     """
+    ratios = np.atleast_1d(family.contact.frequency_ratio)
     stiffest = max(WALK_START, 2 * ratios.max())
     count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
     nodes = np.geomspace(stiffest, ratios.min(), count)
     stiff = _at_ratio(family, nodes[0])
-    guess = stiff_guess(stiff, x, lift)
+    guess = stiff_guess(stiff, x, impact_height)
     path = [guess]
     for node in nodes:
         path.append(_reached(_at_ratio(family, node), guess, condition))
@@ -248,11 +249,11 @@ def stable_orbits(
         (Eq. 7); orbits of compliant contacts alone are not searched for.
     """
     r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
-    contact = Contact(WALK_START, damping_ratio(r)[:, np.newaxis], release)
-    return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis], np.atleast_1d(ratios))
+    contact = Contact(np.atleast_1d(ratios), damping_ratio(r)[:, np.newaxis], release)
+    return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis])
 
 
-def _upper_orbits(family: Family, amplitude: NDArray, ratios: NDArray) -> NDArray:
+def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
     """The orbits of `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
     r = family.contact.restitution
     x = np.broadcast_to(restitution.saddle_node(family.n, r), amplitude.shape)
@@ -261,21 +262,22 @@ def _upper_orbits(family: Family, amplitude: NDArray, ratios: NDArray) -> NDArra
             f"{family.n}-T orbits exist from Λ = {x.min():.6g} on (Eq. 7 for a free impact with "
             f"r = {np.max(r):.6g}), and the largest Λ is {amplitude.max():g}"
         )
-    lift = np.sqrt(np.where(amplitude < x, np.nan, amplitude**2 - x**2))
-    return walk(family, ratios, at_amplitude(amplitude), x, lift)
+    impact_height = np.sqrt(np.where(amplitude < x, np.nan, amplitude**2 - x**2))
+    return walk(family, at_amplitude(amplitude), x, impact_height)
 
 
-def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> NDArray:
-    """The saddle-nodes, or the period doublings, that bound the stable orbits, along ϖ.
+def bifurcations(n: Numbers, kind: str, contact: Contact) -> NDArray:
+    """The saddle-nodes, or the period doublings, that bound the stable orbits, along the frequency
+    ratios of a contact.
 
     Parameters
     ----------
     n : array_like, shape (families,)
     kind : str
         ``saddle-node`` or ``period doubling``.
-    ratios : array_like, shape (ratios,)
     contact : Contact
-        The damping ratio and the release; its frequency ratio is replaced by the ratios.
+        With one frequency ratio or several, shape (ratios,); the damping ratio is a number or has
+        the shape (families, 1).
 
     Returns
     -------
@@ -284,12 +286,12 @@ def bifurcations(n: Numbers, kind: str, ratios: Numbers, contact: Contact) -> ND
     """
     n = np.atleast_1d(n)[:, np.newaxis]
     x = restitution.saddle_node(n, contact.restitution)
-    lift = np.zeros_like(x)
+    impact_height = np.zeros_like(x)
     test = Family.saddle_node_test
     if kind == "period doubling":
-        lift = lift + restitution.period_doubling_lift(contact.restitution)
+        impact_height = impact_height + restitution.period_doubling_height(contact.restitution)
         test = Family.period_doubling_test
-    return walk(Family(n, contact), np.atleast_1d(ratios), at_bifurcation(test), x, lift)
+    return walk(Family(n, contact), at_bifurcation(test), x, impact_height)
 
 
 @dataclass(frozen=True)
@@ -337,7 +339,7 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
         If there is no orbit to begin with, or the continuation fails.
     """
     ratio = float(family.contact.frequency_ratio)
-    start = _upper_orbits(family, np.array([[amplitude_max]]), np.array([ratio]))[:, 0, 0]
+    start = _upper_orbits(family, np.array([[amplitude_max]]))[:, 0, 0]
     if np.isnan(start).any():
         raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
     reached = f"amplitude = {amplitude_max:g} is reached"

@@ -97,11 +97,9 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
     return Error(error(ratios), lambda ratio, i: float(error(ratio)))
 
 
-def orbit_errors(
-    n: int, r: float, amplitude: float, ratios: NDArray, release: str
-) -> dict[str, Error]:
-    """The errors of quantities of the stable n-T orbit at an amplitude (Eq. 37), by their names."""
-    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) -> dict[str, Error]:
+    """The errors of quantities of n-T orbits at an amplitude along ϖ (Eq. 37), by their names."""
+    n = family.n
     phase = restitution.impact_phase(n, r, amplitude)
     quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers]] = {
         "max_height": (Family.max_height, restitution.max_height(n, r, amplitude)),
@@ -109,7 +107,6 @@ def orbit_errors(
         "phase": (lambda family, y: y[1], phase),
         "apparent_restitution": (Family.apparent_restitution, r),
     }
-    family = Family(n, Contact(ratios, damping_ratio(r), release))
     condition = at_amplitude(amplitude)
     return {
         name: _along(family, orbits, condition, value, reference)
@@ -130,7 +127,7 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
     contact = Contact(ratios, damping_ratio(r), release)
     found = {}
     for name, (kind, test, reference) in kinds.items():
-        orbits = bifurcations(n, kind, ratios, contact)[:, 0]
+        orbits = bifurcations(n, kind, contact)[:, 0]
         condition = at_bifurcation(test)
         family = Family(n, contact)
         found[name] = _along(family, orbits, condition, lambda family, y: y[0], reference)
@@ -170,7 +167,9 @@ def errors(
     """The errors of the quantities with these names, of all that can be compared."""
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
-        known |= orbit_errors(n, r, amplitude, ratios, release)
+        family = Family(n, Contact(ratios, damping_ratio(r), release))
+        orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+        known |= orbit_errors(family, orbits, r, amplitude)
     if {"saddle_node", "period_doubling"} & set(quantities):
         known |= bifurcation_errors(n, r, ratios, release)
     known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
@@ -202,14 +201,14 @@ def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
     """Stable orbits at amplitudes, shape (orbits, 1), along the ϖ of the family's contact.
 
     Here Λ may be that of the saddle-node of the restitution model (Eq. 7). A stiff contact has its
-    saddle-node at a lower Λ, by a share of 1/ϖ, so that the lift of its orbit is there of the order
-    of √(X/ϖ). See `continuation.walk` for what is returned.
+    saddle-node at a lower Λ, by a share of 1/ϖ, so that the height Λ sin φ of its impact
+    is there of the order of √(X/ϖ). See `continuation.walk` for what is returned.
     """
     ratios = np.asarray(family.contact.frequency_ratio)
     x = restitution.saddle_node(family.n, family.contact.restitution)
     # A guess, somewhat too large, with the ϖ at which the walk starts.
-    lift = np.sqrt(amplitude**2 - x**2 + 8 * x / max(WALK_START, 2 * ratios.max()))
-    return walk(family, ratios, at_amplitude(amplitude), x, lift)
+    impact_height = np.sqrt(amplitude**2 - x**2 + 8 * x / max(WALK_START, 2 * ratios.max()))
+    return walk(family, at_amplitude(amplitude), x, impact_height)
 
 
 def enough_from(
@@ -276,7 +275,7 @@ def lowest_period_doublings(
     digits of its value.
     """
     contact = Contact(ratios, damping_ratio(r), release)
-    orbits = bifurcations(n, "period doubling", ratios, contact)
+    orbits = bifurcations(n, "period doubling", contact)
     families = np.atleast_1d(n)
     turns = np.full(families.size, np.nan)
     amplitudes = np.full_like(turns, np.nan)

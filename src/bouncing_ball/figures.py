@@ -319,12 +319,12 @@ def fig07(data: xr.Dataset) -> Figure:
     release = float(data.contact_duration) / PERIOD
     axes.axvspan(0.0, release, color="0.9", linewidth=0, label="contact")
     landing = float(data.ball[0])
-    lift = float(np.interp(release, time, data.table))
+    release_height = float(np.interp(release, time, data.table))
     before = float(data.impact_velocity) * PERIOD
     after = float(data.bounce_velocity) * PERIOD
     for instant, height, velocity, name, side, symbol in (
         (0.0, landing, before, r"$\tau_i=0$", "right", "$z'_i$"),
-        (release, lift, after, r"$\tau_b$", "left", "$z'_b$"),
+        (release, release_height, after, r"$\tau_b$", "left", "$z'_b$"),
         (end, landing, before, r"$\tau_2=\tau_i+2\pi n$", "center", "$z'_2$"),
     ):
         axes.axvline(instant, **GUIDE)

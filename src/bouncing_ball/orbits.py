@@ -20,6 +20,9 @@ from bouncing_ball.spring_damper import Contact
 class ContactEnd:
     """The end of a contact: its duration and that of the flight, height and velocity of the table,
     the relative motion δ, δ′ and δ″ before it, and the velocity z′_b of the ball (Eq. 24).
+
+    `gap_by` and `gap_velocity_by` are the derivatives of δ and δ′ by (X, Y, u) at this time after
+    the start.
     """
 
     duration: NDArray
@@ -29,6 +32,8 @@ class ContactEnd:
     gap: NDArray
     gap_velocity: NDArray
     gap_acceleration: NDArray
+    gap_by: tuple[NDArray, NDArray, NDArray]
+    gap_velocity_by: tuple[NDArray, NDArray, NDArray]
 
     @property
     def velocity(self) -> NDArray:
@@ -58,19 +63,26 @@ class Family:
 
     def contact_end(self, y: NDArray) -> ContactEnd:
         """The end of the contact."""
-        x, lift, u = self.start(y)
+        x, impact_height, u = self.start(y)
         duration = y[3] / self.contact.frequency_ratio
         cosine = np.cos(duration)
         sine = np.sin(duration)
-        gap, gap_velocity, gap_acceleration = self.contact.motion(duration, u, x, lift)
+        response = self.contact.responses(duration)
+        motion = self.contact.motion(duration, u, x, impact_height, response)
         return ContactEnd(
             duration=duration,
             flight=self.period - duration,
-            table_height=x * sine + lift * cosine,
-            table_velocity=x * cosine - lift * sine,
-            gap=gap,
-            gap_velocity=gap_velocity,
-            gap_acceleration=gap_acceleration,
+            table_height=x * sine + impact_height * cosine,
+            table_velocity=x * cosine - impact_height * sine,
+            gap=motion.displacement,
+            gap_velocity=motion.velocity,
+            gap_acceleration=motion.acceleration,
+            gap_by=(response.sine, response.cosine, response.impulse),
+            gap_velocity_by=(
+                response.cosine,
+                response.impulse - response.sine,
+                response.impulse_rate,
+            ),
         )
 
     def equations(self, y: NDArray) -> NDArray:
@@ -81,12 +93,12 @@ class Family:
         is divided by L, and δ at the release is replaced by -κδ′, so that the equations are regular
         also where the flight vanishes and the orbit becomes permanent contact.
         """
-        x, lift, _ = self.start(y)
+        x, impact_height, _ = self.start(y)
         end = self.contact_end(y)
         lag = self.contact.lag
         flight = end.flight
         # (w_b - w_i)/L, where the phases of the table differ by -L up to whole turns.
-        table_rise = -x * np.sinc(flight / np.pi) - lift * np.sin(flight / 2) * np.sinc(
+        table_rise = -x * np.sinc(flight / np.pi) - impact_height * np.sin(flight / 2) * np.sinc(
             flight / (2 * np.pi)
         )
         landing = table_rise + end.velocity - flight / 2
@@ -100,25 +112,18 @@ class Family:
             )
         )
 
-    def linearised_contact(self, y: NDArray) -> tuple[NDArray, NDArray]:
-        """Derivatives of δ and δ′ at a fixed time after the start, by (X, Y, u), shape (3, ...)."""
-        response = self.contact.responses(y[3] / self.contact.frequency_ratio)
-        gap = [response.sine, response.cosine, response.impulse]
-        gap_velocity = [response.cosine, response.impulse - response.sine, response.impulse_rate]
-        return np.stack(gap), np.stack(gap_velocity)
-
     def jacobian(self, y: NDArray) -> NDArray:
         """Derivatives of the defects by the four numbers of an orbit, shape (3, 4, ...)."""
-        x, lift, _ = self.start(y)
+        x, impact_height, _ = self.start(y)
         end = self.contact_end(y)
         lag = self.contact.lag
         ratio = self.contact.frequency_ratio
         flight = end.flight
-        by_gap, by_rate = self.linearised_contact(y)
+        by_rate = np.stack(end.gap_velocity_by)
         zero = np.zeros_like(x)
         # Columns by X, Y, u and the duration, of which the flight takes the rest.
         to_release = ratio * np.stack(
-            [*(by_gap + lag * by_rate), end.gap_velocity + lag * end.gap_acceleration]
+            [*(np.stack(end.gap_by) + lag * by_rate), end.gap_velocity + lag * end.gap_acceleration]
         )
         to_velocity = np.stack(
             [
@@ -142,7 +147,7 @@ class Family:
                 -np.sinc(flight / np.pi) + zero,
                 -np.sin(flight / 2) * np.sinc(flight / (2 * np.pi)) + zero,
                 zero,
-                x * by_sine + lift * by_cosine + 1 / 2,
+                x * by_sine + impact_height * by_cosine + 1 / 2,
             ]
         )
         if self.contact.release == "force":
@@ -156,7 +161,7 @@ class Family:
         sine = np.sin(y[1])
         columns = [
             cosine * by_x + sine * whole[:, 1],
-            -lift * by_x + x * whole[:, 1],
+            -impact_height * by_x + x * whole[:, 1],
             whole[:, 2],
             whole[:, 3] / ratio,
         ]
@@ -171,15 +176,17 @@ class Family:
         changes the duration of the contact by the condition of release, and that of the flight by
         the condition of landing.
         """
-        x, lift, u = self.start(y)
+        x, impact_height, u = self.start(y)
         end = self.contact_end(y)
         lag = self.contact.lag
-        by_gap, by_gap_velocity = self.linearised_contact(y)
         columns = []
         # The change of (X, Y, u) with the phase and with the velocity at the start.
-        for phase, change in ((1, (-lift, x, lift)), (0, (0 * u, 0 * u, 1 + 0 * u))):
-            gap = sum(one * other for one, other in zip(by_gap, change, strict=True))
-            rate = sum(one * other for one, other in zip(by_gap_velocity, change, strict=True))
+        for phase, change in (
+            (1, (-impact_height, x, impact_height)),
+            (0, (0 * u, 0 * u, 1 + 0 * u)),
+        ):
+            gap = sum(one * other for one, other in zip(end.gap_by, change, strict=True))
+            rate = sum(one * other for one, other in zip(end.gap_velocity_by, change, strict=True))
             longer = -(gap + lag * rate) / (end.gap_velocity + lag * end.gap_acceleration)
             later = phase + longer
             height = end.table_velocity * later + gap + end.gap_velocity * longer
@@ -214,18 +221,18 @@ class Family:
         """Height and velocity of the ball at times s since the start of contact, from 0 to the
         period, and whether it is in contact (Eqs. 12-15).
         """
-        x, lift, u = self.start(y)
+        x, impact_height, u = self.start(y)
         end = self.contact_end(y)
         touching = s <= end.duration
-        gap, gap_velocity, _ = self.contact.motion(np.minimum(s, end.duration), u, x, lift)
+        gap, gap_velocity, _ = self.contact.motion(np.minimum(s, end.duration), u, x, impact_height)
         since = s - end.duration
         height = np.where(
             touching,
-            x * np.sin(s) + lift * np.cos(s) + gap,
+            x * np.sin(s) + impact_height * np.cos(s) + gap,
             end.table_height + end.gap + end.velocity * since - since**2 / 2,
         )
         velocity = np.where(
-            touching, x * np.cos(s) - lift * np.sin(s) + gap_velocity, end.velocity - since
+            touching, x * np.cos(s) - impact_height * np.sin(s) + gap_velocity, end.velocity - since
         )
         return height, velocity, touching
 
@@ -252,12 +259,16 @@ class Family:
         It is the summit of the flight or, if the table lifts the ball higher in contact than it
         flies, as compliant contacts can, a height in contact.
         """
-        x, lift, u = self.start(y)
+        x, impact_height, u = self.start(y)
         duration = y[3] / self.contact.frequency_ratio
 
         def in_contact(part):
             s = part * duration
-            return x * np.sin(s) + lift * np.cos(s) + self.contact.motion(s, u, x, lift)[0]
+            return (
+                x * np.sin(s)
+                + impact_height * np.cos(s)
+                + self.contact.motion(s, u, x, impact_height)[0]
+            )
 
         summit = self.summit(y)
         return np.maximum(summit, -_least(lambda part: -in_contact(part), summit.shape))
@@ -279,20 +290,20 @@ class Family:
         because they vanish at its ends; there, the relative velocity of the impact must be
         negative and δ + κδ′ must rise. The smallest of these numbers is returned.
         """
-        x, lift, u = self.start(y)
+        x, impact_height, u = self.start(y)
         end = self.contact_end(y)
         lag = self.contact.lag
 
         def in_contact(part):
-            gap, gap_velocity, _ = self.contact.motion(part * end.duration, u, x, lift)
+            gap, gap_velocity, _ = self.contact.motion(part * end.duration, u, x, impact_height)
             pressed = -(gap + lag * gap_velocity) * self.contact.frequency_ratio
             return pressed / (part * (1 - part))
 
         def in_flight(part):
             since = part * end.flight
             s = end.duration + since
-            table_height = x * np.sin(s) + lift * np.cos(s)
-            table_velocity = x * np.cos(s) - lift * np.sin(s)
+            table_height = x * np.sin(s) + impact_height * np.cos(s)
+            table_velocity = x * np.cos(s) - impact_height * np.sin(s)
             height = end.table_height + end.gap + end.velocity * since - since**2 / 2
             gap = height - table_height
             free = gap + lag * (end.velocity - since - table_velocity)

@@ -4,7 +4,7 @@ Time is in units of 1/Ω and length in units of g/Ω². The table is at w = Λ s
 z″ = -1, and an impact reverses the velocity relative to the table and multiplies it by the
 restitution coefficient r (Eq. 2). An n-T orbit has one impact, at the phase φ of the table, and
 repeats after n periods of the table; X = Λ cos φ is the velocity of the table at the impact and
-Y = Λ sin φ its height, here called the lift.
+Y = Λ sin φ its height, the impact height.
 """
 
 from dataclasses import dataclass
@@ -57,16 +57,16 @@ def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
         return np.arccos(saddle_node(n, r) / np.asarray(amplitude))
 
 
-def trace(r: Numbers, lift: Numbers) -> NDArray:
+def trace(r: Numbers, impact_height: Numbers) -> NDArray:
     """Trace 1 + r² - (1 + r)² Y of the linearised map (Eq. 5) at an n-T orbit; its determinant
     is r².
     """
     r = np.asarray(r)
-    return 1 + r**2 - (1 + r) ** 2 * np.asarray(lift)
+    return 1 + r**2 - (1 + r) ** 2 * np.asarray(impact_height)
 
 
-def period_doubling_lift(r: Numbers) -> NDArray:
-    """Lift Y = 2(1 + r²)/(1 + r)² at the period doubling, where 1 + trace + determinant = 0."""
+def period_doubling_height(r: Numbers) -> NDArray:
+    """Impact height Y = 2(1 + r²)/(1 + r)² at the period doubling: 1 + trace + determinant = 0."""
     r = np.asarray(r)
     return 2 * (1 + r**2) / (1 + r) ** 2
 
@@ -77,14 +77,14 @@ def period_doubling(n: Numbers, r: Numbers) -> NDArray:
     >>> round(float(period_doubling(1, 0.85)), 4)
     1.0383
     """
-    return np.hypot(period_doubling_lift(r), saddle_node(n, r))
+    return np.hypot(period_doubling_height(r), saddle_node(n, r))
 
 
 def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
     """The period doubling as printed, Λ² = 1 + [nπ(1 - r)/(1 + r)]² (Eq. 8).
 
     It belongs to Holmes' map, which neglects the height of the table against that of the flight;
-    its lift is 1, its trace 1 + r - 2(1 + r) Y and its determinant r.
+    there Y is 1, its trace 1 + r - 2(1 + r) Y and its determinant r.
 
     >>> round(float(holmes_period_doubling(1, 0.85)), 4)
     1.0319
@@ -92,9 +92,9 @@ def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
     return np.hypot(1, saddle_node(n, r))
 
 
-def stable(r: Numbers, lift: Numbers) -> NDArray[np.bool_]:
+def stable(r: Numbers, impact_height: Numbers) -> NDArray[np.bool_]:
     """Whether both Floquet multipliers of an n-T orbit lie inside the unit circle."""
-    return is_stable(trace(r, lift), np.asarray(r) ** 2)
+    return is_stable(trace(r, impact_height), np.asarray(r) ** 2)
 
 
 def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
@@ -110,14 +110,14 @@ def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
 
 def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
     """Greatest height Λ sin φ + (nπ)²/2 of the ball over a cycle of the stable n-T orbit."""
-    lift = np.asarray(amplitude) * np.sin(impact_phase(n, r, amplitude))
-    return lift + bounce_velocity(n) ** 2 / 2
+    impact_height = np.asarray(amplitude) * np.sin(impact_phase(n, r, amplitude))
+    return impact_height + bounce_velocity(n) ** 2 / 2
 
 
-def height(n: int, lift: Numbers, time: Numbers) -> NDArray:
-    """Height of the ball at times since an impact, for an n-T orbit with the lift Y (Eq. 4)."""
+def height(n: int, impact_height: Numbers, time: Numbers) -> NDArray:
+    """Height of the ball at times since an impact at the height Y, for an n-T orbit (Eq. 4)."""
     since = np.mod(time, 2 * np.pi * n)
-    return lift + bounce_velocity(n) * since - since**2 / 2
+    return impact_height + bounce_velocity(n) * since - since**2 / 2
 
 
 def velocity(n: int, time: Numbers) -> NDArray:
@@ -125,8 +125,8 @@ def velocity(n: int, time: Numbers) -> NDArray:
     return bounce_velocity(n) - np.mod(time, 2 * np.pi * n)
 
 
-def grazing_lift(n: int, r: float) -> float:
-    """Lift of the n-T orbit whose flight touches the table; orbits with a smaller one do not exist.
+def grazing_height(n: int, r: float) -> float:
+    """Impact height of the n-T orbit whose flight touches the table; no orbit has a smaller one.
 
     The ball is at Y(1 - cos s) + h(s) above the table at a time s after the impact, with
     h(s) = nπ s - s²/2 - X sin s. This is positive for all s if Y exceeds the largest value of

@@ -139,25 +139,33 @@ class Contact:
             cosine=wave.real,
         )
 
-    def motion(self, s: Numbers, u: Numbers, x: Numbers, lift: Numbers) -> Motion:
+    def motion(
+        self,
+        s: Numbers,
+        u: Numbers,
+        x: Numbers,
+        impact_height: Numbers,
+        response: Responses | None = None,
+    ) -> Motion:
         """Motion in contact (Eqs. 12 and 13) at times s, from δ = 0 and δ′ = u.
 
-        x and lift are Λ cos φ and Λ sin φ at the start of the contact.
+        x and impact_height are Λ cos φ and Λ sin φ at the start of the contact. The responses at s
+        are computed unless they are given.
         """
-        response = self.responses(s)
+        response = response or self.responses(s)
         displacement = (
             u * response.impulse
             - self.weight * response.constant
             + x * response.sine
-            + lift * response.cosine
+            + impact_height * response.cosine
         )
         velocity = (
             u * response.impulse_rate
             - self.weight * response.impulse
             + x * response.cosine
-            + lift * (response.impulse - response.sine)
+            + impact_height * (response.impulse - response.sine)
         )
-        force = x * np.sin(s) + lift * np.cos(s) - self.weight
+        force = x * np.sin(s) + impact_height * np.cos(s) - self.weight
         damping = 2 * np.asarray(self.damping_ratio) * self.frequency_ratio
         acceleration = force - damping * velocity - self.frequency_ratio**2 * displacement
         return Motion(displacement, velocity, acceleration)

@@ -85,13 +85,13 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     dataset = branches(parameters, release, largest_step)
     x = float(restitution.saddle_node(n, r))
     highest = np.sqrt(parameters["amplitude_max"] ** 2 - x**2)
-    lift = np.linspace(-highest, highest, parameters["points"])
+    impact_height = np.linspace(-highest, highest, parameters["points"])
     doubling = float(restitution.period_doubling(n, r))
     return dataset.assign(
-        restitution_amplitude=("point", np.hypot(x, lift)),
-        restitution_phase=("point", np.arctan2(lift, x)),
-        restitution_stable=("point", restitution.stable(r, lift)),
-        restitution_admissible=("point", lift > restitution.grazing_lift(n, r)),
+        restitution_amplitude=("point", np.hypot(x, impact_height)),
+        restitution_phase=("point", np.arctan2(impact_height, x)),
+        restitution_stable=("point", restitution.stable(r, impact_height)),
+        restitution_admissible=("point", impact_height > restitution.grazing_height(n, r)),
         saddle_node_amplitude=x,
         saddle_node_phase=0.0,
         period_doubling_amplitude=doubling,
@@ -108,7 +108,7 @@ def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
     ratios = parameters["frequency_ratio"]
     bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
-    ends = np.stack([bifurcations(n, kind, ratios, contact) for kind in bounds], axis=-1)
+    ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
     duration = angle / np.array(ratios)[:, np.newaxis]
     fold = restitution.saddle_node(n, r)

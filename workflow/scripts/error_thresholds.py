@@ -19,9 +19,10 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratios = grid(parameters["frequency_ratio"])
     family = Family(n, Contact(ratios, damping_ratio(r), release))
-    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release)[:, 0])
+    orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+    quantities = family.observables(orbits)
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
-    error = orbit_errors(n, r, amplitude, ratios, release)["max_height"]
+    error = orbit_errors(family, orbits, r, amplitude)["max_height"]
     found = threshold(ratios, error, parameters["tolerance"])
     return xr.Dataset(
         {

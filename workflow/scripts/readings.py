@@ -114,7 +114,7 @@ def ends_of_ranges(n: NDArray, ratios: NDArray) -> dict[str, NDArray]:
             np.repeat(weight, n.size)[:, np.newaxis],
         )
         families = np.tile(n, len(impacts))
-        kinds = [bifurcations(families, kind, ratios, contact)[0] for kind in BOUNDS]
+        kinds = [bifurcations(families, kind, contact)[0] for kind in BOUNDS]
         ends = np.stack(kinds, axis=-1).reshape(len(impacts), n.size, ratios.size, 2)
         found |= dict(zip(impacts, ends.swapaxes(1, 2), strict=True))
     return found
@@ -124,7 +124,7 @@ def high_bounce_doublings(n: NDArray, ratios: NDArray) -> NDArray:
     """The period doublings by the stability of the high-bounce approximation, shape (ϖ, n)."""
     family = Family(n[:, np.newaxis], IMPACTS[AS_THEY_STAND].contact(R_OF_TABLE_1, ratios))
     x = restitution.saddle_node(family.n, R_OF_TABLE_1)
-    return walk(family, ratios, at_bifurcation(high_bounce_test), x, np.ones_like(x))[0].T
+    return walk(family, at_bifurcation(high_bounce_test), x, np.ones_like(x))[0].T
 
 
 def high_bounce_test(family: Family, y: NDArray) -> NDArray:
@@ -133,13 +133,12 @@ def high_bounce_test(family: Family, y: NDArray) -> NDArray:
     This is the neglect of Holmes' map: a flight of duration L obeys z′_b L - L²/2 = 0 in place of
     Eq. 25, so that L changes by -L/z′_i times the change of z′_b.
     """
-    x, lift, _ = family.start(y)
+    x, impact_height, _ = family.start(y)
     end = family.contact_end(y)
-    by_gap, by_rate = family.linearised_contact(y)
     rows = []
-    for phase, change in ((1, (-lift, x, lift)), (0, (0 * x, 0 * x, 1 + 0 * x))):
-        gap = sum(one * other for one, other in zip(by_gap, change, strict=True))
-        rate = sum(one * other for one, other in zip(by_rate, change, strict=True))
+    for phase, change in ((1, (-impact_height, x, impact_height)), (0, (0 * x, 0 * x, 1 + 0 * x))):
+        gap = sum(one * other for one, other in zip(end.gap_by, change, strict=True))
+        rate = sum(one * other for one, other in zip(end.gap_velocity_by, change, strict=True))
         longer = -gap / end.gap_velocity
         later = phase + longer
         velocity = rate + end.gap_acceleration * longer - end.table_height * later
@@ -158,7 +157,7 @@ def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:
     """
     ratios = 10.0 ** np.array(EXPONENTS)
     contact = IMPACTS[AS_THEY_STAND].contact(R_OF_TABLE_1, ratios)
-    nodes = bifurcations(n, "saddle-node", ratios, contact)[0].T
+    nodes = bifurcations(n, "saddle-node", contact)[0].T
     found = np.stack([nodes, high_bounce_doublings(n, ratios)], axis=-1)
     return reproduced((found - printed) / DIGIT).sum(axis=(1, 2))
 
@@ -273,9 +272,9 @@ def chances(n: NDArray, ratios: NDArray, units: NDArray) -> xr.Dataset:
         tuple(by_n), spread, n_resamples=np.inf, alternative="greater", vectorized=True
     )
     most = []
-    for ratio, row in zip(ratios, units, strict=True):
+    for row, slope in zip(units, slopes(n, ratios), strict=True):
         orders = np.array(list(permutations(row.ravel())))
-        most.append(most_reproduced(orders, slopes(n, ratio)))
+        most.append(most_reproduced(orders, slope))
     # The first order is the row itself.
     return xr.Dataset(
         {
@@ -288,18 +287,19 @@ def chances(n: NDArray, ratios: NDArray, units: NDArray) -> xr.Dataset:
     )
 
 
-def slopes(n: NDArray, ratio: float) -> NDArray:
-    """Derivatives of the ends of a row by ln ϖ and by ζ in printed units, shape (ends, 2)."""
+def slopes(n: NDArray, ratios: NDArray) -> NDArray:
+    """Derivatives of the ends of rows by ln ϖ and by ζ in printed units, shape (ϖ, ends, 2)."""
     zeta = float(damping_ratio(R_OF_TABLE_1))
     step = 1e-4
     damping = np.repeat([zeta, zeta + step], n.size)[:, np.newaxis]
-    ratios = ratio * np.exp([0, step])
+    contact = Contact(np.outer(np.exp([0, step]), ratios).ravel(), damping)
     families = np.tile(n, 2)
-    kinds = [bifurcations(families, kind, ratios, Contact(ratio, damping))[0] for kind in BOUNDS]
-    # By ζ, n, ϖ and end.
-    found = np.stack(kinds, axis=-1).reshape(2, n.size, 2, 2)
-    changes = np.stack([found[0, :, 1] - found[0, :, 0], found[1, :, 0] - found[0, :, 0]], axis=-1)
-    return changes.reshape(-1, 2) / step / DIGIT
+    kinds = [bifurcations(families, kind, contact)[0] for kind in BOUNDS]
+    # By ζ, n, the step of ln ϖ, ϖ and end.
+    found = np.stack(kinds, axis=-1).reshape(2, n.size, 2, ratios.size, 2)
+    here = found[0, :, 0]
+    changes = np.stack([found[0, :, 1] - here, found[1, :, 0] - here], axis=-1)
+    return changes.swapaxes(0, 1).reshape(ratios.size, -1, 2) / step / DIGIT
 
 
 def most_reproduced(units: NDArray, slope: NDArray) -> NDArray:

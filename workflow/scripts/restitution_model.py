@@ -31,23 +31,26 @@ def fig02(parameters: dict) -> xr.Dataset:
 
 def fig03(parameters: dict) -> xr.Dataset:
     """Phases of n-T orbits against Λ, from the unstable to the stable side, at equal steps of the
-    lift; both period doublings, and the grazing orbit if it is within the range of Λ.
+    height of the impact; both period doublings, and the grazing orbit if it is within the range
+    of Λ.
     """
     n = np.array(parameters["n"])
     r = parameters["restitution"]
     largest = parameters["amplitude_max"]
     x = restitution.saddle_node(n, r)
-    lift = np.linspace(-1, 1, parameters["points"]) * np.sqrt(largest**2 - x**2)[:, np.newaxis]
-    grazing = np.array([restitution.grazing_lift(each, r) for each in n])
+    impact_height = (
+        np.linspace(-1, 1, parameters["points"]) * np.sqrt(largest**2 - x**2)[:, np.newaxis]
+    )
+    grazing = np.array([restitution.grazing_height(each, r) for each in n])
     seen = np.hypot(x, grazing) <= largest
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
     shape = ("n", "point")
     return xr.Dataset(
         {
-            "amplitude": (shape, np.hypot(x[:, np.newaxis], lift)),
-            "phase": (shape, np.arctan2(lift, x[:, np.newaxis])),
-            "stable": (shape, restitution.stable(r, lift)),
-            "admissible": (shape, lift > grazing[:, np.newaxis]),
+            "amplitude": (shape, np.hypot(x[:, np.newaxis], impact_height)),
+            "phase": (shape, np.arctan2(impact_height, x[:, np.newaxis])),
+            "stable": (shape, restitution.stable(r, impact_height)),
+            "admissible": (shape, impact_height > grazing[:, np.newaxis]),
             "grazing_amplitude": ("n", np.where(seen, np.hypot(x, grazing), np.nan)),
             "grazing_phase": ("n", np.where(seen, np.arctan2(grazing, x), np.nan)),
             "saddle_node_amplitude": ("n", x),

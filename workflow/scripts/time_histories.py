@@ -72,13 +72,16 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
         height, _, _ = family.motion(y, np.maximum(since - 1e-13, 0))
         balls.append(height)
         contacts.append(since <= y[3] / family.contact.frequency_ratio + 2e-13)
-    lift = amplitude * np.sin(phase)
+    impact_height = amplitude * np.sin(phase)
     shape = ("frequency_ratio", "table_phase")
     return xr.Dataset(
         {
             "ball": (shape, balls),
             "contact": (shape, contacts),
-            "restitution_ball": ("table_phase", restitution.height(n, lift, table_phase - phase)),
+            "restitution_ball": (
+                "table_phase",
+                restitution.height(n, impact_height, table_phase - phase),
+            ),
             "table": ("table_phase", amplitude * np.sin(table_phase)),
             "restitution_phase": phase,
             **{name: ("frequency_ratio", values) for name, values in state.items()},

@@ -51,7 +51,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     # The period doublings of the contact.
     ends = place_all[:, 0] == 1
     contact = Contact(advised, damping_ratio(r_all[ends]), release)
-    doubling = bifurcations(n_all[ends, 0], "period doubling", advised, contact)[0]
+    doubling = bifurcations(n_all[ends, 0], "period doubling", contact)[0]
     doubled = (last[ends] - doubling) / (last[ends] - first[ends])
 
     curves = parameters["curves"]

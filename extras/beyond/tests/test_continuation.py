@@ -80,7 +80,7 @@ def test_along_any_parameter_special_orbits_are_those_of_the_replication(release
     """The doubling at some ϖ is reached along Λ, along ϖ, along ζ and along the frequency."""
     ratio, zeta = 6.0, float(damping_of(0.7))
     contact = Contact(ratio, zeta, release)
-    y = bifurcations(1, "period doubling", np.array([ratio]), contact)[:, 0, 0]
+    y = bifurcations(1, "period doubling", contact)[:, 0, 0]
     amplitude = y[0]
     ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
     root = np.sqrt(amplitude)

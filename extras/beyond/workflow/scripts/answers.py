@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.datasets import grid, save_stage
-from bouncing_ball.restitution import period_doubling, period_doubling_lift, saddle_node
+from bouncing_ball.restitution import period_doubling, period_doubling_height, saddle_node
 from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.continuation import limits
@@ -74,7 +74,7 @@ def branches(parameters: dict) -> xr.Dataset:
         ]
     )
     stable = (amplitude < doublings[:, np.newaxis]) & (np.arange(2 * POINTS) >= POINTS)
-    model_phase = np.arctan2(period_doubling_lift(r), line)
+    model_phase = np.arctan2(period_doubling_height(r), line)
     law_phase = np.arccos(level / law_doubling) - turned
     return xr.Dataset(
         {
@@ -100,8 +100,8 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
     restitution = np.linspace(span["min"], span["max"], span["samples"])
     ratios = grid(parameters["window_ratio"])[::-1]
     n_all, r_all = (each.reshape(-1, 1) for each in np.meshgrid(n, restitution, indexing="ij"))
-    contact = Contact(1.0, damping_of(r_all), "displacement")
-    nodes, *_ = bifurcations(n_all[:, 0], "saddle-node", ratios, contact)
+    contact = Contact(ratios, damping_of(r_all), "displacement")
+    nodes, *_ = bifurcations(n_all[:, 0], "saddle-node", contact)
     above = nodes / saddle_node(n_all, r_all) - 1
     found = np.full(len(above), np.nan)
     for row, share in enumerate(above):
@@ -110,9 +110,9 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
             at = slice(some[0] - 1, some[0] + 1)
             found[row] = np.exp(np.interp(0, share[at], np.log(ratios[at])))
     example = parameters["example"]
-    contact = Contact(1.0, float(damping_of(example["restitution"])), "displacement")
     down = np.append(ratios[ratios > example["frequency_ratio"]], example["frequency_ratio"])
-    node = bifurcations(example["n"], "saddle-node", down, contact)[0, 0, -1]
+    contact = Contact(down, float(damping_of(example["restitution"])), "displacement")
+    node = bifurcations(example["n"], "saddle-node", contact)[0, 0, -1]
     return xr.Dataset(
         {
             "window_ratio": (("window_n", "window_restitution"), found.reshape(len(n), -1)),

@@ -74,7 +74,7 @@ def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
     variables = {}
     for kind, of_model in (("saddle-node", saddle_node), ("period doubling", period_doubling)):
         name = kind.replace("-", "_").replace(" ", "_")
-        on_contact = bifurcations(n_all[:, 0], kind, levels, contact)[0]
+        on_contact = bifurcations(n_all[:, 0], kind, contact)[0]
         error = on_contact / of_model(n_all, r_all) - 1
         over = ("n", "restitution", "level")
         variables[f"{name}_error"] = (over, error.reshape(shape))

@@ -6,7 +6,7 @@ where the force vanishes, so that it never pulls at the ball. The laws that have
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -43,6 +43,9 @@ ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴
 
 FEW = 8
 """So many intervals of a check may have a kink; if there are more, a force is not analytic."""
+
+ALIKE = 1e-11
+"""The largest relative difference of two forces that are the same but for rounding."""
 
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
@@ -157,8 +160,44 @@ class ForceLaw(Ball):
             return self
         new = object.__new__(type(self))
         own = {each.name: getattr(self, each.name) for each in fields(self)}
-        vars(new).update(own, values={**self.values, **values})
+        vars(new).update(own, values={**self.values, **values}, _origin=self._origin)
         return new
+
+    @cached_property
+    def _origin(self):
+        """The law of one ball from which `at` has made this one, or one of its own balls."""
+        arrays = {name: np.ravel(x)[0] for name, x in self.values.items() if np.ndim(x)}
+        return replace(self, values={**self.values, **arrays}) if arrays else self
+
+    @cached_property
+    @np.errstate(all="ignore")
+    def _scales(self):
+        """Units of length and time in which the force is that of the origin; None if none are.
+
+        If possible they change together, which leaves speeds as they are.
+        """
+        origin = self._origin
+        if self is origin:
+            return np.ones(2)
+        values = np.array(broadcast_named(self.values.items()))
+        if np.iscomplexobj(values):
+            return None
+        known = np.reshape([*origin.values.values()], (-1, *(1 for _ in values.shape[1:])))
+        logarithms = np.log(np.where(values == known, 1.0, values / known))
+        powers = np.array([self.units.get(name, (0, 0, 0))[1:] for name in self.values])
+        p = origin.depth(1.0) * np.array([0.03, 0.7, 2.0])
+        v = np.array([0.8, -0.3, -1.1])
+        force = origin.force_at(p, v, 1.3, {**origin.values, "u": 1.0})
+        given = dict(zip(self.values, values[..., np.newaxis], strict=True))
+        for change in (np.ones((2, 1)), np.eye(2)):
+            found = change @ np.linalg.pinv(powers @ change)
+            scales = np.exp(np.tensordot(found, logarithms, 1))
+            length, time = scales[..., np.newaxis]
+            speed = length / time
+            scaled = self.force_at(p * length, v * speed, 1.3 * speed / time, given | {"u": speed})
+            if np.allclose(scaled * time / speed, force, rtol=ALIKE, atol=0.0):
+                return scales
+        return None
 
     @property
     def kappa(self):
@@ -213,40 +252,53 @@ class ForceLaw(Ball):
     def signature(self, u):
         """r, D, t_c and σ of free impacts.
 
-        A law without kinks interpolates them and their derivatives in ln u by polynomials, on
-        ranges of a factor of :data:`FACTOR` in u that are computed when they are first needed.
+        Those of balls whose laws differ by the units of length and time alone are those of one law.
         """
         u = np.asarray(u)
-        fixed = all(np.ndim(x) == 0 and np.isrealobj(x) for x in self.values.values())
-        if self.kinks or not fixed or not np.all(u.real > 0):
+        if self._scales is None or not np.all(u.real > 0):
             return self.computed_signature(u)
-        number = np.floor(np.log(u.real) / np.log(FACTOR))
-        found = np.full((4, *u.shape), np.nan, u.dtype)
+        length, time = self._scales
+        speed = u * (time / length)
+        known = self._origin.known_signature(speed.real)
+        found = known[:4]
+        if np.iscomplexobj(u):
+            found = found + 1j * known[4:] * (u.imag / u.real)
+        return Signature(found[0], *(time * each for each in found[1:]))
+
+    def known_signature(self, u):
+        """The signature of one ball and u d/du of it at real speeds, shape (8, ...).
+
+        A law without kinks interpolates them in ln u by polynomials, on ranges of a factor of
+        :data:`FACTOR` in u that are computed when they are first needed.
+        """
+        if self.kinks:
+            speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
+            return self._computed(speeds)[:, place.reshape(u.shape)]
+        number = np.floor(np.log(u) / np.log(FACTOR))
+        found = np.full((8, *u.shape), np.nan)
         for k in np.unique(number[np.isfinite(number)]):
             at = number == k
-            found[:, at] = self._interpolated(k, u[at])
-        return Signature(*found)
+            if k not in self._ranges:
+                self._ranges[k] = self._range(k)
+            if self._ranges[k] is None:
+                found[:, at] = self._computed(u[at])
+            else:
+                x = 2 * (np.log(u[at]) / np.log(FACTOR) - k) - 1
+                found[:, at] = chebyshev.chebval(x, self._ranges[k])
+        return found
 
-    def _interpolated(self, number, u):
-        """The signature at speeds in one of the ranges of the interpolation."""
-        if number not in self._ranges:
-            self._ranges[number] = self._range(number)
-        coefficients = self._ranges[number]
-        if coefficients is None:
-            return np.array(self.computed_signature(u))
-        x = 2 * (np.log(u.real) / np.log(FACTOR) - number) - 1
-        both = chebyshev.chebval(x, coefficients)
-        return both[:4] + 1j * both[4:] * (u.imag / u.real) if np.iscomplexobj(u) else both[:4]
+    def _computed(self, u):
+        """As :meth:`known_signature`, by free impacts at each speed."""
+        values = np.array(self.computed_signature(u * (1 + 1j * H)))
+        return np.concatenate([values.real, values.imag / H])
 
     def _range(self, number):
-        """Coefficients of the signature and of u d/du of it; None if impacts do not end."""
+        """Coefficients of :meth:`known_signature` in a range; None if impacts do not end."""
         points = chebyshev.chebpts1(DEGREE + 1)
         speeds = FACTOR ** (number + (points + 1) / 2)
         if np.isnan(self.free(speeds[[0, -1]])).any():
             return None
-        values = np.array(self.computed_signature(speeds * (1 + 1j * H)))
-        both = np.concatenate([values.real, values.imag / H])
-        return np.linalg.solve(chebyshev.chebvander(points, DEGREE), both.T)
+        return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 
     @cached_property
     def _ranges(self):
@@ -313,7 +365,7 @@ class ForceLaw(Ball):
         rows = values_by_row(values if T is None else values | {"T": T})
         given = rows.given
         given["table"] = table
-        none = np.zeros((rows.size, rows.directions))
+        none = np.zeros((rows.directions, rows.size))
         kinks = (
             lambda q, v, t, given, kink=kink: kink(q**self.root, v, **self.own(given))
             for kink in self.kinks
@@ -326,6 +378,8 @@ class ForceLaw(Ball):
         kappa = self.at(**self.own(stepped)).kappa
         start = (-kappa * np.minimum(stepped["u"], 0.0)) ** (1 / self.root)
         by = np.array([np.imag(start) + none, rows.steps.get("u", none)])
+        if "start_speed" not in self.needs:
+            rows.steps.pop("u", None)
         u = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
         given["u"] = u
         period = np.full(rows.size, 2 * np.pi)
@@ -339,7 +393,8 @@ class ForceLaw(Ball):
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
         limits = given.get("T"), rows.steps.get("T", none)
-        ends = follow(motion, np.real(start)[:, 0], u, by, first, period, *limits, longest)
+        q = np.atleast_2d(np.real(start))[0]
+        ends = follow(motion, q, u, by, first, period, *limits, longest)
         s, q, v, t = rows.joined(*ends)
         values["table"] = table
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))

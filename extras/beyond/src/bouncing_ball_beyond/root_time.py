@@ -14,10 +14,10 @@ are ε, then the end of the panel is right to the order of ε². A panel ends wh
 kink, so that the force is analytic on each. It also ends at a maximum of the release function that
 may be above zero, so that no release is passed where it barely is.
 
-The derivatives are those of the collocation: one linear system for each panel and all directions.
+The derivatives are those of the collocation, whose linear equations are solved by the same sweeps.
 
 An array of contacts has the shape (rows,), and one of values at nodes (nodes, rows). Derivatives
-are (rows, directions).
+are (directions, rows).
 """
 
 from collections.abc import Callable, Mapping
@@ -98,21 +98,27 @@ class Rows(NamedTuple):
     """Numbers and arrays, real or complex, as rows of contacts and directions of steps.
 
     ``given`` has real numbers, or arrays of the shape (rows,), and ``steps`` the imaginary parts
-    that are not zero, of the shape (rows, directions). The directions are along the first axis of
-    complex arrays, if the real parts are the same along it.
+    that are not zero, of the shape (directions, rows). The directions are along the first axis of
+    complex arrays, if the real parts are the same along it; those without a step are left out.
     """
 
     shape: tuple
     given: dict
     steps: dict
     size: int
-    directions: int
+    stepped: NDArray
+
+    @property
+    def directions(self):
+        """The number of directions with a step."""
+        return np.count_nonzero(self.stepped)
 
     def joined(self, real, imaginary):
-        """Results (k, rows) and derivatives (k, rows, directions) in the shape of the values."""
-        if not self.directions:
+        """Results (k, rows) and derivatives (k, directions, rows) in the shape of the values."""
+        if not self.stepped.size:
             return real.reshape(len(real), *self.shape)
-        values = real[:, np.newaxis] + 1j * np.moveaxis(imaginary, 2, 1)
+        values = np.repeat(real[:, np.newaxis] + 0j, self.stepped.size, axis=1)
+        values[:, self.stepped] += 1j * imaginary
         return values.reshape(len(values), *self.shape)
 
 
@@ -132,9 +138,11 @@ def values_by_row(values):
         real = x.real[0] if x.ndim > len(inner) else x.real
         given[name] = np.broadcast_to(real, inner).ravel() if x.ndim or name in LISTED else real[()]
         if np.any(x.imag):
-            steps[name] = np.broadcast_to(x.imag, shape).reshape(directions, size).T
+            steps[name] = np.broadcast_to(x.imag, shape).reshape(directions, size)
             given[name] = np.broadcast_to(given[name], size)
-    return Rows(shape, given, steps, size, directions)
+    stepped = sum((step.any(axis=1) for step in steps.values()), np.zeros(directions, bool))
+    steps = {name: step[stepped] for name, step in steps.items()}
+    return Rows(shape, given, steps, size, stepped)
 
 
 class ContactMotion(NamedTuple):
@@ -154,7 +162,7 @@ class ContactMotion(NamedTuple):
         Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity", the "table" with its
         parameters, and what the force needs.
     steps : mapping
-        Imaginary parts of what is given, arrays of the shape (rows, directions).
+        Imaginary parts of what is given, arrays of the shape (directions, rows).
     """
 
     root: int
@@ -167,12 +175,13 @@ class ContactMotion(NamedTuple):
     def of(self, rows):
         """The motion of some of the contacts."""
         given = {name: x[rows] if np.ndim(x) else x for name, x in self.given.items()}
-        return self._replace(given=given, steps={name: x[rows] for name, x in self.steps.items()})
+        return self._replace(
+            given=given, steps={name: x[:, rows] for name, x in self.steps.items()}
+        )
 
     def stepped(self):
-        """What is given beside (rows, directions), complex where it has a step."""
-        columns = {name: x[:, None] if np.ndim(x) else x for name, x in self.given.items()}
-        return columns | {name: columns[name] + 1j * step for name, step in self.steps.items()}
+        """What is given, complex of the shape (directions, rows) where it has a step."""
+        return {**self.given} | {name: self.given[name] + 1j * x for name, x in self.steps.items()}
 
     def lever(self, q):
         """λ = m q^{m-1}."""
@@ -244,8 +253,8 @@ class Panel(NamedTuple):
 class Linearised(NamedTuple):
     """The linearised collocation of panels: δF = F_q δq + F_v δv + F_t δt + what is known.
 
-    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (rows, nodes, 1), and
-    h has the shape (rows, 1, 1).
+    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (nodes, 1, rows), and
+    h has the shape (rows,).
     """
 
     by_q: np.ndarray
@@ -254,21 +263,49 @@ class Linearised(NamedTuple):
     bend: np.ndarray
     h: np.ndarray
 
+    def integrated(self, values):
+        """Integrals up to the nodes, of values at the nodes, shape (nodes, directions, rows)."""
+        return self.h * np.tensordot(_INTEGRALS, values, 1)
+
     def time(self, q):
         """δt from δq at the nodes."""
-        return self.h * (_INTEGRALS @ (self.bend * q))
+        return self.integrated(self.bend * q)
+
+    def felt(self, q, v, t):
+        """What changes of the state change of F."""
+        return self.by_q * q + self.by_v * v + self.by_t * t
 
     def solved(self, known):
-        """δF at the nodes, shape (rows, nodes, directions)."""
-        twice = self.h * self.h * _TWICE
-        matrix = np.eye(ORDER) - self.by_v * (self.h * _INTEGRALS) - self.by_q * twice
-        return np.linalg.solve(matrix - self.by_t * self.time(twice), known)
+        """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
+        by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
+        h = self.h[:, np.newaxis, np.newaxis]
+        twice = h * h * _TWICE
+        time = h * (_INTEGRALS @ (bend * twice))
+        matrix = np.eye(ORDER) - by_v * (h * _INTEGRALS) - by_q * twice - by_t * time
+        return np.linalg.solve(matrix, np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
+
+    def swept(self, known):
+        """As :meth:`solved`, by sweeps; they converge as those of the motion have done."""
+        push = known
+        rate = self.integrated(push)
+        change = np.zeros(rate.shape[1:])
+        for _ in range(2 * SWEEPS):
+            along = self.integrated(rate)
+            push = known + self.felt(along, rate, self.time(along))
+            before = rate
+            rate = self.integrated(push)
+            earlier = change
+            change = np.abs(rate - before).max(0)
+            left = change * np.fmin(change / earlier, 1.0)
+            if not np.any(left > CONVERGED * np.abs(rate).max(0)):
+                return push
+        return self.solved(known)
 
 
 def linearised(motion, nodes, h):
     """:class:`Linearised` about a motion, by complex steps of the force."""
-    q, v, t = (x.T for x in nodes)
-    given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in motion.given.items()}
+    q, v, t = nodes
+    given = motion.given
     m = motion.root
     lever = motion.lever(q)
     bend = m * (m - 1) * q ** max(m - 2, 0)
@@ -279,8 +316,7 @@ def linearised(motion, nodes, h):
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
     by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
-    slopes = (each[..., np.newaxis] for each in (by_q, by_v, by_t, bend))
-    return Linearised(*slopes, h[:, np.newaxis, np.newaxis])
+    return Linearised(*(each[:, np.newaxis] for each in (by_q, by_v, by_t, bend)), h)
 
 
 def _end_of(start, h, slopes):
@@ -310,8 +346,8 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
         a = load_of(t, motion.given)
         force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
-            missing = (force - push).T[..., np.newaxis]
-            force = push + linearised(motion, (q, v, t), h).solved(missing)[..., 0].T
+            missing = (force - push)[:, np.newaxis]
+            force = push + linearised(motion, (q, v, t), h).solved(missing)[:, 0]
         push = force
         before = v
         v = v0 + h * (_INTEGRALS @ push)
@@ -342,27 +378,29 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
     return Panel((q, v, t), end, push, h + moved, early, np.where(near, left, np.inf))
 
 
-def carried(motion, nodes, by, h):
+def carried(motion, nodes, by, h, *, newton):
     """Derivatives of (q, v, t) at the ends of panels, from those at the starts.
 
-    Both have the shape (3, rows, directions).
+    Both have the shape (3, directions, rows).
     """
     linear = linearised(motion, nodes, h)
-    q0, v0, t0 = by[:, :, np.newaxis]
-    alone = q0 + linear.h * _NODES[:, np.newaxis] * v0
-    known = linear.by_q * alone + linear.by_v * v0 + linear.by_t * (t0 + linear.time(alone))
-    if motion.steps:
-        q, v, t = (x.T[..., np.newaxis] for x in nodes)
-        stepped = motion.stepped().items()
-        given = {name: x[:, np.newaxis] if np.ndim(x) else x for name, x in stepped}
+    q0, v0, t0 = by
+    alone = q0 + h * _NODES[:, np.newaxis, np.newaxis] * v0
+    # Of what is given, τ alone is felt as the time is.
+    known = linear.felt(alone, v0, t0 + motion.steps.get("tau", 0.0) + linear.time(alone))
+    if motion.steps.keys() - {"tau", "T"}:
+        q, v, t = (x[:, np.newaxis] for x in nodes)
+        given = motion.stepped() | {"tau": motion.given["tau"]}
         lever = motion.lever(q)
         a = load_of(t, given)
         known = known + (lever * (a - motion.force(q * lever / motion.root, v, a, given))).imag
-    push = linear.solved(known)
-    rate = v0 + linear.h * (_INTEGRALS @ push)
-    pace = linear.bend * (q0 + linear.h * (_INTEGRALS @ rate))
-    changes = [linear.h[:, 0] * (_WEIGHTS @ each) for each in (rate, push, pace)]
-    return by + np.array(changes)
+    # That in which only the end of a contact moves is still at rest.
+    moves = known.any(axis=(0, 2))
+    push = np.zeros_like(known)
+    push[:, moves] = (linear.solved if newton else linear.swept)(known[:, moves])
+    rate = v0 + linear.integrated(push)
+    pace = linear.bend * (q0 + linear.integrated(rate))
+    return by + np.array([h * np.tensordot(_WEIGHTS, each, 1) for each in (rate, push, pace)])
 
 
 def _resolved(panel, size):
@@ -448,15 +486,15 @@ def _first_maximum(motion, events, side, start, panel):
 
 
 def _shift(motion, event, state, by):
-    """Derivatives of s at an event, from those of (q, v, t), (3, rows, directions)."""
+    """Derivatives of s at an event, from those of (q, v, t), (3, directions, rows)."""
     _, slope = event_rate(motion, event, state)
-    beside = (y[:, None] + 1j * each for y, each in zip(state, by, strict=True))
-    return -event(*beside, motion.stepped()).imag / slope[:, None]
+    beside = (y + 1j * each for y, each in zip(state, by, strict=True))
+    return -event(*beside, motion.stepped()).imag / slope
 
 
 def _pace(motion, state):
     """Derivatives of (s, q, v, t) with respect to s, beside directions."""
-    return np.array([np.ones_like(state[0]), *rates(motion, state)])[..., np.newaxis]
+    return np.array([np.ones_like(state[0]), *rates(motion, state)])[:, np.newaxis]
 
 
 def _next_panel(motion, events, side, start, length, newton):
@@ -552,18 +590,18 @@ class _Contacts:
         self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
         which = which[good]
         if self.by.any() or self.motion.steps.keys() - {"T"}:
-            self.differentiate(kept, which, panel.of(good))
+            self.differentiate(kept, which, panel.of(good), newton=newton)
         self.end_events(kept[which >= 0], which[which >= 0])
 
-    def differentiate(self, here, which, panel):
+    def differentiate(self, here, which, panel, *, newton):
         """Move the derivatives to the ends of panels, some of which are at events."""
-        by = self.by[1:, here]
-        self.by[1:, here] = carried(self.motion.of(here), panel.nodes, by, panel.length)
+        given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
+        self.by[1:, :, here] = carried(*given, newton=newton)
         for k in np.unique(which[which >= 0]):
             at = here[which == k]
             motion = self.motion.of(at)
-            shift = _shift(motion, self.events[k], self.now[1:, at], self.by[1:, at])
-            self.by[:, at] += _pace(motion, self.now[1:, at]) * shift
+            shift = _shift(motion, self.events[k], self.now[1:, at], self.by[1:, :, at])
+            self.by[:, :, at] += _pace(motion, self.now[1:, at]) * shift
 
     def end_events(self, here, which):
         """Change the sides of kinks, end contacts at their releases, and compare periods."""
@@ -593,16 +631,16 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=P
         The equation of motion.
     q, v, length, period : array, shape (rows,)
         q and v at the start, the length of the first panel, and the period of the table.
-    by : array, shape (2, rows, directions)
+    by : array, shape (2, directions, rows)
         Derivatives of q and v.
-    until, by_until : array, shapes (rows,) and (rows, directions), optional
+    until, by_until : array, shapes (rows,) and (directions, rows), optional
         Root times at which contacts are left, and their derivatives.
     longest : int or array, shape (rows,)
         A contact that lasts for so many periods is taken for a permanent one.
 
     Returns
     -------
-    ends, derivatives : array, shapes (4, rows) and (4, rows, directions)
+    ends, derivatives : array, shapes (4, rows) and (4, directions, rows)
         Root time, q, v and the time after the start; NaN for permanent contacts.
     """
     rows = v.size
@@ -634,7 +672,7 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=P
         for here in np.array_split(active, -(-active.size // ROWS)):
             # Most balls have left the table after few panels, and the others lie on it.
             contacts.advance(here, lies=attempt >= PATIENT)
-    if until is not None and by.shape[-1]:
+    if until is not None and by.shape[1]:
         contacts.by += _pace(motion, now[1:]) * (by_until - contacts.by[0])
     now[:, ~contacts.ended] = np.nan
     return now, contacts.by

@@ -108,7 +108,7 @@ def test_the_version(typed):
 
 def test_engines_are_listed_with_what_was_run(typed):
     out = typed("engines")[1]
-    assert "never run" in out and "MuJoCo 4.0.0" in out
+    assert "MuJoCo 4.0.0" in out
 
 
 def test_a_recording_becomes_a_contact_in_one_command(typed, tmp_path):
@@ -188,7 +188,6 @@ MISTAKES = {
     f"{BALL} --friction -0.5": "not between 0 and inf",
     f"{SHORT} --one-body --engine mujoco": "solimp is averaged",
     f"{SHORT} --one-body --engine lammps": "no contact that one body alone sets",
-    f"{BALL} --engine adams --time-step 1ms": "chooses its steps itself",
     f"{SHORT} --script drop.py --engine physx": "no script is written for physx",
     f"{SHORT} --script /no/such/folder/drop.py --engine mujoco": "No such file",
     f"{SHORT} --script {__file__} --engine mujoco": "exists, and is not overwritten",
@@ -218,7 +217,6 @@ MISTAKES = {
     "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
     "diagnose --engine drake-sap hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
     "drake has it",
-    "diagnose --engine adams stiffness=1e6 damping=10 --mass 1": "penetration_depth is missing",
     LAMMPS: "kn is missing: give kn and gamma_n; lammps has no default",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",

@@ -42,13 +42,6 @@ def test_a_design_is_diagnosed_as_it_was_designed(engine, of_ball):
     assert again.change is None
 
 
-@pytest.mark.parametrize("engine", ["simscape", "adams"])
-def test_a_solver_with_error_control_needs_no_step(engine, of_ball):
-    found = of_ball(engine)
-    again = diagnose(found.bounce, engine, found.parameters, None)
-    assert again.outcome.restitution[1] == pytest.approx(0.8, abs=0.005)
-
-
 @pytest.mark.parametrize(
     ("engine", "parameters", "step"),
     [
@@ -472,16 +465,13 @@ def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
         ("physx", ("restitution", "bounce_threshold_velocity")),
         ("chrono", ("SetKn", "SetGn")),
         ("mercurydpm", ("setStiffness", "setDissipation")),
-        ("simscape", ("Stiffness", "Damping", "Transition Region Width")),
-        ("adams", ("Stiffness", "Damping", "Penetration Depth")),
     ],
 )
 def test_names_are_known_as_the_snippet_writes_them(engine, names, of_ball):
     found = of_ball(engine)
     assert all(name in found.snippet for name in names)
     typed = dict(zip(names, found.parameters.values(), strict=True))
-    step = None if engine in ("simscape", "adams") else found.row.step
-    assert asked(None, engine, typed, step).given == found.parameters
+    assert asked(None, engine, typed, found.row.step).given == found.parameters
 
 
 def test_damping_on_approach_bounces_where_it_was_said_not_to():
@@ -580,17 +570,13 @@ def test_the_step_is_needed():
 
 
 def test_what_would_be_ignored_is_refused():
-    """The other body of a pair counted for nothing, and a step for an error-controlled solver."""
+    """The other body of a pair counted for nothing."""
     with pytest.raises(Refused, match="sets the contact of a pair"):
         asked(None, "lammps", {"kn": 1e5, "gamma_n": 2}, "1 ms", other={"kn": 2e5, "gamma_n": 2})
-    impact = {"stiffness": 1e6, "damping": 10, "penetration_depth": 1e-4}
-    with pytest.raises(Refused, match="chooses its steps itself"):
-        asked(None, "adams", impact, "1 ms")
-    # These were a traceback and a warning of NumPy.
-    for engine, name in (("genesis", "dampratio"), ("adams", "penetration_depth")):
-        numbers = dict.fromkeys(ENGINES[engine].rules, 1) | {name: 0}
-        with pytest.raises(Refused, match=f"{name} = 0 is not computed"):
-            asked(None, engine, numbers, "1 ms" if engine == "genesis" else None)
+    # This was a traceback.
+    numbers = dict.fromkeys(ENGINES["genesis"].rules, 1) | {"dampratio": 0}
+    with pytest.raises(Refused, match="dampratio = 0 is not computed"):
+        asked(None, "genesis", numbers, "1 ms")
 
 
 def test_an_undamped_contact_has_the_limit_one_in_every_engine():

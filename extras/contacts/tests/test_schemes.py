@@ -15,7 +15,6 @@ from bouncing_ball_contacts.schemes import (
     Linear,
     OfSolver,
     SemiImplicit,
-    Stepped,
     drop,
     exact,
     offsets,
@@ -204,31 +203,6 @@ def test_a_fall_that_is_shorter_than_a_step_is_no_rebound():
     law = Linear(np.asarray(2000.0), np.asarray(50.0))
     found = drop(law, SemiImplicit(), 1 / 60, math.sqrt(2 * 9.81 * 1e-3), 9.81, exact(offsets(20)))
     assert found.restitution.max() == 0
-
-
-@pytest.mark.parametrize(("exponent", "steps_spring"), [(1.0, True), (1.5, False)])
-def test_a_strong_damper_of_adams_and_simscape_is_that_of_an_integration(exponent, steps_spring):
-    """Steps of the undamped contact did not resolve it: depth and force were 15 % off."""
-    k, c, d, v = 1e4, 3e3, 2e-3, 2.0
-    law = Stepped(np.asarray(k), np.asarray(c), np.asarray(d), exponent, steps_spring)
-
-    def motion(_, state):
-        p, w = state
-        return [w, -max(float(law.push(np.asarray(p), w, 0.0)), 0.0)]
-
-    run = solve_ivp(motion, (0, 0.2), [0.0, v], method="LSODA", rtol=1e-9, atol=1e-12)
-    force = [-motion(0, state)[1] for state in run.y.T]
-    step = float(law.duration(v)) / 1000
-    found = drop(law, SemiImplicit(), step, v, 0.0, exact(offsets(9)))
-    # A step is 3 % of the time of the damper, and the scheme is of the first order.
-    assert found.depth == pytest.approx(run.y[0].max(), rel=0.015)
-    assert found.peak == pytest.approx(max(force), rel=0.015)
-
-
-def test_a_contact_of_adams_lasts_as_one_of_hertz():
-    law = Stepped(np.asarray(1e6), np.asarray(0.0), np.asarray(1e-4), 1.5)
-    hertz = Hertz(np.asarray(1e6), np.asarray(0.0))
-    assert law.duration(1.3) == pytest.approx(hertz.duration(1.3), rel=1e-4)
 
 
 def test_a_step_beyond_the_limit_of_stability_throws_the_body_out():

@@ -323,15 +323,15 @@ def fit_command(
 
 @main.command("engines")
 def engines_command() -> None:
-    """List the engines, their parameters and whether they were run."""
+    """List the engines, their parameters and the versions in which they were run."""
     head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
     rows = [
         [
             row.name,
             row.meaning,
-            row.scheme.text if row.fixed_steps else "error-controlled",
+            row.scheme.text,
             ", ".join(dict.fromkeys(row.rules[name].text for name in row.names)),
-            row.ran or "never run",
+            row.ran,
         ]
         for row in ENGINES.values()
     ]

@@ -34,7 +34,6 @@ from bouncing_ball_contacts.engines import (
 )
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
-    SHORT_STEPS,
     Drops,
     Impedance,
     Implicit,
@@ -425,12 +424,11 @@ class Problem:
         return self.engine.read(self.engine.combined(one, other), self.setting(step))
 
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
-        """Return the drops of contacts at a time step in s, or in short steps."""
-        short = law.duration(self.bounce.impact_speed) / SHORT_STEPS
+        """Return the drops of contacts at a time step in s."""
         return drop(
             law,
             OfSolver() if isinstance(law, Solved) else self.engine.scheme,
-            step if self.engine.fixed_steps else short,
+            step,
             self.bounce.impact_speed,
             self.bounce.load,
             trials,
@@ -548,7 +546,7 @@ class Problem:
         If there is none, it is the one with the nearest r.
         """
         tried = []
-        for count in _COUNTS if self.engine.fixed_steps else (SHORT_STEPS,):
+        for count in _COUNTS:
             contact = self.keeping(self.step_of(count))
             if self.keeps(contact):
                 return contact
@@ -685,10 +683,6 @@ def design(
                 bounce.stiffness is not None and problem.engine.unit != "N/m",
                 f"{problem.engine.name} has no stiffness in N/m: give the penetration",
             ),
-            (
-                time_step is not None and not problem.engine.fixed_steps,
-                f"{problem.engine.name} chooses its steps itself: leave the time step out",
-            ),
         ]
     )
     step = None if time_step is None else _written(step_in_si(time_step))
@@ -801,8 +795,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
             ),
             (math.isnan(outcome.rest) and not isinstance(law, Impedance), VAGUE),
             (
-                problem.engine.fixed_steps
-                and law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
+                law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
                 f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
                 "not computed, and change r by less than 0.001",
             ),
@@ -889,7 +882,7 @@ class Design(Page):
             *(
                 [
                     f"{name} *" if name == self.chosen else name,
-                    show(row.step, "s") if engine.fixed_steps else "–",
+                    show(row.step, "s"),
                     show(row.stiffness, engine.unit),
                     show(row.outcome.depth[1], "m"),
                     show(row.outcome.rest, "m") if self.bounce.load else "–",

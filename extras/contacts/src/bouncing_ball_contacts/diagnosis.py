@@ -64,7 +64,7 @@ _SHARES = (
     "soft_erp",
 )
 """Parameters from 0 to 1. Those of them that set r raise it, where a damping lowers it."""
-_DIVISORS = ("dampratio", "penetration_depth", "soft_erp", "transition_region_width")
+_DIVISORS = ("dampratio", "soft_erp")
 """Parameters that cannot be 0, besides the stiffness of each engine."""
 _VECTORS = {
     "solref": (1, 2, "one or two numbers, as in '0.02 1' or '-1000 -20'"),
@@ -255,7 +255,7 @@ def diagnose(
     parameters : mapping
         Those of one body by their names; without any, the engine's defaults.
     time_step : Quantity
-        Of the engine; none if the engine chooses its steps itself.
+        Of the engine.
     other : mapping, optional
         Those of the other body beside the engine's defaults; if it is left out, both are alike.
 
@@ -272,10 +272,8 @@ def diagnose(
             "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}, '2 ms')"
         )
     row = engine_named(engine)
-    if row.fixed_steps and time_step is None:
+    if time_step is None:
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
-    if not row.fixed_steps and time_step is not None:
-        raise Refused(f"{row.name} chooses its steps itself: leave the time step out")
     if row.sets_pair and other is not None:
         raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
     given = _given(row, parameters or {})
@@ -284,10 +282,8 @@ def diagnose(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},
         other=None if differs is None else {**row.defaults, **differs},
-        step=1.0 if time_step is None else step_in_si(time_step),
+        step=step_in_si(time_step),
     )
-    if time_step is None:
-        contact = replace(contact, step=contact.steps / SHORT_STEPS)
     spring = _spring(contact.law)
     found = Diagnosis(
         engine=row.name,
@@ -572,7 +568,7 @@ def _nearest(contact: Contact) -> Change:
 def _least_change(contact: Contact) -> Change | None:
     """Return the change with which r keeps the tolerance, at the longest step that has one."""
     deviations: list[float] = []
-    for halvings in range(12 if contact.problem.engine.fixed_steps else 1):
+    for halvings in range(12):
         change = _nearest(replace(contact, step=contact.step / 2**halvings))
         deviations.append(change.outcome.deviation(contact.problem.bounce.restitution))
         if deviations[-1] <= TOLERANCE:
@@ -596,7 +592,7 @@ def _of_design(contact: Contact) -> Iterator[str]:
     """Yield what a design has at this step."""
     row = contact.problem.engine
     try:
-        found = design(contact.problem.bounce, row, contact.step if row.fixed_steps else None)
+        found = design(contact.problem.bounce, row, contact.step)
     except Refused:
         return
     bodies = "" if contact.other is None else ", of both bodies"

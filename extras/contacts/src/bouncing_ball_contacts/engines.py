@@ -27,7 +27,6 @@ from bouncing_ball_contacts.schemes import (
     Law,
     Linear,
     SemiImplicit,
-    Stepped,
 )
 from bouncing_ball_contacts.units import Refused
 
@@ -123,8 +122,6 @@ class Engine:
         The largest penetration in radii at which the engine still sees the contact.
     resolution : float
         The least depth at rest in radii that the precision of the engine's positions resolves.
-    fixed_steps : bool
-        False if a solver with error control chooses the steps.
     ran : str
         The version in which designs of this row were run; empty if none was.
     notes : tuple of str
@@ -163,7 +160,6 @@ class Engine:
     sets_pair: bool = False
     deepest: float = math.inf
     resolution: float = 0.0
-    fixed_steps: bool = True
     unit: str = "N/m"
     ran: str = ""
     notes: tuple[str, ...] = ()
@@ -546,31 +542,6 @@ def _read_physx(p: Parameters, at: Setting) -> Law:
     )
 
 
-def _stepped(names: tuple[str, str, str], exponent: float, steps_spring: bool) -> dict[str, Any]:
-    """Return what a row has of a damper that is stepped in over a depth."""
-
-    def of_depth(depth: Array, ratio: Array, speed: float) -> Law:
-        k = (exponent + 1) / 2 * speed**2 / depth ** (exponent + 1)
-        return Stepped(k, 2 * ratio * speed / depth, depth / 10, exponent, steps_spring)
-
-    def write(law: Any, at: Setting) -> dict[str, Any]:
-        numbers = (law.stiffness * at.mass, law.damping * at.mass, law.depth * at.points)
-        return {name: float(x) / at.points for name, x in zip(names, numbers, strict=True)}
-
-    def read(p: Parameters, at: Setting) -> Law:
-        k, c = (np.asarray(p[name] * at.points / at.mass) for name in names[:2])
-        return Stepped(k, c, np.asarray(p[names[2]]), exponent, steps_spring)
-
-    spring = "N/m" if exponent == 1 else f"N/m^{exponent}"
-    return {
-        "names": names[:2],
-        "units": dict(zip(names, (spring, "N s/m", "m"), strict=True)),
-        "write": write,
-        "read": read,
-        "of_depth": of_depth,
-    }
-
-
 # In MuJoCo the damper acts along the surface as well.
 _PUSHED_UP = Sliding(adds=0.07, below=0.6)
 _EVERY_FRICTION = (
@@ -924,26 +895,6 @@ ENGINES: Mapping[str, Engine] = {
             notes=("The damping gn is per unit of the effective mass, and holds for it only",),
             floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "
             "the floor 1000 times the mass of the body, because an equal mass halves the damping",
-        ),
-        Engine(
-            name="simscape",
-            scheme=SemiImplicit(),
-            **_stepped(("stiffness", "damping", "transition_region_width"), 1.0, True),
-            meaning="stiffness = k, damping = c, transition region width = a tenth of the depth",
-            rules={"stiffness": PAIR, "damping": PAIR, "transition_region_width": PAIR},
-            sets_pair=True,
-            fixed_steps=False,
-            notes=("The transition is taken as cubic; the manual does not give its formula",),
-        ),
-        Engine(
-            name="adams",
-            scheme=SemiImplicit(),
-            **_stepped(("stiffness", "damping", "penetration_depth"), 1.5, False),
-            meaning="IMPACT with exponent 1.5, stiffness K, full damping C at the penetration d",
-            rules={"stiffness": PAIR, "damping": PAIR, "penetration_depth": PAIR},
-            sets_pair=True,
-            fixed_steps=False,
-            unit="N/m^1.5",
         ),
         Engine(
             name="generic",

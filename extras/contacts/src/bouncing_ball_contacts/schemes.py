@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""
 SHORT_STEPS = 1000
-"""In a contact, of a solver with error control."""
+"""In a contact, whose r is nearly that in the limit of short steps."""
 # Below this share of the impact speed a body that creeps out of a contact counts as at rest. Its
 # speed then also has to be nearly constant, which it is not where the body turns.
 _REST = 2e-3
@@ -186,34 +186,6 @@ class Hertz(Law):
     @classmethod
     def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
         return cls(1.25 * speed**2 / depth**2.5, ratio)
-
-
-@dataclass(frozen=True)
-class Stepped(Law):
-    """The contacts of Adams and Simscape: a = K pⁿ + C s w, where s(p/d) = x²(3 - 2x), x ≤ 1.
-
-    Simscape multiplies the spring by s as well. In designs d is a tenth of the penetration without
-    damping, and the ratio is that of a linear contact of the same penetration.
-    """
-
-    depth: Array
-    exponent: float = 1.0
-    steps_spring: bool = False
-
-    def push(self, p: Array, w: Array, gravity: Array) -> Array:
-        x = np.clip(p / self.depth, 0.0, 1.0)
-        share = x * x * (3 - 2 * x)
-        spring = self.stiffness * np.maximum(p, 0.0) ** self.exponent
-        return (share if self.steps_spring else 1.0) * spring + self.damping * share * w
-
-    def duration(self, speed: float) -> Array:
-        n = self.exponent
-        scale = ((n + 1) / 2 * speed**2 / self.stiffness) ** (1 / (n + 1))
-        # 2 ∫ du/√(1 - uⁿ⁺¹) from 0 to 1: π of a linear spring, 2.943 of Hertz.
-        free = 2 * math.sqrt(math.pi) * math.gamma(1 + 1 / (n + 1)) / math.gamma(0.5 + 1 / (n + 1))
-        time = free * scale / speed + 2 * self.damping * scale ** (1 - n) / self.stiffness
-        # Error control resolves a strong damper: steps of 1/1000 of this are 3 % of its time.
-        return np.minimum(time, 30 / np.maximum(self.damping, 1e-300))
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ BALL = 'design --mass "50 g" --restitution 0.8'
 SHORT = f'{BALL} --contact-time "2 ms"'
 MUJOCO = "diagnose --engine mujoco --mass 1 --time-step 2ms"
 PYBULLET = "diagnose --engine pybullet --mass 1 --time-step 1/240"
+RAPIER = "--engine rapier --time-step 1/60"
 LAMMPS = "diagnose --engine lammps --mass 1 --time-step 2ms"
 
 
@@ -202,6 +203,7 @@ MISTAKES = {
     f"{BALL} extra": "unexpected extra argument",
     "designn": "No such command",
     "diagnose": "mass is missing",
+    f"{BALL} --gravity 1e12 --time-step 100ms": "moves 141421 m in a step of 100 ms: up to 1 km",
     "diagnose --engine nothing": "engine 'nothing' is not known",
     "diagnose --mass 1": "time step is missing",
     "diagnose solref --mass 1": "is not NAME=VALUE",
@@ -239,6 +241,20 @@ MISTAKES = {
     'fit croquet --mass "a lot"': "does not begin",
     "engines --all": "No such option",
     "design --mass 1e-300 --restitution 0.8": "mass = 1e-300 kg is not computed",
+    f"design {RAPIER}": "the restitution is missing",
+    "design --engine jolt --restitution 0.8": "the time step is missing",
+    f"design {RAPIER} --restitution 0.8 --penetration 1mm": "--penetration has no place",
+    f"design {RAPIER} --restitution 0.8 --points 4": "--points has no place",
+    f"design {RAPIER} --restitution 0.8 --pick impulse": "--pick has no place",
+    f"diagnose {RAPIER}": "restitution is missing: give restitution=0.8",
+    f"diagnose {RAPIER} restitution=1.2": "not between 0 and 1",
+    f"diagnose {RAPIER} threshold=1": "rapier does not use 'threshold': it has restitution",
+    "diagnose --engine jolt mRestitution=1 gravity=1 --time-step 1/60": "it has mRestitution and",
+    f"diagnose {RAPIER} restitution=1 --drop-height 1mm": "is longer than the fall",
+    "design --engine jolt --speed 1e200 --restitution 0.8 --time-step 1ms": "is not computed",
+    "design --engine jolt --restitution 0.8 --time-step 1ns": "moves 4.43 nm in a step of 1 ns",
+    f"design {RAPIER} --gravity 1e300 --restitution 0.8": "is not computed",
+    "fit croquet --engine godot": "Godot has two engines: take godot-jolt",
 }
 
 

@@ -423,12 +423,6 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
         assert slope == pytest.approx(found.readings[:, i], abs=1e-4)
 
 
-def test_weights_are_those_of_a_distribution():
-    impacts = impacts_of(Recording("", "flights", (np.array([1.0, 0.8, 0.64, 0.5]),)))
-    curves = curves_of(impacts, None, 3.0)
-    assert curves.basis @ curves.basis.T == pytest.approx(np.eye(3))
-
-
 def test_a_fit_is_a_bounce_for_an_engine():
     found = fit("golf_ball")
     written = found.design("mujoco", "2 ms")

@@ -242,6 +242,17 @@ class Bounce:
         """In m/s."""
         return self.speed or math.sqrt(2 * self.gravity * (self.drop_height or 1.0))
 
+    def step(self, typed: Quantity) -> float:
+        """Return a time step in s, and refuse one in which the body moves farther than 1 km."""
+        step = step_in_si(typed)
+        way = self.impact_speed * step
+        if way > 1e3:
+            raise Refused(
+                f"a body with {show(self.impact_speed, 'm/s')} moves {show(way, 'm')} in a step of "
+                f"{show(step, 's')}: up to 1 km is computed"
+            )
+        return step
+
     @property
     def size_name(self) -> str:
         """What the size is."""
@@ -685,7 +696,7 @@ def design(
             ),
         ]
     )
-    step = None if time_step is None else _written(step_in_si(time_step))
+    step = None if time_step is None else _written(bounce.step(time_step))
     # Half of the tolerance is left for what is known of the body.
     strict = replace(problem, tolerance=problem.tolerance / 2)
     rows = {WANTED: problem.row(strict.wanted())}

@@ -48,7 +48,7 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
-from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
+from bouncing_ball_contacts.units import Refused, in_si, show, within
 
 HOPS = (
     "no depth at rest is given: the speed that gravity adds in each step exceeds the threshold and "
@@ -282,7 +282,7 @@ def diagnose(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},
         other=None if differs is None else {**row.defaults, **differs},
-        step=step_in_si(time_step),
+        step=bounce.step(time_step),
     )
     spring = _spring(contact.law)
     found = Diagnosis(

@@ -203,7 +203,7 @@ MISTAKES = {
     f"{BALL} extra": "unexpected extra argument",
     "designn": "No such command",
     "diagnose": "mass is missing",
-    f"{BALL} --gravity 1e12 --time-step 100ms": "moves 141421 m in a step of 100 ms: up to 1 km",
+    f"{BALL} --gravity 1e12 --time-step 100ms": "moves 141000 m in a step of 100 ms: up to 1 km",
     "diagnose --engine nothing": "engine 'nothing' is not known",
     "diagnose --mass 1": "time step is missing",
     "diagnose solref --mass 1": "is not NAME=VALUE",

@@ -589,6 +589,8 @@ def _physx():
     from ovphysx.samples.python_samples.schema_support import physx_schema_paths
 
     ovphysx.PhysX.set_cpu_mode(True)
+    # One ball needs no other thread, and the threads of a busy machine wait for each other.
+    ovphysx.set_global_config(ovphysx.types.GlobalConfigKey.NUM_THREADS, 0)
     engine = ovphysx.PhysX()
     schemas = [*map(str, physx_schema_paths()), str(ovphysx.newton_schema_root())]
     ovstage.population.register_usd_schemas(schemas)

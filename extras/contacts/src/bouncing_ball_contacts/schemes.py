@@ -205,7 +205,7 @@ class Impedance(Law):
 
     def _impedance(self, p: Array) -> Array:
         if self.low == self.high:
-            return np.full(np.shape(p), self.high)
+            return np.asarray(self.high)
         x = np.clip(p / self.width, 0.0, 1.0)
         rising = x**self.power / self.middle ** (self.power - 1)
         falling = 1 - (1 - x) ** self.power / (1 - self.middle) ** (self.power - 1)

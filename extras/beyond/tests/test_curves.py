@@ -18,6 +18,8 @@ from bouncing_ball_beyond.equations import flight
 
 # Orbits are found to rounding errors of numbers up to ten.
 ROUNDED = 1e-12
+# Special orbits are located to some rounding errors of their tests, over the slopes of these.
+LOCATED = 1e-9
 
 COMPLIANT = SpringDamper(2.0, restitution=0.85)
 STIFFNESS = ("amplitude", "frequency_ratio")
@@ -113,6 +115,29 @@ def test_saddle_nodes_of_doubled_orbits_begin_at_a_generalized_period_doubling(c
     # The end is interpolated between four points on both sides.
     assert end.z[-2:] == pytest.approx(generalized.z[-2:], abs=1e-6)
     assert end.speeds == pytest.approx(np.repeat(generalized.speeds, 2), abs=1e-5)
+
+
+def test_from_a_generalized_period_doubling_the_saddle_nodes_of_doubled_orbits_are_followed(
+    compliant,
+):
+    ranges = {"amplitude": (0.1, 3.0), "frequency_ratio": (0.8, 6.0)}
+    doublings = special_curve(compliant.first("period doubling"), along=STIFFNESS, ranges=ranges)
+    generalized = doublings.first("generalized period doubling")
+    folds = special_curve(generalized, along=STIFFNESS, ranges=ranges)
+    assert (folds.kind, folds.impacts, folds.periods) == ("saddle-node", 2, 2)
+    assert folds.start.startswith("period halving at")
+    assert folds.z[0, -2:] == pytest.approx(generalized.z[-2:], rel=LOCATED)
+    # They touch the curve of doublings: their distance from it is of second order.
+    chord = folds.z[1, -2:] - folds.z[0, -2:]
+    distance = np.linalg.norm(doublings.z[:, -2:] - generalized.z[-2:], axis=1)
+    tangent = doublings.refined(1e-3).z[:, -2:] - generalized.z[-2:]
+    beside = tangent[np.argsort(np.linalg.norm(tangent, axis=1))[1]]
+    across = np.cross([*chord, 0.0], [*beside, 0.0])[2]
+    assert abs(across) < 0.01 * np.linalg.norm(chord) * np.linalg.norm(beside)
+    assert distance.min() < 0.1
+    # The last orbit has lost its release: its multipliers are ratios of rounding errors.
+    for each in folds.orbits[1:-1]:
+        assert each.turn == pytest.approx(1.0, abs=1e-8)
 
 
 def test_a_curve_of_doubled_orbits_goes_through_their_doublings(rigid):

@@ -26,6 +26,7 @@ from bouncing_ball_beyond.forms import RESONANT, one_impact_more
 from bouncing_ball_beyond.march import (
     AT_GOAL,
     CLOSED,
+    FIRST_STEP,
     Points,
     Start,
     ends_at,
@@ -219,6 +220,27 @@ def followed(start: Start, window, until, points, own) -> list[FollowedBranch]:
     return branches
 
 
+def both_ways(
+    equations: OrbitEquations,
+    z: NDArray,
+    direction: NDArray,
+    window: NDArray,
+    points: int,
+    until: str | None = None,
+    step: float = FIRST_STEP,
+) -> list[FollowedBranch]:
+    """A curve from one of its points, shape (1, N), along a direction and against it."""
+    start = Start(
+        equations,
+        np.tile(z, (2, 1)),
+        np.concatenate([direction, -direction]),
+        np.full(2, np.nan),
+        np.full(2, ""),
+        step,
+    )
+    return followed(start, np.array([window, window]), [until, until], points, "")
+
+
 def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     """Where orbits merge with those of half their period.
 
@@ -231,20 +253,11 @@ def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     start = newton(half, near.mean(axis=0, keepdims=True))
     if equations.kind != "saddle-node" or not start.found[0]:
         return None
-    direction = tangents(half, start.z)
     reach = float(np.linalg.norm((ends[1] - ends[0]) / equations.scales(ends[:1])[0]))
-    both = Start(
-        half.rows(np.array([0, 0])),
-        np.tile(start.z, (2, 1)),
-        np.concatenate([direction, -direction]),
-        np.full(2, np.nan),
-        np.full(2, ""),
-        step=reach / 2,
-    )
     window = start.z[0, half.size :] + reach * np.array([[-1.0], [1.0]])
-    until = np.full(2, GENERALIZED)
-    for branch in followed(both, np.array([window, window]), until, 20, ""):
-        for each in branch.special:
+    given = half, start.z, tangents(half, start.z), window, 20
+    for curve in both_ways(*given, until=GENERALIZED, step=reach / 2):
+        for each in curve.special:
             if each.kind == GENERALIZED:
                 return half.doubled(each.z[np.newaxis])[1][0]
     return None
@@ -319,14 +332,15 @@ def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
     )
 
 
-def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Directions in which orbits of twice the period leave period doublings; shape (rows, 2kq + 1).
+def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """Directions in which orbits of twice the period leave period doublings; shape (rows, 2kq + p).
 
     It is the null vector of the equations of an orbit whose first impact comes back with the other
     sign, and after it this vector with the other sign.
     """
-    derivatives = equations.linear(z).derivatives.copy()
-    rows, k, q, _ = derivatives.shape
+    q = equations.unknowns
+    derivatives = equations.linear(z).derivatives[..., : q + 3].copy()
+    rows, k, _, _ = derivatives.shape
     derivatives[:, -1, :, q : q + 2] *= -1
     # Any column and any row beside the singular matrix, if they are not special.
     derivatives[..., q + 2 :] = np.cos(np.arange(k * q)).reshape(k, q, 1)
@@ -335,7 +349,7 @@ def _flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     border = np.broadcast_to(border, (rows, 1, k * q + 1))
     none = np.zeros((rows, k, q, 1))
     null = solve_bordered(derivatives, none, border, np.ones((rows, 1, 1)))[:, :-1, 0]
-    return np.concatenate([null, -null, np.zeros((rows, 1))], axis=1)
+    return np.concatenate([null, -null, np.zeros((rows, len(equations.along)))], axis=1)
 
 
 def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500):
@@ -669,7 +683,7 @@ def _doubled_start(task: _Task, way: int) -> Start:
     twice, origin = task.equations.doubled(task.z)
     rows = len(origin)
     units = twice.scales(origin)
-    direction = unit(_flip(task.equations, task.z) / units)
+    direction = unit(flip(task.equations, task.z) / units)
     pair = twice.rows(np.tile(np.arange(rows), 2))
     start = origin.copy()
     step = np.full(rows, 0.02)

@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import brief
-from bouncing_ball_beyond.continuation import FollowedBranch, followed
+from bouncing_ball_beyond.continuation import FollowedBranch, both_ways, flip
 from bouncing_ball_beyond.equations import (
     KINDS,
     OF_RESTS,
@@ -33,11 +33,15 @@ from bouncing_ball_beyond.equations import (
     PeriodicOrbit,
 )
 from bouncing_ball_beyond.forms import one_impact_less
-from bouncing_ball_beyond.march import CLOSED, Start, newton, unit
+from bouncing_ball_beyond.march import CLOSED, newton, unit
 from bouncing_ball_beyond.paths import Path, path_of, place_on
+from bouncing_ball_beyond.special_orbits import GENERALIZED
 
 OTHER = 1e-3
 """A start that is farther from the corrected special orbit is no special orbit of its kind."""
+
+BESIDE = 0.01
+"""Distance of the first saddle-node from a generalized period doubling, as that of a step."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -87,7 +91,8 @@ def special_curve(
     special : PeriodicOrbit
         A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is a
         period doubling of half the period, and the grazing of an impact is that of a flight of the
-        orbit without this impact; these are the curves that are followed.
+        orbit without this impact; these are the curves that are followed. From a generalized period
+        doubling it is that of the saddle-nodes of doubled orbits, which begins there.
     along : tuple of two names or paths
         As for `follow`.
     ranges : mapping of names to (low, high), optional
@@ -115,22 +120,14 @@ def special_curve(
     >>> [each.kind for each in curve.special], curve.end
     (['1:2 resonance'], 'restitution = 1 is reached')
     """
-    equations, z = _start(special, along)
+    equations, z, normal = _start(special, along)
     window = _limits(equations, z, special, ranges)
-    first = newton(equations, z[np.newaxis])
+    first = newton(equations, z[np.newaxis], normal)
     if not first.found[0]:
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
         raise OrbitNotFound(f"the orbit is no {equations.kind}: the nearest one is elsewhere")
-    direction = unit(first.tangent)
-    start = Start(
-        equations,
-        np.tile(first.z, (2, 1)),
-        np.concatenate([direction, -direction]),
-        np.full(2, np.nan),
-        np.full(2, ""),
-    )
-    forth, back = followed(start, np.array([window, window]), [None, None], points, "")
+    forth, back = both_ways(equations, first.z, unit(first.tangent), window, points)
     if forth.end == CLOSED:
         return SpecialCurve(equations, forth.z, forth.special, CLOSED, CLOSED, equations.kind)
     return SpecialCurve(
@@ -146,9 +143,11 @@ def special_curve(
 SUCH = "such as branch.first('period doubling')"
 
 
-def _start(special: Any, along) -> tuple[OrbitEquations, NDArray]:
-    """The equations of special orbits along two parameters, and one of them."""
-    allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
+def _start(special: Any, along) -> tuple[OrbitEquations, NDArray, NDArray | None]:
+    """The equations of special orbits along two parameters, one of them, and the normal of a plane
+    across their curve, if it is not that of the last parameter.
+    """
+    allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
     if not special.kind:
@@ -168,18 +167,25 @@ def _start(special: Any, along) -> tuple[OrbitEquations, NDArray]:
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    given = special.ball, special.impacts, special.periods, special.amplitude
-    equations = OrbitEquations(*given, paths, special.table)
     here = special.ball, special.amplitude
+    given = {"ball": special.ball, "amplitude": special.amplitude, "table": special.table}
+    equations = replace(special.equations, along=paths, **given)
     values = [float(place_on(path, *here, special.table)) for path in paths]
     z = np.append(special.z[: equations.size], values)
     if special.kind == "grazing of an impact":
         others, row = one_impact_less(equations, z)
-        return replace(others, kind="grazing of a flight"), row
+        return replace(others, kind="grazing of a flight"), row, None
     if special.kind == "period halving":
         half, rows = equations.halved(z[np.newaxis])
-        return replace(half, periods=int(half.periods), kind="period doubling"), rows[0]
-    return replace(equations, kind=special.kind), z
+        return replace(half, periods=int(half.periods), kind="period doubling"), rows[0], None
+    if special.kind == GENERALIZED:
+        # There the curve of the saddle-nodes of doubled orbits begins.
+        twice, rows = equations.doubled(z[np.newaxis])
+        twice = replace(twice, periods=int(twice.periods), kind="saddle-node")
+        units = twice.scales(rows)
+        ahead = unit(flip(equations, z[np.newaxis]) / units)
+        return twice, (rows + BESIDE * ahead * units)[0], ahead / units
+    return replace(equations, kind=special.kind), z, None
 
 
 def _limits(equations, z, special, ranges) -> NDArray:

@@ -69,6 +69,9 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
     crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
+    if CUSP in names:
+        # The parameters turn back as well where the halves of orbits swap.
+        crossed[-1] &= ~crossed[names.index("period halving")]
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
     kinds = np.array(names)[which]

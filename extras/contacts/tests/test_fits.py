@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.special import chdtrc
 
-from bouncing_ball_contacts import Refused, fit
+from bouncing_ball_contacts import Refused, design, fit
 from bouncing_ball_contacts.intervals import curves_of, estimates, impacts_of, without_scatter
 from bouncing_ball_contacts.laws import LAWS, ContactLaw, judge
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
@@ -425,12 +425,12 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
 
 def test_a_fit_is_a_bounce_for_an_engine():
     found = fit("golf_ball")
-    written = found.design("mujoco", "2 ms")
+    written = design(found.bounce(), "mujoco", "2 ms")
     assert written.bounce.restitution == pytest.approx(found.restitution)
     assert written.bounce.radius == pytest.approx(0.021)
     other = fit("bouncy_ball", mass="20 g", diameter="30 mm").bounce()
     assert (other.mass, other.radius) == (0.02, 0.015)
     with pytest.raises(Refused, match="mass is missing"):
-        fit("bouncy_ball").design("mujoco", "2 ms")
+        fit("bouncy_ball").bounce()
     # Without its damping the same contact lasts longer.
     assert 7.314e-4 < fit("croquet").bounce().contact_time < 1.06 * 7.314e-4

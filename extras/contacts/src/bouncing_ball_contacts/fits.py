@@ -10,14 +10,11 @@ import numpy as np
 
 from bouncing_ball_contacts.designs import (
     Bounce,
-    Design,
     Page,
     Quantity,
     aligned,
-    design,
     holding,
 )
-from bouncing_ball_contacts.engines import Engine
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
@@ -128,12 +125,6 @@ class Fit(Page):
             given["contact_time"] = math.pi * math.sqrt(ratio)
         mass = self.mass if mass is None else mass
         return Bounce(mass=mass, restitution=self.restitution, speed=self.speed, **given)
-
-    def design(
-        self, engine: str | Engine = "generic", time_step: Quantity = None, **more: Any
-    ) -> Design:
-        """Return the design of an engine for this bounce; ``more`` belongs to the bounce."""
-        return design(self.bounce(**more), engine, time_step)
 
 
 def lowest_points(recording: Recording, diameter: float | None) -> Recording:

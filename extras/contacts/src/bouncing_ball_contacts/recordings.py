@@ -151,55 +151,31 @@ def _series(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     ]
 
 
-def _flights_between(table: Table, runs: list[tuple[Array, Lines]]) -> list[tuple[Array, Lines]]:
-    """Return the flights between times."""
-    flights = [(np.diff(times), lines[1:]) for times, lines in runs]
-    for lasting, lines in flights:
-        table.refuse(
-            lasting <= 0,
-            "the time is not after the one before: sort the lines, or leave an empty line where "
-            "another recording begins",
-            lines=lines,
-        )
-        # Flights get shorter, even if r is 0.997.
-        half = len(lasting) // 2
-        if half >= 10 and lasting[half:].mean() > 0.97 * lasting[:half].mean():
-            raise Refused(
-                f"{table.name}: evenly spaced times are those of samples: of what? name the "
-                "columns t and y"
-            )
-    return flights
-
-
 def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     are_times = kind == "times"
     digit = min(each.digit for each in columns)
     runs = _series(table, columns)
     if are_times:
-        runs = _flights_between(table, runs)
-    chains = tuple(values for values, _ in runs if len(values))
+        runs = [(np.diff(times), lines[1:]) for times, lines in runs]
     # The errors of intervals that were rounded one by one do not cancel, as those of times.
     is_read = are_times or kind == "heights"
     found = Recording(
         table.name,
         "heights" if kind == "heights" else "flights",
-        chains,
+        tuple(values for values, _ in runs if len(values)),
         are_times=are_times,
         digit=digit if is_read else 0.0,
         head=table.head,
     )
-    rounding = rounding_of(found) if chains else 0.0
-    # Errors of two readings may let a height grow by a last digit, and those of three times a
-    # flight by two.
-    grows = 2 * rounding if are_times else rounding
-    what = "height of {} m" if kind == "heights" else "flight of {} s"
+    rounding = rounding_of(found) if found.chains else 0.0
     for values, lines in runs:
+        # Errors of two readings may let a height grow by a last digit, and those of three times a
+        # flight by two.
+        grows = 2 * rounding if are_times else rounding
+        what = "height of {} m" if kind == "heights" else "flight of {} s"
         if kind != "heights":
-            small = "a flight of {} s is too short: is the unit right?"
-            table.refuse(values < 1e-3, small, values, lines=lines)
-            long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading"
-            table.refuse(values > 9, f"{long}, or divide times of slow motion", values, lines=lines)
+            _refuse_durations(table, are_times, values, lines)
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
             f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
@@ -208,29 +184,52 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
             values[:-1],
             lines=lines[1:],
         )
-        if kind == "heights":
-            continue
-        # To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2, and to a
-        # fall, which is half a flight, the next one has the ratio 2r; the middle between that and
-        # r, in the logarithms that scatter alike, is √2 r.
-        middle = values[1:-1]
-        beside = values[:-2] * values[2:]
-        table.refuse(
-            (middle + rounding / 2) ** 2 < beside / 2,
-            "a flight of {} s, after which one of {} s has less than half of the ratio that the "
-            "next one has: an impact is missing within it (--leave-out its line)",
-            values[:-2],
-            middle,
-            lines=lines[:-2],
-        )
-        table.refuse(
-            ((middle - rounding / 2) ** 2 > math.sqrt(2) * beside)[:1],
-            "a flight of {} s is short beside the two after it: it begins with the release, or the "
-            "next one has an impact within it (--leave-out the line of either)",
-            values,
-            lines=lines,
-        )
+        if kind != "heights":
+            _refuse_ratios(table, values, lines, rounding)
     return found
+
+
+def _refuse_durations(table: Table, are_times: bool, flights: Array, lines: Lines) -> None:
+    """Refuse flights in s that no ball has."""
+    half = len(flights) // 2
+    # Flights get shorter, even if r is 0.997.
+    if are_times and half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
+        raise Refused(
+            f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
+            "and y"
+        )
+    past = "the time is not after the one before: sort the lines, or leave an empty line where "
+    short = "a flight of {} s is too short: is the unit right?"
+    long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide "
+    table.refuse(flights <= 0, f"{past}another recording begins", lines=lines)
+    table.refuse(flights < 1e-3, short, flights, lines=lines)
+    table.refuse(flights > 9, f"{long}times of slow motion", flights, lines=lines)
+
+
+def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) -> None:
+    """Refuse flights in s within which an impact is missing, and a first one that is a fall.
+
+    To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2, and to a fall,
+    which is half a flight, the next one has the ratio 2r; the middle between that and r, in the
+    logarithms that scatter alike, is √2 r.
+    """
+    middle = flights[1:-1]
+    beside = flights[:-2] * flights[2:]
+    table.refuse(
+        (middle + rounding / 2) ** 2 < beside / 2,
+        "a flight of {} s, after which one of {} s has less than half of the ratio that the next "
+        "one has: an impact is missing within it (--leave-out its line)",
+        flights[:-2],
+        middle,
+        lines=lines[:-2],
+    )
+    table.refuse(
+        ((middle - rounding / 2) ** 2 > math.sqrt(2) * beside)[:1],
+        "a flight of {} s is short beside the two after it: it begins with the release, or the "
+        "next one has an impact within it (--leave-out the line of either)",
+        flights,
+        lines=lines,
+    )
 
 
 def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:

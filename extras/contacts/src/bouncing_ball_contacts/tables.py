@@ -205,7 +205,8 @@ def _heading(text: str) -> tuple[str, str, str]:
     key = re.sub(r"[ .]", "", name.lower())
     counted = re.sub(r"\d+$", "", key)
     # h0, h1, h2 are counted, and v0 is a name of its own.
-    return name, unit.replace("-", ""), _ROLES.get(key) or _ROLES.get(counted, "")
+    unit = "" if unit == "-" else unit
+    return name, unit, _ROLES.get(key) or _ROLES.get(counted, "")
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:

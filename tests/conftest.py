@@ -17,6 +17,8 @@ from snakemake import cli
 from tests import repository
 from tests.project import FILES, Project
 
+from bouncing_ball import datasets
+
 ROOT = Path(__file__).resolve().parents[1]
 STUB = """from pathlib import Path
 for file in snakemake.output:
@@ -174,8 +176,10 @@ def original_project(tmp_path_factory):
 
 
 @pytest.fixture
-def project(original_project):
+def project(original_project, monkeypatch):
     """The same at the same place, for a test that changes it."""
+    # What a dataset records of this repository is not compared, and asking git for it takes time.
+    monkeypatch.setattr(datasets, "commit", lambda files: "unknown")
     saved = original_project.top.parent.with_name("saved")
     if not saved.exists():
         shutil.copytree(original_project.top.parent, saved)

@@ -19,13 +19,14 @@ EDITS = {
     "curve": ("config/config.yaml", "[1.0, 1.5]", "[1.0, 1.5, 2.5]"),
 }
 VERDICTS = (
-    "claims: verdict is contradicted, the reference has reproduced at claim = high, and 1 more"
+    "claims: verdict is 'contradicted', the reference has 'reproduced' at claim = 'high', "
+    "and 1 more"
 )
 LINES = {
     "code": (VERDICTS, "follows from fig14: changed: src/study.py ({})"),
     "a model": (VERDICTS, "follows from fig14: changed: src/model.py ({})"),
     "verdicts": (
-        "claims: today's code makes another figures/claims.nc of the reference: verdict is contra",
+        "claims: today's code makes another figures/claims.nc of the reference: verdict is 'contr",
         "; changed: src/judge.py ({})",
     ),
     "drawing": (
@@ -46,7 +47,7 @@ LINES = {
     ),
     "small parameter": (
         "fig02: max_height is 1.01, the reference has 1 at",
-        "; changed parameter: amplitude: new 1.01, without 1.0",
+        "; changed parameter: amplitude: new 1.01, without 1",
     ),
     "curve": (VERDICTS, "follows from fig14: changed parameter: amplitude: new 2.5"),
 }
@@ -93,12 +94,12 @@ PAIRS = {
     ("code", "drawing"): (["src/study.py"], ["src/table.py"]),
     ("code", "template"): (["src/study.py"], ["templates/paper.md"]),
     ("code", "printed table"): (["config/printed.csv", "src/study.py"], []),
-    ("code", "small parameter"): (["src/study.py"], ["new 1.01, without 1.0"]),
+    ("code", "small parameter"): (["src/study.py"], ["new 1.01, without 1"]),
     ("verdicts", "drawing"): (["src/judge.py"], ["src/table.py"]),
     ("verdicts", "template"): (["src/judge.py"], ["templates/paper.md"]),
     ("verdicts", "printed table"): (["src/judge.py"], ["config/printed.csv"]),
-    ("verdicts", "small parameter"): (["src/judge.py"], ["new 1.01, without 1.0"]),
-    ("curve", "small parameter"): (["follows from fig14: ", "new 2.5"], ["new 1.01, without 1.0"]),
+    ("verdicts", "small parameter"): (["src/judge.py"], ["new 1.01, without 1"]),
+    ("curve", "small parameter"): (["follows from fig14: ", "new 2.5"], ["new 1.01, without 1"]),
     ("parameter", "drawing"): (["new 2.5, without 1.5"], ["src/table.py"]),
     ("parameter", "template"): (["new 2.5, without 1.5"], ["templates/paper.md"]),
     ("printed table", "drawing"): (["config/printed.csv"], ["src/table.py"]),

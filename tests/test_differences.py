@@ -35,7 +35,7 @@ def test_an_added_or_removed_curve_is_one_finding_and_the_others_are_compared(pl
     assert texts(curves(), more) == [f"case: without {NEW!r}; the other 3 agree"]
     more["apparent_restitution"].loc[{"case": CASES[2]}] *= 1.001
     found = texts(more, curves())
-    assert f"at case = {CASES[2]}" in found[0] and "and 3 more of 12 values" in found[0]
+    assert f"at case = {CASES[2]!r}" in found[0] and "and 3 more of 12 values" in found[0]
     assert found[1:] == [f"case: new {NEW!r}; the other 3 were compared"]
 
 
@@ -54,6 +54,13 @@ def test_more_frequency_ratios_are_compared_where_they_are_the_same():
     ]
 
 
+def test_numbers_have_as_many_digits_as_tell_them_apart():
+    assert differences.legible([0.1 + 0.2, 1 / 3]) == ["0.3", "0.3333"]
+    near = differences.legible([0.1 + 0.2, 0.3])
+    assert near == ["0.30000000000000004", "0.29999999999999999"]
+    assert differences.legible([1.0, 1.0 + 1e-6, np.nan, np.nan]) == ["1", "1.000001", "nan", "nan"]
+
+
 def test_of_labels_in_another_order_only_the_order_is_different():
     reversed_cases = curves().isel(case=[2, 1, 0])
     assert texts(reversed_cases, curves()) == ["case: the order changed; the 3 agree"]
@@ -64,7 +71,7 @@ def test_of_labels_in_another_order_only_the_order_is_different():
     assert texts(more, curves()) == [words]
     reversed_cases["apparent_restitution"].loc[{"case": CASES[2]}] *= 1.001
     found = texts(reversed_cases, curves())
-    assert f"at case = {CASES[2]}" in found[0] and "and 3 more of 12 values" in found[0]
+    assert f"at case = {CASES[2]!r}" in found[0] and "and 3 more of 12 values" in found[0]
     assert found[1:] == ["case: the order changed; the 3 were compared"]
 
 
@@ -72,7 +79,7 @@ def test_repeated_or_only_new_labels_do_not_agree():
     repeated = texts(curves([*CASES, CASES[0]]), curves())
     assert "dimensions of case is {'case': 4}, in the reference {'case': 3}" in repeated
     another = texts(curves([NEW]), curves(CASES[1:2]))
-    assert f"case is {NEW}, the reference has {CASES[1]} at" in " ".join(another)
+    assert f"case is {NEW!r}, the reference has {CASES[1]!r} at" in " ".join(another)
 
 
 def test_transposed_values_are_different():

@@ -41,64 +41,69 @@ def accept(
     and if the code is not committed.
     """
     comparison = Comparison(results, reference, products, config, names, top)
-    history = comparison.history
-    new = comparison.new
-    old = comparison.old
-    folders = [old.folder / each for each in code]
-    edited = sorted(history.uncommitted(folders))
-    unfit = [finding.line for finding in comparison.report().findings if finding.of_results]
-    drawn = [each.artifact for each in comparison.made if new.drawn_elsewhere(each)]
-    if not history.head:
-        raise ValueError("nothing is accepted, because the commit of the code is unknown")
-    if edited:
-        raise ValueError(f"nothing is accepted, commit first: {', '.join(edited)}")
-    if unfit:
-        raise ValueError(f"nothing is accepted: {unfit[0]}")
-    if drawn:
-        raise ValueError(f"nothing is accepted: another matplotlib drew {', '.join(drawn)}")
-    data = dict(old.data)
+    committed = [Path(reference) / each for each in code]
+    for reason in unfit(comparison, committed):
+        raise ValueError(f"nothing is accepted{reason}")
+    data = dict(comparison.old.data)
     with tempfile.TemporaryDirectory() as scratch:
         made = Path(scratch)
         (made / "figures").mkdir()
         for name in comparison.names:
             if name not in comparison.derived:
-                data[name] = renewed(comparison, name, new.data[name], made, folders)
+                new = comparison.new.data[name]
+                data[name] = renewed(comparison, name, new, made, committed)
         for product in products:
-            changed = any(
-                data[name] is not old.data.get(name) for name in product.needs if name in data
-            )
-            if not {*product.needs} <= data.keys() or not (changed or product in comparison.made):
+            known = [name for name in product.needs if name in data]
+            changed = any(data[name] is not comparison.old.data.get(name) for name in known)
+            if len(known) < len(product.needs) or not (changed or product in comparison.made):
                 continue
             product.make(data, made)
             if product.is_dataset:
                 name = product.artifact
                 expected = datasets.read(made / product.files[0])
                 (made / product.files[0]).unlink()
-                data[name] = renewed(comparison, name, expected, made, folders)
-        return list(moved(made, old.folder))
+                data[name] = renewed(comparison, name, expected, made, committed)
+        return list(moved(made, Path(reference)))
+
+
+def unfit(comparison: Comparison, committed: list[Path]) -> Iterator[str]:
+    """Why the results of a comparison must not become the reference."""
+    edited = sorted(comparison.history.uncommitted(committed))
+    if not comparison.history.head:
+        yield ", because the commit of the code is unknown"
+    if edited:
+        yield f", commit first: {', '.join(edited)}"
+    for finding in comparison.report().findings:
+        if finding.of_results:
+            yield f": {finding.line}"
+    drawn = [each.artifact for each in comparison.made if comparison.new.drawn_elsewhere(each)]
+    if drawn:
+        yield f": another matplotlib drew {', '.join(drawn)}"
 
 
 def renewed(
-    comparison: Comparison, name: str, expected: xr.Dataset, made: Path, code: list[Path]
+    comparison: Comparison, name: str, expected: xr.Dataset, made: Path, committed: list[Path]
 ) -> xr.Dataset:
     """The dataset that becomes the reference; a file of the folder `made` if it is another one.
 
     Its numbers are those of the reference if these agree with the expected ones, and those of the
     results otherwise. Its provenance is that of the results.
     """
-    new = comparison.new
-    old = comparison.old
-    agrees = name in old.data and not dataset_differences(expected, old.data[name])
-    side = old if agrees else new
-    if not agrees and (name not in new.data or dataset_differences(expected, new.data[name])):
+    agreeing = [
+        side
+        for side in (comparison.old, comparison.new)
+        if name in side.data and not dataset_differences(expected, side.data[name])
+    ]
+    if not agreeing:
         raise ValueError(f"nothing is accepted: it changes the {name}; make and accept all results")
-    if agrees and name not in comparison.names:
-        return old.data[name]
+    side = agreeing[0]
     found = side.data[name]
+    if side is comparison.old and name not in comparison.names:
+        return found
+    given = {key: comparison.new.data[name].attrs[key] for key in ("code", "versions")}
+    same = side is comparison.old and given.items() <= found.attrs.items()
     history = comparison.history
-    given = {key: new.data[name].attrs[key] for key in ("code", "versions")}
-    same = all(found.attrs.get(key) == given[key] for key in given)
-    if agrees and same and history.since(str(found.attrs.get("commit")), code) == []:
+    if same and history.since(str(found.attrs.get("commit")), committed) == []:
         return found
     copy = made / "figures" / f"{name}.nc"
     shutil.copyfile(side.folder / "figures" / copy.name, copy)

@@ -4,6 +4,8 @@ A dataset records its parameters, the versions of libraries, and the files of co
 their contents. Pictures, tables, claims and texts are functions of datasets.
 """
 
+import fcntl
+import os
 from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -119,7 +121,7 @@ class Side:
 
 
 def read_side(name: str, folder: Path, names: Collection[str]) -> Side:
-    """A side with the datasets that are there."""
+    """A side with the datasets that are there. Raises ValueError where files cannot be locked."""
     data = {}
     unread = {}
     for each in names:
@@ -129,8 +131,23 @@ def read_side(name: str, folder: Path, names: Collection[str]) -> Side:
             try:
                 data[each] = read(path)
             except Exception as error:  # Whatever readers of damaged files raise.
+                refuse_no_locks(path)
                 unread[each] = f"{type(error).__name__}: {error}"
     return Side(name, folder, data, unread)
+
+
+def refuse_no_locks(path: Path) -> None:
+    """Raise ValueError if HDF5, which locks each file that it reads, cannot lock this one."""
+    if os.environ.get("HDF5_USE_FILE_LOCKING") in ("FALSE", "0"):
+        return
+    try:
+        with path.open("rb") as file:
+            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except OSError as error:
+        raise ValueError(
+            f"{path} cannot be locked ({error.strerror}): if the file system has no locks, set "
+            "HDF5_USE_FILE_LOCKING=FALSE"
+        ) from None
 
 
 def read(path: Path) -> xr.Dataset:
@@ -139,26 +156,19 @@ def read(path: Path) -> xr.Dataset:
     Raises ValueError, or whatever the reader raises, for another file.
     """
     with netCDF4.Dataset(path) as file:
-        if file.data_model != "NETCDF4" or file.groups:
-            raise ValueError(f"it has the format {file.data_model} and {len(file.groups)} groups")
         unlimited = [name for name, each in file.dimensions.items() if each.isunlimited()]
-        if unlimited:
-            raise ValueError(f"the dimension {', '.join(unlimited)} is unlimited")
+        beside = [*file.groups, *unlimited]
+        if file.data_model != "NETCDF4" or beside:
+            other = f" with groups or unlimited dimensions: {', '.join(beside)}" if beside else ""
+            raise ValueError(f"it has the format {file.data_model}{other}")
     data = datasets.read(path)
-    versions = record(data, "versions")
-    missing = [name for name in PACKAGES if not isinstance(versions.get(name), str)]
+    records = {key: record(data, key) for key in ("parameters", "code", "versions")}
+    missing = [name for name in PACKAGES if not isinstance(records["versions"].get(name), str)]
     if missing:
         raise ValueError(f"it does not record the versions of {', '.join(missing)}")
-    record(data, "parameters")
+    if not all(isinstance(content, str) for content in records["code"].values() or [None]):
+        raise ValueError("it does not record the code that made it")
     return data
-
-
-def code_of(data: xr.Dataset) -> dict[str, str]:
-    """The files of code that a dataset records, with their contents; none without a record."""
-    try:
-        return {file: str(content) for file, content in record(data, "code").items()}
-    except (TypeError, ValueError):
-        return {}
 
 
 WORDS = ("title", "caption", "table")
@@ -184,11 +194,9 @@ def staleness(new: xr.Dataset, name: str, config: Mapping, top: Path) -> Iterato
     changed = changes(recorded, configured(config, name, recorded))
     if changed:
         yield f"stale: the configuration is another than it was made with: {'; '.join(changed)}"
-    code = code_of(new)
-    today = contents([top / name for name in code if (top / name).is_file()])
-    edited = [name for name in code if today.get(name) != code[name]]
+    code = record(new, "code")
+    today = contents([top / file for file in code if (top / file).is_file()])
+    edited = [file for file in code if today.get(file) != code[file]]
     if edited:
         words = f"stale: it was made by other code than today's: {', '.join(edited)}"
         yield f"{words}; remove it, and run again"
-    if not code:
-        yield "stale: it does not record the code that made it; remove it, and run again"

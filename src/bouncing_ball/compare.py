@@ -22,7 +22,7 @@ import io
 import os
 import sys
 import tempfile
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache
@@ -30,12 +30,11 @@ from pathlib import Path
 from typing import Any
 
 import jinja2
-import matplotlib
 import xarray as xr
 import yaml
 
 from bouncing_ball import datasets
-from bouncing_ball.artifacts import Product, Side, code_of, needed, read_side, staleness
+from bouncing_ball.artifacts import Product, Side, needed, read_side, staleness
 from bouncing_ball.datasets import PACKAGES
 from bouncing_ball.differences import (
     DESCRIPTIVE,
@@ -145,35 +144,28 @@ class Comparison:
 
     def file_findings(self, side: Side) -> Iterator[Finding]:
         """Files of one side that are missing, unreadable or, in a whole comparison, unexpected."""
-        folder = side.folder / "figures"
-        present = sorted(folder.iterdir()) if self.whole else []
+        present = sorted(path.name for path in (side.folder / "figures").iterdir())
+        accepted = {path.stem for path in (self.old.folder / "figures").iterdir()}
         texts = {
-            file: f"figures/{path.name} of the {side.name} is made by no rule"
-            for path in present
-            if (file := f"figures/{path.name}") not in self.files and path.name[0] != "."
+            file: f"{file} of the {side.name} is made by no rule"
+            for file in (f"figures/{name}" for name in present if name[0] != ".")
+            if self.whole and file not in self.files
         }
-        unknown = self.not_yet_accepted() if side is self.old else set()
         for file in self.files:
             path = side.folder / file
-            if path.stem in unknown:
-                texts[path.stem] = (
-                    f"{path.stem} is not in the reference yet: commit, then "
-                    f"snakemake --cores 2 {path.stem} accept"
+            name = path.stem
+            if side is self.old and file.startswith("figures/") and name not in accepted:
+                texts[name] = (
+                    f"{name} is not in the reference yet: commit, then "
+                    f"snakemake --cores 2 {name} accept"
                 )
             elif not path.is_file():
                 what = "no regular file" if path.exists() else "missing"
                 texts[file] = f"{file} is {what} in the {side.name}"
-            elif file.endswith(".nc") and path.stem in side.unread:
-                texts[file] = f"{file} of the {side.name} cannot be read: {side.unread[path.stem]}"
+            elif file == f"figures/{name}.nc" and name in side.unread:
+                texts[file] = f"{file} of the {side.name} cannot be read: {side.unread[name]}"
         for file, words in texts.items():
-            name = Path(file).stem
-            yield Finding("file", words, artifact=name, of_results=side is self.new)
-
-    def not_yet_accepted(self) -> set[str]:
-        """The figures and tables of which the reference has no file."""
-        pages = [file for file in self.files if file.startswith("figures/")]
-        known = {Path(file).stem for file in pages if (self.old.folder / file).exists()}
-        return {Path(file).stem for file in pages} - known
+            yield Finding("file", words, artifact=Path(file).stem, of_results=side is self.new)
 
     def dataset_findings(self, name: str) -> Iterator[Finding]:
         """Whether a dataset is stale, and where it differs from the reference."""
@@ -190,9 +182,7 @@ class Comparison:
         """
         made = None
         for side in (self.old, self.new):
-            if any(name not in side.data for name in product.needs):
-                continue
-            if side.drawn_elsewhere(product):
+            if side.drawn_elsewhere(product) or not side.data.keys() >= {*product.needs}:
                 continue
             needs = [(self.new.data.get(name), self.old.data.get(name)) for name in product.needs]
             if made is None or not all(new and old and same_bits(new, old) for new, old in needs):
@@ -211,19 +201,15 @@ class Comparison:
                 if side is self.new:
                     what = f"{file} in the results is not what its dataset gives"
                 for each in file_differences(made / file, path) if path.is_file() else []:
-                    named = replace(each, text=f"{what}: {each.text}")
-                    yield self.found(named, product, side)
+                    yield self.found(replace(each, text=f"{what}: {each.text}"), product, side)
             if side is self.old and product.is_dataset:
                 yield from self.followed(product, datasets.read(made / product.files[0]))
 
     def found(self, finding: Finding, product: Product, side: Side) -> Finding:
         """A finding on a product; what is wrong in the results alone has no cause in the code."""
-        if side is self.new:
-            return replace(finding, artifact=product.artifact, of_results=True)
-        reference = [*product.files, *(f"figures/{name}.nc" for name in product.needs)]
-        changed = self.since(product.code, product.needs, reference)
-        why = self.cause(changed, reference)
-        return replace(finding, artifact=product.artifact, cause=why)
+        wrong = side is self.new
+        cause = "" if wrong else self.cause_of_product(product)
+        return replace(finding, artifact=product.artifact, cause=cause, of_results=wrong)
 
     def followed(self, product: Product, expected: xr.Dataset) -> Iterator[Finding]:
         """How a dataset that follows from others differs from what today's code makes of those in
@@ -236,11 +222,8 @@ class Comparison:
         declared = declarations(expected) | declarations(new)
         changed = [other for other in product.needs if self.values_differ(other)]
         for each in compared(new, expected):
-            decides = {
-                other: {label for label in each.labels if other in declared.get(label, ())}
-                for other in changed
-            }
-            deciding = fewest(decides) if each.labels else changed
+            decided = [declared.get(label, set()) & {*changed} for label in each.labels]
+            deciding = fewest(decided) if each.labels else changed
             causes = {self.why(other) for other in deciding}
             # Each of several causes stands with its dataset.
             words = [f"follows from {', '.join(deciding)}", *(causes if len(causes) == 1 else ())]
@@ -268,99 +251,93 @@ class Comparison:
         """Why a dataset differs: by what both sides record."""
         if name not in self.old.data:
             return "it is not in the reference"
-        new = self.new.data[name]
-        old = self.old.data[name]
-        reference = [f"figures/{name}.nc"]
-        parameters = changes(record(old, "parameters"), record(new, "parameters"))
-        sure = [f"changed parameter: {'; '.join(parameters)}"] if parameters else []
-        libraries = [
-            each
-            for each in changes(record(old, "versions"), record(new, "versions"))
-            if each.split()[0] in PACKAGES
-        ]
-        mine = code_of(new)
-        theirs = code_of(old)
-        ids = {*mine.values(), *theirs.values()}
-        same = {*mine.values()} & {*theirs.values()}
-        changed: Collection[str] | None = [
-            file for file, each in (mine | theirs).items() if each in ids - same
-        ]
-        if not theirs:
-            changed = self.since(mine, [name], reference)
-        perhaps = [f"other versions: {', '.join(libraries)}"] if libraries else []
-        return self.cause(changed, reference, sure, perhaps)
+        old, new = (
+            {key: record(side.data[name], key) for key in ("parameters", "versions", "code")}
+            for side in (self.old, self.new)
+        )
+        # A file that was only moved has the same content.
+        same = {*old["code"].values()} & {*new["code"].values()}
+        code = {**old["code"], **new["code"]}
+        changed = [file for file, content in code.items() if content not in same]
+        parameters = changes(old["parameters"], new["parameters"])
+        versions = changes(old["versions"], new["versions"])
+        libraries = [each for each in versions if each.split()[0] in PACKAGES]
+        return self.cause([f"figures/{name}.nc"], changed, parameters, libraries)
 
-    def since(
-        self, code: Collection[str | Path], needs: Collection[str], reference: Collection[str]
-    ) -> Collection[str] | None:
-        """Files of code that have changed since a file of the reference was made; none if that is
-        unknown.
+    def cause_of_product(self, product: Product) -> str:
+        """Why today's code makes other files of the reference: by what has changed since they were
+        made.
         """
-        code = [self.history.top / file for file in code]
-        commits = [str(self.old.data[name].attrs.get("commit")) for name in needs]
-        made = self.history.newest(commits, [self.old.folder / file for file in reference])
+        files = [*product.files, *(f"figures/{name}.nc" for name in product.needs)]
+        commits = [str(self.old.data[name].attrs.get("commit")) for name in product.needs]
+        made = self.history.newest(commits, [self.old.folder / file for file in files])
+        code = [self.history.top / file for file in product.code]
         later = self.history.since(made, code)
         edited = self.history.uncommitted(code)
-        return {*edited, *(later or ())} if edited or later is not None else None
+        if later is None and not edited:
+            unknown = ": git does not know when the reference was made"
+            without = unknown if self.history.head else " without git"
+            return f"changes of the code are unknown{without}"
+        return self.cause(files, {*edited, *(later or ())})
 
     def cause(
         self,
-        changed: Collection[str] | None,
         reference: Collection[str],
-        sure: Collection[str] = (),
-        perhaps: Collection[str] = (),
+        changed: Collection[str],
+        parameters: Collection[str] = (),
+        libraries: Collection[str] = (),
     ) -> str:
         """The cause in words: what surely changes the result, changed files, among them those of
         the reference that were edited, and what perhaps changes it.
         """
-        own = [self.old.folder / file for file in reference]
-        files = {*(changed or ()), *self.history.uncommitted(own)}
-        causes = [*sure]
-        if files:
-            causes.append(f"changed: {', '.join(self.history.told(files))}")
-        elif changed is None:
-            unknown = ": git does not know when the reference was made"
-            without = unknown if self.history.head else " without git"
-            causes.append(f"changes of the code are unknown{without}")
-        elif not sure and not perhaps:
-            made = self.history.told(self.history.names(own))[:1]
-            causes.append(" since ".join(["no file that it is made from has changed", *made]))
-        return "; ".join([*causes, *perhaps])
+        paths = [self.old.folder / file for file in reference]
+        files = self.history.told({*changed, *self.history.uncommitted(paths)})
+        causes = {
+            "changed parameter": "; ".join(parameters),
+            "changed": ", ".join(files),
+            "other versions": ", ".join(libraries),
+        }
+        words = [f"{what}: {which}" for what, which in causes.items() if which]
+        if words:
+            return "; ".join(words)
+        since = self.history.told(self.history.names(paths))[:1]
+        return " since ".join(["no file that it is made from has changed", *since])
 
     # What else a reader should know
 
-    def skipped(self) -> dict[str, set[str]]:
-        """Pictures that are not compared, with the versions of matplotlib that drew them."""
-        found: dict[str, set[str]] = {}
-        for side in (self.old, self.new):
-            for product in self.made:
-                for file in product.files if side.drawn_elsewhere(product) else ():
-                    found.setdefault(file, set()).add(side.matplotlib(product))
-        return found
+    def skipped(self) -> dict[str, str]:
+        """Pictures that are not compared, with the version of matplotlib that drew them."""
+        return {
+            file: side.matplotlib(product)
+            for side in (self.old, self.new)
+            for product in self.made
+            if side.drawn_elsewhere(product)
+            for file in product.files
+        }
 
     def notes(self) -> list[str]:
         """What was not compared, and which versions are not those of today."""
         found = []
         skipped = self.skipped()
+        today = datasets.versions()
         if skipped:
-            drew = ", ".join(sorted(set().union(*skipped.values())))
+            drew = ", ".join(sorted({*skipped.values()}))
             found.append(
                 f"{len(skipped)} pictures were not compared: matplotlib {drew} drew them, and this "
-                f"is {matplotlib.__version__}."
+                f"is {today['matplotlib']}."
             )
         others = []
-        relevant = {*self.names, *needed(self.made)}
+        compared = {*self.names, *needed(self.made)}
         for package in PACKAGES:
-            places = {
-                f"in the {side.name}": {
-                    record(side.data[name], "versions")[package]
-                    for name in relevant & side.data.keys()
-                }
+            old, new = (
+                {record(side.data[name], "versions")[package] for name in compared & {*side.data}}
                 for side in (self.old, self.new)
-            } | {"today": {datasets.versions()[package]}}
-            if len(set().union(*places.values())) > 1:
-                words = [f"{', '.join(sorted(each))} {where}" for where, each in places.items()]
-                others.append(f"{package} {', '.join(words)}")
+            )
+            if (old | new) - {today[package]}:
+                others.append(
+                    f"{package} {', '.join(sorted(old))} in the reference, "
+                    f"{', '.join(sorted(new))} in the results, {today[package]} today"
+                )
         if others:
             found.append(f"Other versions: {'; '.join(others)}.")
         return found
@@ -374,66 +351,61 @@ def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
         return [Finding("file", f"the datasets cannot be compared: {error!r}")]
 
 
-def declarations(data: xr.Dataset) -> dict[str, list[str]]:
+def declarations(data: xr.Dataset) -> dict[str, set[str]]:
     """The datasets that each claim declares to decide it."""
     if "decided_by" not in data or data.decided_by.dims != ("claim",):
         return {}
     pairs = zip(data.claim.values, data.decided_by.values, strict=True)
-    return {claim: str(text).split(", ") for claim, text in pairs}
+    return {claim: {*str(text).split(", ")} for claim, text in pairs}
 
 
-def fewest(decides: Mapping[str, Collection[str]]) -> list[str]:
-    """A choice of datasets that decide all of the claims that differ, no more than needed.
+def fewest(decided: Iterable[Collection[str]]) -> list[str]:
+    """Datasets of which one decides each claim: one that alone decides a claim is enough for the
+    others that it decides too.
 
-    >>> fewest({"fig02": {"a"}, "fig06": {"a", "b"}, "fig14": {"c"}, "fig16": set()})
+    >>> fewest([{"fig02", "fig06"}, {"fig06"}, {"fig14"}, set()])
     ['fig06', 'fig14']
     """
-    left = set().union(*decides.values())
-    found = []
-    while left:
-        most = max(decides, key=lambda name: len(left & {*decides[name]}))
-        left -= {*decides[most]}
-        found.append(most)
-    return found
+    found: set[str] = set()
+    for names in sorted(decided, key=len):
+        if found.isdisjoint(names):
+            found |= {*names}
+    return sorted(found)
 
 
 def chosen(
     products: Collection[Product], names: Collection[str]
 ) -> tuple[list[str], list[Product]]:
-    """The datasets and products to compare: those named, and those that need no other datasets.
+    """The datasets and products to compare: all, or those named and those that need no other
+    datasets.
 
     Raises ValueError for a name that is not compared, so that nothing is not taken for agreement.
     """
     known = {*needed(products), *(product.artifact for product in products)}
-    unknown = sorted(set(names) - known)
+    wanted = {*names} or known
+    unknown = sorted(wanted - known)
     if unknown:
         allowed = f"allowed are {', '.join(sorted(known))}"
         raise ValueError(f"{', '.join(unknown)}: no file of that name is compared; {allowed}")
-    if not names:
-        return needed(products), [*products]
     made = [
         product
         for product in products
-        if product.artifact in names or (product.needs and set(product.needs) <= set(names))
+        if product.artifact in wanted or (product.needs and {*product.needs} <= wanted)
     ]
-    return [name for name in needed(products) if name in names], made
+    return [name for name in needed(products) if name in wanted], made
 
 
 def refuse(results: Path, reference: Path, files: Collection[str]) -> None:
-    """Refuse folders that have no results, and results that are the reference, or lie in it, also
-    by links.
-    """
-    inside = results.resolve().is_relative_to((reference / "figures").resolve())
-    pairs = [(results / file, reference / file) for file in ["", "figures", *files]]
-    same = [
-        pair for pair in pairs if all(path.exists() for path in pair) and pair[0].samefile(pair[1])
-    ]
-    if inside or same:
-        path = same[0][0] if same else results
-        raise ValueError(f"{path} is a part of the reference: results must be files of their own")
+    """Refuse folders that have no results, and results that are the reference, also by links."""
     for folder in (results, reference):
         if not (folder / "figures").is_dir():
             raise ValueError(f"{folder} is no folder of results: there is no {folder / 'figures'}")
+    for file in ["figures", *files]:
+        pair = results / file, reference / file
+        if all(path.exists() for path in pair) and pair[0].samefile(pair[1]):
+            raise ValueError(
+                f"{pair[0]} is a part of the reference: results must be files of their own"
+            )
 
 
 # The page, the log and the terminal

@@ -1,4 +1,4 @@
-"""How a dataset, a text or a picture differs from the reference.
+"""How a dataset, a text or a picture differs from what it is compared with.
 
 Datasets are compared by names, dimensions, types, attributes, texts and places of NaN exactly, and
 by numbers within the tolerance that the reference declares beside the variable (`datasets` says
@@ -12,9 +12,7 @@ import difflib
 import io
 import json
 import re
-import struct
-import zlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import takewhile, zip_longest
 from pathlib import Path
@@ -22,7 +20,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from PIL import Image
+from PIL import Image, PngImagePlugin
 
 from bouncing_ball import datasets
 
@@ -78,7 +76,6 @@ PROVENANCE = ("commit", "code", "versions", "computed_on")
 STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value", "_Unsigned")
 """How a file packs a variable; other encodings, such as compression, do not change values."""
 
-
 DESCRIPTIVE = 2.0
 """The order of findings that change no number: names and units, and not parameters."""
 
@@ -87,13 +84,16 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     """Differences of a dataset from the reference `old`, whose tolerances apply; the most telling
     first.
     """
-    moved, *shared = aligned(new, old)
-    found = variables_differences(*shared)
-    values = [each for each in found if each.order != DESCRIPTIVE]
+    moved, new, old = aligned(new, old)
+    found = [*described_otherwise(new, old)]
+    for name in old.variables:
+        if name in new.variables and same_form(new[name], old[name]):
+            found += value_differences(str(name), new, old)
     rest = "were compared" if found else "agree"
-    found += [replace(each, text=f"{each.text} {rest}") for each in moved]
+    values = [*moved, *(each for each in found if each.order != DESCRIPTIVE)]
     if not values and record(old, "parameters") != record(new, "parameters"):
         found.append(Finding("content", "its parameters changed, and its values did not"))
+    found += [replace(each, text=f"{each.text} {rest}") for each in moved]
     return sorted(found, key=lambda each: each.rank)
 
 
@@ -114,53 +114,73 @@ def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[Finding], xr.Dataset
         unclear = rounded or not ours.is_unique or not theirs.is_unique or not len(shared)
         if unclear or ours.tolist() == theirs.tolist():
             continue
-        words = gained_and_lost(ours.tolist(), theirs.tolist())
         labels = ours.symmetric_difference(theirs)
+        words = [gained_and_lost([*ours], [*theirs])] if len(labels) else []
         if ours[ours.isin(theirs)].tolist() != shared.tolist():
-            words = f"{words}{', and ' if words else ''}the order changed"
+            words.append("the order changed")
         new = new.isel({dim: ours.get_indexer(shared)})
         old = old.isel({dim: theirs.get_indexer(shared)})
-        text = f"{dim}: {words}; the {'other ' if len(labels) else ''}{len(shared)}"
+        rest = f"the {'other ' if len(labels) else ''}{len(shared)}"
+        text = f"{dim}: {', and '.join(words)}; {rest}"
         found.append(Finding("content", text, -1.0, tuple(labels)))
     return found, new, old
 
 
 def gained_and_lost(new: list, old: list) -> str:
     """What is in one of two lists only, as "new 'a', without 'b', 'c'"; of many the first three."""
+    texts = legible([*new, *old])
     sides = {
-        "new": [each for each in new if each not in old],
-        "without": [each for each in old if each not in new],
+        "new": [text for text, each in zip(texts, new, strict=False) if each not in old],
+        "without": [
+            text for text, each in zip(texts[len(new) :], old, strict=True) if each not in new
+        ],
     }
     return ", ".join(
-        f"{word} {', '.join(map(repr, some[:3]))}"
-        + (f" and {len(some) - 3} more" if len(some) > 3 else "")
+        f"{word} {', '.join(some[:3])}" + (f" and {len(some) - 3} more" if len(some) > 3 else "")
         for word, some in sides.items()
         if some
     )
 
 
-def variables_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
-    """Differences in the names of variables, in each of them, and in attributes of the dataset."""
-    judged = [
-        {
-            f"attribute {key} of the dataset": repr(value)
-            for key, value in data.attrs.items()
-            if key not in (*PROVENANCE, "parameters")
-        }
-        for data in (new, old)
-    ]
-    found = unequal(*judged)
+def described_otherwise(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
+    """Variables that are missing or new, and other descriptions of a dataset and its variables."""
     added = [str(name) for name in new.variables if name not in old.variables]
-    for name in map(str, old.variables):
-        if name in new.variables:
-            found += unequal(description(name, new), description(name, old))
-            if same_form(new[name], old[name]):
-                found += value_differences(name, new, old)
-        else:
-            twins = [other for other in added if new[other].variable.equals(old[name].variable)]
-            renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
-            found.append(Finding("content", f"{name} is missing{renamed}"))
-    return found + [Finding("content", f"{name} is not in the reference") for name in added]
+    missing = [str(name) for name in old.variables if name not in new.variables]
+    for name in missing:
+        twins = [other for other in added if new[other].variable.equals(old[name].variable)]
+        renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
+        yield Finding("content", f"{name} is missing{renamed}")
+    for name in added:
+        yield Finding("content", f"{name} is not in the reference")
+    ours = description(new.drop_vars(added))
+    theirs = description(old.drop_vars(missing))
+    for what in sorted({*ours, *theirs}):
+        words = ours.get(what, "absent"), theirs.get(what, "absent")
+        if words[0] != words[1]:
+            order = DESCRIPTIVE if what.startswith("attribute") else 0.0
+            yield Finding("content", f"{what} is {words[0]}, in the reference {words[1]}", order)
+
+
+def description(data: xr.Dataset) -> dict[str, str]:
+    """What a dataset is apart from its numbers and their provenance: its attributes, and of each
+    variable dimensions, type, role, storage and attributes.
+    """
+    judged = {key: data.attrs[key] for key in data.attrs.keys() - {*PROVENANCE, "parameters"}}
+    found = {
+        f"attribute {key} of the dataset": repr(datasets.plain(value))
+        for key, value in judged.items()
+    }
+    for name, variable in data.variables.items():
+        text = variable.dtype.kind in "UO"
+        packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
+        found[f"dimensions of {name}"] = str(dict(variable.sizes))
+        found[f"type of {name}"] = "text" if text else str(variable.dtype)
+        found[f"role of {name}"] = "coordinate" if name in data.coords else "variable"
+        # The storage of a text names its length.
+        found[f"storage of {name}"] = "" if text else str(packed)
+        for key, value in variable.attrs.items():
+            found[f"attribute {key} of {name}"] = repr(datasets.plain(value))
+    return found
 
 
 def same_form(first: xr.DataArray, second: xr.DataArray) -> bool:
@@ -169,36 +189,7 @@ def same_form(first: xr.DataArray, second: xr.DataArray) -> bool:
     return first.shape == second.shape and (texts or first.dtype == second.dtype)
 
 
-def description(name: str, data: xr.Dataset) -> dict[str, str]:
-    """What a variable is apart from its values: dimensions, type, role, storage, attributes."""
-    variable = data[name]
-    text = variable.dtype.kind in "UO"
-    packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
-    found = {
-        "dimensions": str(dict(variable.sizes)),
-        "type": "text" if text else str(variable.dtype),
-        "role": "coordinate" if name in data.coords else "variable",
-        # The storage of a text names its length.
-        "storage": "" if text else str(packed),
-    }
-    found |= {f"attribute {key}": repr(value) for key, value in variable.attrs.items()}
-    return {f"{what} of {name}": value for what, value in found.items()}
-
-
-def unequal(new: Mapping[str, str], old: Mapping[str, str]) -> list[Finding]:
-    """Findings on what is absent on one side, or is something else."""
-    return [
-        Finding(
-            "content",
-            f"{what} is {new.get(what, 'absent')}, in the reference {old.get(what, 'absent')}",
-            DESCRIPTIVE if what.startswith("attribute") else 0.0,
-        )
-        for what in sorted({*new, *old})
-        if new.get(what) != old.get(what)
-    ]
-
-
-def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
+def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
     """The place where a variable is furthest from the reference, if beyond the tolerance."""
     x = new[name].values
     y = old[name].values
@@ -207,25 +198,26 @@ def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> list[Findi
     multiple = multiples(x, y, allowed) if numbers else np.where(x != y, np.inf, 0.0)
     different = np.argwhere(multiple > 1)
     if not len(different):
-        return []
+        return
     worst = np.unravel_index(np.argmax(multiple), y.shape)
-    places = [
-        f"{dim} = {old[dim].values[index] if dim in old.coords else index}"
-        for dim, index in zip(old[name].dims, worst, strict=True)
-    ]
-    found, expected = legible(x[worst], y[worst])
+    found, expected = excerpts(*legible([x[worst], y[worst]]))
     text = f"{name} is {found}, the reference has {expected}"
     labels: tuple = ()
-    if places:
-        text += f" at {', '.join(places)}"
-        first = old[old[name].dims[0]]
-        labels = tuple(first.values[np.unique(different[:, 0])])
+    if y.ndim:
+        text += f" at {', '.join(places(old[name], worst))}"
+        labels = tuple(old[old[name].dims[0]].values[np.unique(different[:, 0])])
     if np.isfinite(multiple[worst]):
         text += f" (tolerance {allowed[worst]:.1e}, exceeded {multiple[worst]:.2g} times)"
     if len(different) > 1:
         text += f", and {len(different) - 1} more of {y.size} values"
     kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    return [Finding(kind, text, -multiple[worst], labels)]
+    yield Finding(kind, text, -multiple[worst], labels)
+
+
+def places(variable: xr.DataArray, index: tuple) -> Iterator[str]:
+    """Where a value of a variable is, as "frequency_ratio = 1.9", by labels where it has them."""
+    for dim, position in zip(variable.dims, index, strict=True):
+        yield f"{dim} = {legible(variable[dim].values)[position]}"
 
 
 def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
@@ -245,20 +237,26 @@ def multiples(x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
     return np.where(equal, 0.0, np.where(np.isnan(ratio), np.inf, ratio))
 
 
-def legible(found: Any, expected: Any) -> tuple[str, str]:
-    """Two values in as few digits as tell them apart, but at least four."""
-    if not isinstance(found, float):
-        return excerpts(str(found), str(expected))
-    digits = next(
-        (digits for digits in range(4, 18) if f"{found:.{digits}g}" != f"{expected:.{digits}g}"), 18
+def legible(values: Sequence | np.ndarray) -> list[str]:
+    """Values in words: numbers in as few digits, but at least four, as tell them apart."""
+    numbers = np.unique([each for each in values if isinstance(each, float)])
+    enough = (
+        digits
+        for digits in range(4, 17)
+        if len({f"{each:.{digits}g}" for each in numbers}) == len(numbers)
     )
-    return f"{found:.{digits}g}", f"{expected:.{digits}g}"
+    digits = next(enough, 17)
+    return [
+        f"{each:.{digits}g}" if isinstance(each, float) else repr(datasets.plain(each))
+        for each in values
+    ]
 
 
 def excerpts(first: str, second: str) -> tuple[str, str]:
     """Two texts; of long ones 80 characters, from shortly before they part."""
-    same = len(list(takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False))))
-    start = max(0, same - 30) if max(len(first), len(second)) > 80 else 0
+    long = max(len(first), len(second)) > 80
+    same = len([*takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False))])
+    start = max(0, same - 30) if long else 0
     return first[start : start + 80], second[start : start + 80]
 
 
@@ -323,68 +321,72 @@ def file_differences(made: Path, path: Path) -> list[Finding]:
             return [
                 replace(each, text=each.text.replace("the reference", "the file")) for each in found
             ]
-        return png_differences(made, path) if path.suffix == ".png" else lines_differ(made, path)
+        return [*(png_differences if path.suffix == ".png" else text_differences)(made, path)]
     except Exception as error:  # Whatever readers of damaged files raise.
         return [Finding("file", f"it cannot be read: {error!r}")]
 
 
-def lines_differ(made: Path, path: Path) -> list[Finding]:
+def text_differences(made: Path, path: Path) -> Iterator[Finding]:
     """How two texts, which may be pictures as SVG, differ. Line ends may be those of Windows."""
+    drawn = path.suffix == ".svg"
     texts = [file.read_bytes().decode().replace("\r\n", "\n") for file in (path, made)]
-    if path.suffix == ".svg":
+    if drawn:
         description = f"<dc:description>{COMMIT}</dc:description>"
         texts = [re.sub(description, "", text, count=1) for text in texts]
     if texts[0] == texts[1]:
-        return []
+        return
     given, expected = (text.splitlines(keepends=True) for text in texts)
-    number, pair = next(
-        (number, pair)
-        for number, pair in enumerate(zip_longest(given, expected, fillvalue=""), 1)
-        if pair[0] != pair[1]
-    )
-    words = " -> ".join(repr(excerpt) for excerpt in excerpts(*pair))
-    if path.suffix == ".svg":
-        return [Finding("picture", f"line {number}: {words}", 1.0)]
-    unified = difflib.unified_diff(given, expected, "the file", "as its datasets give it", n=1)
-    return [Finding("text", f"line {number}: {words}", lines="".join(unified))]
+    pairs = enumerate(zip_longest(given, expected, fillvalue=""), 1)
+    number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
+    words = f"line {number}: {' -> '.join(map(repr, excerpts(*pair)))}"
+    if drawn:
+        yield Finding("picture", f"{what_is_drawn(texts, given[:number])}{words}")
+    else:
+        unified = difflib.unified_diff(given, expected, "the file", "as its datasets give it", n=1)
+        yield Finding("text", words, lines="".join(unified))
 
 
-def png_differences(made: Path, path: Path) -> list[Finding]:
-    """How two PNG files differ in pixels, with an image of the difference, or in other chunks."""
+def what_is_drawn(texts: list[str], lines: list[str]) -> str:
+    """Which words of two SVG files differ, else the part of the first in which some lines end.
+
+    Letters are drawn as curves, with the words in comments.
+    """
+    words = [re.findall("<!-- (.*?) -->", text) for text in texts]
+    differ = gained_and_lost(words[1], words[0])
+    if differ:
+        return f"words: {differ}; "
+    parts = re.findall('<g id="(.*?)">', "".join(lines))
+    return f"{parts[-1]}, " if parts else ""
+
+
+def png_differences(made: Path, path: Path) -> Iterator[Finding]:
+    """How two PNG files differ in pixels, with an image of the difference, or in anything else."""
     contents = [file.read_bytes() for file in (path, made)]
-    images = [Image.open(io.BytesIO(content)) for content in contents]
-    if images[0].size != images[1].size:
-        return [Finding("picture", f"its size: {images[0].size} -> {images[1].size}")]
-    pixels = [np.asarray(image.convert("RGBA")) for image in images]
-    unequal = np.any(pixels[0] != pixels[1], axis=-1)
-    if np.any(unequal):
+    first, second = (Image.open(io.BytesIO(content)) for content in contents)
+    pixels = [np.asarray(image.convert("RGBA")) for image in (first, second)]
+    if first.size == second.size and np.any(pixels[0] != pixels[1]):
+        unequal = np.any(pixels[0] != pixels[1], axis=-1)
         marked = Image.fromarray(np.where(unequal, 0, 255).astype("uint8"))
-        uris = tuple(data_uri(image) for image in (*images, marked))
-        return [Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", images=uris)]
-    chunks = [png_chunks(content) for content in contents]
-    if chunks[0] != chunks[1]:
-        kinds = [" ".join(kind for kind, _ in each) for each in chunks]
-        return [Finding("picture", f"its chunks: {kinds[0]} -> {kinds[1]}")]
-    return []
+        uris = tuple(data_uri(image) for image in (first, second, marked))
+        yield Finding("picture", f"{np.count_nonzero(unequal)} pixels differ", 1.0, images=uris)
+    differ = changes(beside_pixels(first, contents[0]), beside_pixels(second, contents[1]))
+    if differ:
+        yield Finding("picture", f"the PNG has other {'; '.join(differ)}", 1.0)
 
 
-def png_chunks(data: bytes) -> list[tuple[str, bytes]]:
-    """The chunks of a PNG file and what follows them, without the description and the pixels."""
-    chunks: list[tuple[str, bytes]] = []
-    start = 8
-    while start < len(data):
-        length, kind = struct.unpack_from(">I4s", data, start)
-        content = data[start + 8 : start + 12 + length]
-        if zlib.crc32(kind + content[:-4]).to_bytes(4, "big") != content[-4:]:
-            raise ValueError(f"the chunk {kind.decode('latin-1')} is damaged")
-        start += 12 + length
-        described = rb"Description\0" + COMMIT.encode() + rb"[\0-\xff]{4}"
-        # The same pixels may be compressed otherwise, and be cut into several chunks.
-        pixels = kind == b"IDAT"
-        continued = pixels and chunks[-1:] == [("IDAT", b"")]
-        if not continued and (kind != b"tEXt" or not re.fullmatch(described, content)):
-            chunks.append((kind.decode("latin-1"), b"" if pixels else content))
-    return chunks
+def beside_pixels(image: Image.Image, content: bytes) -> dict[str, str]:
+    """What a PNG file has beside its pixels and its description.
+
+    Raises SyntaxError or OSError for a damaged chunk. The same pixels may be cut into several.
+    """
+    file = io.BytesIO(content)
+    file.seek(8)
+    chunks = " ".join(kind.decode("latin-1") for kind in PngImagePlugin.ChunkStream(file).verify())
+    found = {str(key): str(value) for key, value in image.info.items()}
+    if re.fullmatch(COMMIT, found.get("Description", "")):
+        del found["Description"]
+    found |= {"size": str(image.size), "mode": image.mode, "end": str(file.read())}
+    return found | {"chunks": re.sub("IDAT( IDAT)+", "IDAT", chunks)}
 
 
 def data_uri(image: Image.Image) -> str:

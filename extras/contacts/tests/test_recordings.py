@@ -69,6 +69,7 @@ FILES = {
     "tops and their times": "time (s),height (m)\n0.4,1\n1.2,0.6724\n1.9,0.4521\n2.4,0.304",
     "one line of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4",
     "two lines of heights": "h0 (cm),h1 (cm),h2 (cm),h3 (cm)\n100,67.24,45.21,30.4\n80,53.8,36.2,",
+    "one line of heights, the last one missing": "h0 (m),h1 (m),h2 (m),h3 (m)\n1,0.6724,0.4521,",
     "trials": "drop height (cm),trial 1 (cm),trial 2 (cm)\n" + pairs("{0},{1},{1}"),
     "a text with a comma": "note,drop (cm),rebound (cm)\n" + pairs('"ball, old",{},{}'),
     "a count with a gap": "n,interval (s)\n"

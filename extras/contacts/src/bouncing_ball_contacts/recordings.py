@@ -337,13 +337,13 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
     slow = math.sqrt(STANDARD_GRAVITY / (scale * mean))
     further = {
-        f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
-        f"gravity, {mean:.4g} {unit or 'units'}/s² in this track, is the scale": True,
-        "the positions grow downwards, as in a picture: they were turned": turn < 0,
         f"gravity is {scale * mean:.3g} m/s² by the heights and times: the times are {slow:.3g} "
         "times the true ones, as in slow motion, or the heights have another unit": (
             max(slow, 1 / slow) > math.sqrt(2)
         ),
+        f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
+        f"gravity, {mean:.4g} {unit or 'units'}/s² in this track, is the scale": True,
+        "the positions grow downwards, as in a picture: they were turned": turn < 0,
     }
     pairs = np.column_stack([downs, ups]) * STANDARD_GRAVITY / np.array(gravities)[:, None]
     _refuse_growth(table, "speeds", pairs, lines[list(impacts)])
@@ -403,15 +403,15 @@ def _recording(table: Table) -> Recording:
         table = replace(table, columns=[*table.columns, above])
     kind, columns = _layout(table)
     is_missing = np.isnan([each.numbers for each in columns]).any(axis=0)
-    if is_missing.all():
-        named = ", ".join(each.name for each in columns)
-        raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     if kind in ("drops", "speeds", "coefficients"):
         recording = _of_pairs(table, kind, columns)
     elif kind == "track":
         recording = _of_track(table, columns)
     else:
         recording = _of_series(table, kind, columns)
+    if not sum(map(len, recording.chains)):
+        named = ", ".join(each.name for each in columns)
+        raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     used = list(columns)
     found: dict[str, Array] = {}
     # Without a unit an uncertainty has that of the coefficients.

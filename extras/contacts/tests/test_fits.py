@@ -207,7 +207,7 @@ def printed(times):
     return read({"time (s)": [f"{each:.3f}" for each in times]})[""]
 
 
-@pytest.mark.parametrize("rate", [24, 25, 29.97, 60, 120])
+@pytest.mark.parametrize("rate", [24, 25, 29.97, 30, 60, 120])
 def test_frames_are_recognised_in_times_that_are_printed_to_a_millisecond(rate):
     """Those of 60 frames a second were in 9 of 10 recordings, and those of 120 in 1 of 5."""
     rng = np.random.default_rng(11)

@@ -271,6 +271,7 @@ def test_the_drag_is_said_only_where_it_matters():
             "Temperature (°C),n,drop (cm),rebound (cm)\n5,1,50,20\n20,1,50,30",
             "not used: 'Temperature'$",
         ),
+        ("drop (cm),rebound (cm),uncertainty (cm)\n50,32,1\n60,38,1", "not used: 'uncertainty'$"),
         ("# uncertainty: 5 mm\n" + TWO, "the head has 'uncertainty: 5 mm'"),
         (FILES["heard, with a contact time"], "the contact, 8 ms, is taken off"),
         # 8 ms move r by 0.0024 here.

@@ -414,10 +414,15 @@ def _recording(table: Table) -> Recording:
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     used = list(columns)
     found: dict[str, Array] = {}
-    # Without a unit an uncertainty has that of the coefficients.
-    for role, unit in (("uncertainty", columns[-1].unit), ("duration", "")):
-        for each in table.of(role)[:1] if kind != "track" else []:
-            values = table.values(replace(each, unit=each.unit or unit))[~is_missing]
+    beside = {} if kind == "track" else {"duration": ""}
+    if kind == "coefficients":
+        # Without a unit an uncertainty has that of the coefficients.
+        beside["uncertainty"] = columns[-1].unit
+    for role, unit in beside.items():
+        for each in table.of(role)[:1]:
+            values = table.values(replace(each, unit=each.unit or unit))
+            if kind == "coefficients":
+                values = values[~is_missing]
             known = values[~np.isnan(values)]
             is_each = kind == "coefficients" and len(known) == len(values)
             if is_each or (role == "duration" and len(known)):

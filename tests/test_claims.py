@@ -218,13 +218,24 @@ def test_models_that_agree_contradict_what_the_paper_says_of_their_differences(r
         "bifurcations move apart",
         "range widens",
         "no longer nπ",
-        "moving table",
         "depends on amplitude",
         "dip at 1.2",
     ):
         assert verdict(claim, others) == "contradicted"
     for claim in ("negligible above 100", "closer with stiffness", "amplitude does not matter"):
         assert verdict(claim, others) == "reproduced"
+    # A table at rest has another restitution than r, because of the weight.
+    assert answer(EVERY["moving table"], others)["own_sense"] == "does not hold"
+
+
+def test_a_moving_table_like_one_at_rest_is_no_reason_for_another_restitution(reference):
+    """Eq. 16 fails then because of the weight, and not because the table moves."""
+    curves = reference["fig06"]["apparent_restitution"]
+    at_rest = [claims.restitution_at_rest(0.65, ratio) for ratio in curves.frequency_ratio.values]
+    still = xr.zeros_like(curves) + xr.DataArray(at_rest, dims="frequency_ratio")
+    changed = reference | {"fig06": reference["fig06"].assign(apparent_restitution=still)}
+    found = answer(EVERY["moving table"], changed)
+    assert (found["verdict"], found["own_sense"]) == ("by reading", "holds")
 
 
 def test_the_end_of_a_curve_is_that_of_the_curve_of_the_largest_amplitude(reference):

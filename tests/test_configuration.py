@@ -474,6 +474,10 @@ def test_a_user_without_a_name_is_told_what_to_set(monkeypatch):
     assert refused("fig14") == line
     monkeypatch.setenv("USER", "anybody")
     CHECKS["refuse_command"](["fig14"])
+    # Its home folder is then known by HOME only.
+    monkeypatch.delenv("HOME")
+    line = f"The user {os.getuid()} has no home folder: set HOME to any folder, be it /"
+    assert refused("fig14") == line
 
 
 @pytest.mark.parametrize("variable, folder", [("HOME", "file/.cache"), ("XDG_CACHE_HOME", "file")])

@@ -1,6 +1,5 @@
 """Continuation against the closed form of a branch, and against limits that are known."""
 
-
 import numpy as np
 import pytest
 from tests import independent

@@ -7,9 +7,8 @@ import re
 import shutil
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
-
-import pytest
 
 from bouncing_ball.datasets import read
 
@@ -37,25 +36,50 @@ def insert(file: Path, before: str, text: str) -> None:
     file.write_text(old.replace(before, text + before), "utf-8")
 
 
-def run(folder: Path, *arguments: str) -> str:
-    """What a module of Python prints in the copy, which must succeed."""
+# In the copy: the tests that the entries of the registry decide, before anything is accepted and as
+# if it were.
+GREEN = """
+import shutil
+from pathlib import Path
+import pytest
+
+files = ["tests/test_pages.py", "tests/test_figures.py"]
+chosen = ["-q", "-p", "no:cacheprovider", "-k", "fig17 or elsewhere or every_figure"]
+assert pytest.main([*files, *chosen]) == 0
+for name in ("fig17", "elsewhere"):
+    for path in Path("results/figures").glob(f"{name}.*"):
+        shutil.copyfile(path, Path("figures") / path.name)
+assert pytest.main([*files, *chosen]) == 0
+"""
+
+
+def test_what_the_recipes_add_is_made_listed_and_shown(stubs, tmp_path):
+    folder = tmp_path / "checkout"
+    follow(folder)
+    checkout = replace(stubs, path=folder)
+    status, listed = checkout.run("--list")
+    assert status == 0, listed
+    assert "fig17 (Figure 17: greatest height along the frequency ratio)" in listed
+    assert "compute_thresholds_elsewhere (Permanent contact elsewhere)" in listed
+    status, printed = checkout.run("--cores", "1", "fig17", "elsewhere")
+    assert status == 0, printed
+    made = folder / "results/figures"
+    assert read(made / "fig17.nc").title == "Figure 17: greatest height along the frequency ratio"
+    assert read(made / "fig06.nc").sizes["case"] == 4
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    done = subprocess.run(
-        [sys.executable, "-m", *arguments],
+    green = subprocess.run(
+        [sys.executable, "-c", GREEN],
         cwd=folder,
         env=environment | {"OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    assert green.returncode == 0, green.stdout + green.stderr
 
 
-@pytest.fixture(scope="module")
-def followed(tmp_path_factory) -> Path:
-    """A copy in which the recipes of a figure, a curve, a claim and a stage were followed."""
-    folder = tmp_path_factory.mktemp("recipes") / "checkout"
+def follow(folder: Path) -> None:
+    """Make a copy in which the recipes of a figure, a curve, a claim and a stage are followed."""
     for name in FOLDERS:
         without = shutil.ignore_patterns("__pycache__")
         shutil.copytree(ROOT / name, folder / name, ignore=without)
@@ -103,25 +127,3 @@ def followed(tmp_path_factory) -> Path:
         '    "thresholds_elsewhere": ["release"],\n',
     )
     insert(figures, '    "fig17": fig17,\n', '    "elsewhere": fig11,\n')
-    return folder
-
-
-CHOSEN = ("-k", "fig17 or elsewhere or every_figure")
-"""Tests that the entries of the registry decide."""
-
-
-def test_what_the_recipes_add_is_made_listed_and_shown(followed):
-    listed = run(followed, "snakemake", "--list")
-    assert "fig17 (Figure 17: greatest height along the frequency ratio)" in listed
-    assert "compute_thresholds_elsewhere (Permanent contact elsewhere)" in listed
-    # Nothing of it is in the reference yet.
-    run(followed, "pytest", "-q", "tests/test_pages.py", *CHOSEN, "-p", "no:cacheprovider")
-    run(followed, "snakemake", "--cores", "1", "fig06", "fig17", "elsewhere")
-    made = followed / "results/figures"
-    assert read(made / "fig17.nc").title == "Figure 17: greatest height along the frequency ratio"
-    assert read(made / "fig06.nc").sizes["case"] == 4
-    for path in [*made.glob("fig17.*"), *made.glob("elsewhere.*")]:
-        shutil.copyfile(path, followed / "figures" / path.name)
-    # As if it were accepted.
-    affected = ("tests/test_pages.py", "tests/test_figures.py")
-    run(followed, "pytest", "-q", *affected, *CHOSEN, "-p", "no:cacheprovider")

@@ -554,11 +554,17 @@ def static_table():
     "Eq. 16 is not necessarily valid for a vibrating table",
     "fig05 fig06",
 )
-def moving_table(*sweeps):
-    off = [abs(sweep["apparent_restitution"] / sweep["restitution"] - 1) for sweep in sweeps]
-    largest = max(complete(each).max() for each in off)
-    name = "the largest relative difference of the apparent restitution from r"
-    return [at_least(name, largest, LIMIT)]
+def moving_table(fig05, fig06):
+    both = [abs(each["apparent_restitution"] / each["restitution"] - 1) for each in (fig05, fig06)]
+    curves = fig06.sel(frequency_ratio=10.0, method="nearest")
+    r = float(curves["restitution"][0])
+    at_rest = restitution_at_rest(r, float(curves["frequency_ratio"]))
+    moved = abs(curves["apparent_restitution"] / at_rest - 1)
+    name = "the largest relative difference of the apparent restitution from"
+    return [
+        at_least(f"{name} r", max(complete(each).max() for each in both), LIMIT),
+        at_least(f"{name} that on a table at rest, at ϖ = 10", complete(moved).max(), LIMIT),
+    ]
 
 
 @claim(
@@ -666,14 +672,15 @@ def negligible_above_100(*sweeps):
     "Conclusion and Introduction",
     "the periodic orbits that are studied have one impact per period",
     "fig03 fig05 fig06 fig08 fig09 fig10 fig13 fig14 fig15",
-    remark="no earlier impact or release may occur on the orbits in our versions of the figures",
+    remark="no earlier impact or release may occur on the orbits in our versions of the figures; on "
+    "longer axes of Figs. 3 and 8, whose ends are our choice, some orbits are not admissible",
 )
 def one_impact_per_period(*figures):
     wrong = 0
     for figure in figures:
-        exists = figure["phase"].notnull()
+        exists = np.isfinite(figure["phase"].values)
         complete(figure["phase"].values[exists])
-        wrong += int((exists & ~figure["admissible"].astype(bool)).sum())
+        wrong += int((~figure["admissible"].values[exists].astype(bool)).sum())
     return [at_most("orbits that are not admissible", wrong, 0)]
 
 
@@ -1037,9 +1044,9 @@ def table1_ends(printed: xr.DataArray) -> list[Claim]:
     """A claim for each printed end of Table 1."""
     ends = []
     stiffest = printed["frequency_ratio"].max()
-    for entry in printed.stack(place=printed.dims):
-        ratio, n, bound = entry["place"].item()
-        where = {"frequency_ratio": ratio, "n": n, "bound": bound}
+    for place, text in printed.to_series().items():
+        where = dict(zip(printed.dims, place, strict=True))
+        ratio, n, bound = place
         of_eq_8 = ratio == stiffest and bound == "period doubling"
         ends.append(
             Claim(
@@ -1048,7 +1055,7 @@ def table1_ends(printed: xr.DataArray) -> list[Claim]:
                 f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
                 {"table1": PAPER["table1"]},
                 lambda table1, where=where: table1["computed"].sel(where),
-                printed=entry.item(),
+                printed=text,
                 remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
             )
         )

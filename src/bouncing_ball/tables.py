@@ -247,7 +247,7 @@ def summary(data: xr.Dataset) -> list[list[str]]:
     """Rows of texts with the number of claims of each group and verdict, the header first."""
     found = counts(data)
     used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
-    rows = [["group", "claims", *used]]
+    rows = [["claims", "in all", *used]]
     for group, by in found.items():
         numbers = [sum(by.values()), *(by[verdict] for verdict in used)]
         rows.append([f"{group}s", *map(str, numbers)])

@@ -267,7 +267,11 @@ def refuse_command(arguments):
         getpass.getuser()
     except (KeyError, OSError):
         end(f"The user {os.getuid()} has no name on this machine: set USER to any name")
-    cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    try:
+        home = Path.home()
+    except RuntimeError:
+        end(f"The user {os.getuid()} has no home folder: set HOME to any folder, be it /")
+    cache = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
     try:
         cache.mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=cache).close()

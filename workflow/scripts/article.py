@@ -8,9 +8,10 @@ from bouncing_ball.datasets import read
 
 # Where the page leads.
 LINKS = [
-    ("The article", "paper.md"),
-    ("its supplement", "supplement.md"),
-    ("all claims", "figures/claims.md"),
+    ("The article (Markdown)", "paper.md"),
+    ("its supplement (Markdown)", "supplement.md"),
+    ("all claims (CSV)", "figures/claims.csv"),
+    ("the same (Markdown)", "figures/claims.md"),
 ]
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log

@@ -672,8 +672,8 @@ def negligible_above_100(*sweeps):
     "Conclusion and Introduction",
     "the periodic orbits that are studied have one impact per period",
     "fig03 fig05 fig06 fig08 fig09 fig10 fig13 fig14 fig15",
-    remark="no earlier impact or release may occur on the orbits in our versions of the figures; on "
-    "longer axes of Figs. 3 and 8, whose ends are our choice, some orbits are not admissible",
+    remark="no earlier impact or release may occur on the orbits in our versions of the figures; "
+    "on longer axes of Figs. 3 and 8, whose ends are our choice, some orbits are not admissible",
 )
 def one_impact_per_period(*figures):
     wrong = 0

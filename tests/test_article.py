@@ -11,7 +11,7 @@ from tests import independent
 
 from bouncing_ball import article, claims, pages, spring_damper, tables
 from bouncing_ball.datasets import printed_table
-from bouncing_ball.verdicts import LIMIT
+from bouncing_ball.paper import LIMIT
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXTS = ("paper", "supplement", "figures")

@@ -16,11 +16,11 @@ import yaml
 from scipy.optimize import brentq
 from tests import independent
 
-from bouncing_ball import claims, errors, restitution, tables
+from bouncing_ball import claims, errors, paper, restitution, tables
 from bouncing_ball.datasets import parameters, printed_table, read
 from bouncing_ball.spring_damper import damping_ratio, permanent_contact
 from bouncing_ball.verdicts import VERDICTS as ALL_VERDICTS
-from bouncing_ball.verdicts import answer, other_parameters
+from bouncing_ball.verdicts import answer
 
 ROOT = Path(__file__).parents[1]
 PRINTED = printed_table(ROOT / "config" / "table1_printed.csv")
@@ -395,15 +395,17 @@ def test_numbers_that_are_missing_take_away_their_claims(reference, name):
         assert verdict(claim.name, datasets) == "not computed"
 
 
-@pytest.mark.parametrize("name", sorted(claims.PAPER))
+@pytest.mark.parametrize("name", sorted(paper.PARAMETERS))
 def test_claims_under_other_parameters_are_not_asked(reference, name):
     data = reference[name]
     given = parameters(data)
-    assert not other_parameters(name, data, claims.PAPER[name])
-    for key, needed in claims.PAPER[name].items():
+    assert not paper.other_parameters(name, data, paper.PARAMETERS[name])
+    for key, needed in paper.PARAMETERS[name].items():
         other = {"min": 0.7, "max": 70.0} if isinstance(needed, dict) else [0.7]
         changed = data.assign_attrs(parameters=json.dumps(given | {key: other}))
-        assert other_parameters(name, changed, claims.PAPER[name]).startswith(f"{name}: {key} is")
+        assert paper.other_parameters(name, changed, paper.PARAMETERS[name]).startswith(
+            f"{name}: {key} is"
+        )
     for claim in users(name):
         found = answer(claim, reference | {name: changed})
         assert found["verdict"] == "not asked"

@@ -18,8 +18,8 @@ restitution coefficient and spring-damper models for the bouncing ball problem*,
     what the variables mean, how they are saved, and from which code they come
 `drawing`, `figures`
     the pictures
-`verdicts`, `claims`
-    how a claim is judged, and what the paper claims
+`paper`, `verdicts`, `claims`
+    what the paper has and prints, how a claim is judged, and what the paper claims
 `tables`, `article`
     the texts that say what we find
 `differences`, `compare`

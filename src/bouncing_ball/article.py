@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bouncing_ball import claims, restitution, spring_damper, tables, verdicts
+from bouncing_ball import claims, paper, restitution, spring_damper, tables
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
@@ -55,8 +55,8 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         given={key: parameters(data) for key, data in datasets.items()},
         judged=judged,
         claim={row["claim"]: row for row in judged},
-        error_limit=verdicts.LIMIT,
-        stiff=claims.STIFF,
+        error_limit=paper.LIMIT,
+        stiff=paper.STIFF,
         stiff_errors=stiff_errors(datasets),
         stable_ranges=claims.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,

@@ -16,9 +16,9 @@ from scipy.interpolate import PchipInterpolator
 
 from bouncing_ball import restitution
 from bouncing_ball.datasets import Datasets, parameters
+from bouncing_ball.paper import LIMIT, PARAMETERS, PRINTED, STIFF
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball.verdicts import (
-    LIMIT,
     ROUNDING,
     Claim,
     above,
@@ -29,63 +29,12 @@ from bouncing_ball.verdicts import (
     complete,
 )
 
-STIFF = 100.0
-"""The frequency ratio above which the paper calls both models equal."""
 STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios from there on."""
 LINE = 0.01
 """The width of a line as a share of the axis of a figure, some 0.5 mm of 5 cm: what is smaller
 cannot be seen in it."""
 
-
-def on_contacts(**given) -> dict:
-    """Parameters of a dataset of the spring-damper model with the paper's condition of release."""
-    return {**given, "release": "displacement"}
-
-
-def cases(*pairs: tuple[float, float]) -> list[dict]:
-    """Cases of r and Λ."""
-    return [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs]
-
-
-ALONG_RATIO = {"min": 1.0, "max": 1000.0}
-ROWS_OF_TABLE_1 = [1e4, 10.0, 2.0]
-PAPER = {
-    "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
-    "fig05": on_contacts(
-        n=1,
-        cases=cases((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6)),
-        frequency_ratio=ALONG_RATIO,
-    ),
-    "fig06": on_contacts(
-        n=1, cases=cases((0.65, 0.7), (0.65, 1.0), (0.65, 1.2)), frequency_ratio=ALONG_RATIO
-    ),
-    "fig08": on_contacts(n=1, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
-    "fig09": on_contacts(n=2, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
-    "fig10": on_contacts(
-        n=2, restitution=0.85, amplitude=[1.1, 1.0, 0.6], frequency_ratio=ALONG_RATIO
-    ),
-    "fig12": on_contacts(n=1, restitution=0.65, amplitude=1.0),
-    "fig13": on_contacts(n=1, restitution=0.65, amplitude=[1.0], frequency_ratio=ALONG_RATIO),
-    "fig14": on_contacts(
-        n=1, restitution=0.65, amplitude=1.0, frequency_ratio=ALONG_RATIO, tolerance=LIMIT
-    ),
-    "fig15": on_contacts(n=2, restitution=0.65, frequency_ratio=10.0),
-    "fig16": on_contacts(
-        restitution=0.65, frequency_ratio={"min": 0.5, "max": 100.0}, tolerance=LIMIT
-    ),
-    "table1": on_contacts(n=[1, 2, 3], restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
-    "thresholds": on_contacts(
-        n=1, restitution=0.65, amplitude=1.0, frequency_ratio={"min": 1.0, "max": 1e4}
-    ),
-    "lowest_doubling": on_contacts(n=[1, 2, 3], restitution=0.85),
-    "validity_map": on_contacts(
-        n=[1, 2, 3], restitution={"min": 0.05, "max": 0.95}, advised=STIFF, tolerance=LIMIT
-    ),
-}
-"""The parameters that the claims need of each dataset: those of the paper, and where its axes
-cannot be read, the ends of the ranges to which the conditions refer. The three balls may have any.
-"""
 
 QUANTITIES = {
     "max_height": "greatest height",
@@ -258,12 +207,14 @@ CLAIMS: list[Claim] = []
 def claim(name: str, place: str, text: str, datasets: str = "", **more) -> Callable:
     """Makes a claim of the function that decides it, and adds it to `CLAIMS`.
 
-    `datasets` are the names of the datasets that the function takes, in its order.
+    `datasets` are the names of the datasets that the function takes, in its order. Of a claim with
+    a printed number, the function returns the computed one.
     """
 
     def add(decide: Callable) -> Callable:
-        needed = {each: PAPER.get(each, {}) for each in datasets.split()}
-        CLAIMS.append(Claim(name, place, text, needed, decide, **more))
+        needed = {each: PARAMETERS.get(each, {}) for each in datasets.split()}
+        printed = PRINTED.get(name, "")
+        CLAIMS.append(Claim(name, place, text, needed, decide, printed, **more))
         return decide
 
     return add
@@ -640,7 +591,6 @@ def dip_at_12(fig06):
     "before Fig. 6",
     "at Λ = 1.2 the apparent restitution coefficient tends to this value at ϖ = 1",
     "fig06",
-    printed="0.81",
     remark="the two other curves have the same digits there",
 )
 def compliant_end(fig06):
@@ -712,7 +662,6 @@ def exactly_computed(*figures):
     "Figs. 8-10",
     "damping ratio for r = 0.85",
     "fig08",
-    printed="0.052",
 )
 def damping_of_085(fig08):
     return fig08["damping_ratio"]
@@ -889,7 +838,6 @@ by_construction(
     "Figs. 11-16",
     "damping ratio for r = 0.65",
     "fig16",
-    printed="0.1359",
     remark="printed as 0.136 except at Fig. 16",
 )
 def damping_of_065(fig16):
@@ -946,7 +894,6 @@ def phases_converge(fig13):
     "after Eq. 37, Fig. 14",
     "frequency ratio from which on the greatest heights differ by less than 1 %",
     "fig14",
-    printed="82",
 )
 def height_threshold(fig14):
     return fig14["error_threshold"]
@@ -993,7 +940,6 @@ def representative(fig15, table1):
     "Fig. 16 and after it",
     "frequency ratio below which the thresholds of permanent contact differ, by 1 %",
     "fig16",
-    printed="6",
 )
 def permanent_contact_threshold(fig16):
     return fig16["error_threshold"]
@@ -1053,7 +999,7 @@ def table1_ends(printed: xr.DataArray) -> list[Claim]:
                 f"Table 1: {ratio:g}, {n}, {bound}",
                 "Table 1",
                 f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
-                {"table1": PAPER["table1"]},
+                {"table1": PARAMETERS["table1"]},
                 lambda table1, where=where: table1["computed"].sel(where),
                 printed=text,
                 remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",

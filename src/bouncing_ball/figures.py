@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 
+from bouncing_ball import paper
 from bouncing_ball.datasets import parameters
 from bouncing_ball.drawing import (
     COLOURS,
@@ -60,9 +61,6 @@ TIME = r"time $\tau/2\pi$"
 
 CLOSE = 9.0
 """Distance of marks in points below which they share a name."""
-
-PRINTED_RATIO = 6
-"""ϖ from which the thresholds of permanent contact differ by less than 1 %, as printed."""
 
 
 # Schematics of both models
@@ -279,11 +277,10 @@ def fig16(data: xr.Dataset) -> Figure:
     limit = float(data.restitution_threshold)
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
-    given = parameters(data)
-    # The paper has a number for these parameters.
-    if (given["restitution"], given["tolerance"], given["release"]) == (0.65, 0.01, "displacement"):
+    if not paper.other_parameters("fig16", data, paper.PARAMETERS["fig16"]):
         look: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
-        below.plot(PRINTED_RATIO, given["tolerance"], label=f"printed: {PRINTED_RATIO}", **look)
+        printed = paper.PRINTED["permanent contact threshold"]
+        below.plot(float(printed), paper.LIMIT, label=f"printed: {printed}", **look)
     legend_below(figure)
     return figure
 

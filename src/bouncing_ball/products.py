@@ -10,6 +10,7 @@ from bouncing_ball import (
     drawing,
     figures,
     pages,
+    paper,
     restitution,
     spring_damper,
     tables,
@@ -20,11 +21,12 @@ from bouncing_ball.datasets import Datasets
 from bouncing_ball.differences import record
 
 PRINTED = Path(__file__).parents[2] / "config" / "table1_printed.csv"
-DRAWING: Code = (figures.__file__, drawing.__file__)
-TABULATING: Code = (tables.__file__, claims.__file__, verdicts.__file__)
+DRAWING: Code = (figures.__file__, drawing.__file__, paper.__file__)
+TABULATING: Code = (tables.__file__, claims.__file__, verdicts.__file__, paper.__file__)
 JUDGING: Code = (
     claims.__file__,
     verdicts.__file__,
+    paper.__file__,
     restitution.__file__,
     spring_damper.__file__,
     PRINTED,

@@ -11,8 +11,9 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims import PAPER, QUANTITIES
-from bouncing_ball.verdicts import VERDICTS, against_print, other_parameters
+from bouncing_ball.claims import QUANTITIES
+from bouncing_ball.paper import PARAMETERS, other_parameters
+from bouncing_ball.verdicts import VERDICTS, against_print
 
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
 
@@ -56,7 +57,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     of the restitution model, for which it prints none.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
-    not_asked = other_parameters("table1", data, PAPER["table1"])
+    not_asked = other_parameters("table1", data, PARAMETERS["table1"])
     for end in each(data, "frequency_ratio", "n", "bound"):
         place = [number(end["frequency_ratio"], "g"), str(end["n"].item()), end["bound"].item()]
         printed = number(end["printed"], ".3f", "")

@@ -20,13 +20,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball.datasets import Datasets, parameters
+from bouncing_ball.datasets import Datasets
+from bouncing_ball.paper import other_parameters
 
-LIMIT = 0.01
-"""The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
 ROUNDING = 1e-9
 """Numbers that differ by less are equal: rounding errors of the datasets are some 1e-12."""
 
@@ -216,23 +214,3 @@ def listed(readings: list[Reading]) -> str:
 def rounded(number: float) -> str:
     """Three digits of a number; zero if it is zero but for rounding."""
     return f"{number:.3g}" if abs(number) > ROUNDING else "0"
-
-
-# Parameters
-
-
-def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
-    """What differs from the parameters that are needed of a dataset; empty if nothing does."""
-    given = parameters(data)
-    return "; ".join(
-        f"{name}: {key} is {given.get(key)}, and the claim needs {value}"
-        for key, value in needed.items()
-        if not agrees(given.get(key), value)
-    )
-
-
-def agrees(given, needed) -> bool:
-    """Whether a parameter is the needed one; of a range only the needed keys count."""
-    if isinstance(needed, Mapping) and isinstance(given, Mapping):
-        return all(agrees(given.get(key), value) for key, value in needed.items())
-    return given == needed

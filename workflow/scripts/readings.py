@@ -30,6 +30,7 @@ from bouncing_ball.errors import (
     threshold,
 )
 from bouncing_ball.orbits import Family
+from bouncing_ball.paper import LIMIT, PARAMETERS, PRINTED
 from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
@@ -41,19 +42,10 @@ from bouncing_ball.verdicts import ROUNDING
 BOUNDS = ("saddle-node", "period doubling")
 DIGIT = 0.001
 """The last digit of Table 1."""
-R_OF_TABLE_1 = 0.85
-R_OF_THRESHOLDS = 0.65
+R_OF_TABLE_1 = PARAMETERS["table1"]["restitution"]
+R_OF_THRESHOLDS = PARAMETERS["fig14"]["restitution"]
 PRINTED_DAMPING = {R_OF_TABLE_1: 0.052, R_OF_THRESHOLDS: 0.136}
 """ζ as the captions of Figs. 8 to 15 round it."""
-OTHER_NUMBERS = {
-    "height threshold": "82",
-    "permanent contact threshold": "6",
-    "compliant end of 1.2": "0.81",
-    "damping of 0.85": "0.052",
-    "damping of 0.65": "0.1359",
-}
-"""The printed numbers beside Table 1, as `claims` names them."""
-TOLERANCE = 0.01
 SCAN = np.geomspace(2.0, 500.0, 25)
 EXPONENTS = (1, 2, 3, 4, 5, 6)
 """Exponents that the largest frequency ratio may have."""
@@ -166,14 +158,14 @@ def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:
 
 
 def other_numbers(impact: Impact) -> list[float]:
-    """The numbers `OTHER_NUMBERS` for a contact."""
+    """The numbers `PRINTED` for a contact."""
     r = np.array([[R_OF_THRESHOLDS]])
     amplitude = np.ones((1, 1))
     family = Family(np.ones((1, 1)), impact.contact(R_OF_THRESHOLDS, SCAN))
     orbits = orbits_along(family, amplitude)
-    enough = enough_from(family, orbits, r, amplitude, TOLERANCE)
+    enough = enough_from(family, orbits, r, amplitude, LIMIT)
     zeta = float(impact.damping(R_OF_THRESHOLDS))
-    resting = threshold(SCAN, permanent_contact_error(SCAN, zeta, impact.release), TOLERANCE)
+    resting = threshold(SCAN, permanent_contact_error(SCAN, zeta, impact.release), LIMIT)
     # Without weight there is no permanent contact.
     from_rest = resting.ratio if impact.weight else np.nan
     compliant = Family(1, impact.contact(R_OF_THRESHOLDS, np.ones(1)))
@@ -191,7 +183,7 @@ def damping_of_82() -> NDArray:
     def excess(zeta, which):
         family = Family(1, Contact(ratios[which], zeta))
         y = correct(family, orbits[:, which], at_amplitude(1.0))
-        return relative_error(family.summit(y), highest) - TOLERANCE
+        return relative_error(family.summit(y), highest) - LIMIT
 
     return find_root(excess, (0.13, 0.14), args=(np.arange(2),)).x
 
@@ -224,7 +216,7 @@ def readings(printed: xr.DataArray) -> xr.Dataset:
 
     places = printed.stack(number=printed.dims).number.values
     names = [f"Table 1: {ratio:g}, {family}, {bound}" for ratio, family, bound in places]
-    texts = [*printed.values.ravel().tolist(), *OTHER_NUMBERS.values()]
+    texts = [*printed.values.ravel().tolist(), *PRINTED.values()]
     digits = np.array([10.0 ** -len(text.partition(".")[2]) for text in texts])
     found["digits cut off"] = np.floor(found[AS_THEY_STAND] / digits) * digits
     computed = np.stack(list(found.values()))
@@ -244,7 +236,7 @@ def readings(printed: xr.DataArray) -> xr.Dataset:
             "printed_text": ("number", texts),
             "damping_of_82": ("end", damping_of_82()),
         },
-        {"reading": list(found), "number": [*names, *OTHER_NUMBERS]},
+        {"reading": list(found), "number": [*names, *PRINTED]},
     )
     data["stiff_reproduced"] = "exponent", stiff_reproduced(n, printed.values[0].astype(float))
     data["exponent"] = list(EXPONENTS)

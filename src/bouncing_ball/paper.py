@@ -1,0 +1,91 @@
+"""What the paper has: the parameters of its figures and tables, and the numbers that it prints.
+
+The configuration has the same parameters, and may be changed; these are the ones that claims need.
+The ends of stability ranges in Table 1 are in config/table1_printed.csv.
+"""
+
+from collections.abc import Mapping
+
+import xarray as xr
+
+from bouncing_ball.datasets import parameters
+
+LIMIT = 0.01
+"""The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
+STIFF = 100.0
+"""The frequency ratio above which the paper calls both models equal."""
+PRINTED = {
+    "height threshold": "82",
+    "permanent contact threshold": "6",
+    "compliant end of 1.2": "0.81",
+    "damping of 0.85": "0.052",
+    "damping of 0.65": "0.1359",
+}
+"""Printed numbers with their digits, by the names of their claims."""
+
+
+def on_contacts(**given) -> dict:
+    """Parameters of a dataset of the spring-damper model with the paper's condition of release."""
+    return {**given, "release": "displacement"}
+
+
+def cases(*pairs: tuple[float, float]) -> list[dict]:
+    """Cases of r and Λ."""
+    return [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs]
+
+
+ALONG_RATIO = {"min": 1.0, "max": 1000.0}
+ROWS_OF_TABLE_1 = [1e4, 10.0, 2.0]
+PARAMETERS = {
+    "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
+    "fig05": on_contacts(
+        n=1,
+        cases=cases((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6)),
+        frequency_ratio=ALONG_RATIO,
+    ),
+    "fig06": on_contacts(
+        n=1, cases=cases((0.65, 0.7), (0.65, 1.0), (0.65, 1.2)), frequency_ratio=ALONG_RATIO
+    ),
+    "fig08": on_contacts(n=1, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
+    "fig09": on_contacts(n=2, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
+    "fig10": on_contacts(
+        n=2, restitution=0.85, amplitude=[1.1, 1.0, 0.6], frequency_ratio=ALONG_RATIO
+    ),
+    "fig12": on_contacts(n=1, restitution=0.65, amplitude=1.0),
+    "fig13": on_contacts(n=1, restitution=0.65, amplitude=[1.0], frequency_ratio=ALONG_RATIO),
+    "fig14": on_contacts(
+        n=1, restitution=0.65, amplitude=1.0, frequency_ratio=ALONG_RATIO, tolerance=LIMIT
+    ),
+    "fig15": on_contacts(n=2, restitution=0.65, frequency_ratio=10.0),
+    "fig16": on_contacts(
+        restitution=0.65, frequency_ratio={"min": 0.5, "max": 100.0}, tolerance=LIMIT
+    ),
+    "table1": on_contacts(n=[1, 2, 3], restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
+    "thresholds": on_contacts(
+        n=1, restitution=0.65, amplitude=1.0, frequency_ratio={"min": 1.0, "max": 1e4}
+    ),
+    "lowest_doubling": on_contacts(n=[1, 2, 3], restitution=0.85),
+    "validity_map": on_contacts(
+        n=[1, 2, 3], restitution={"min": 0.05, "max": 0.95}, advised=STIFF, tolerance=LIMIT
+    ),
+}
+"""The parameters that the claims need of each dataset: those of the paper, and where its axes
+cannot be read, the ends of the ranges to which the conditions refer. The three balls may have any.
+"""
+
+
+def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
+    """What differs from the parameters that are needed of a dataset; empty if nothing does."""
+    given = parameters(data)
+    return "; ".join(
+        f"{name}: {key} is {given.get(key)}, and the claim needs {value}"
+        for key, value in needed.items()
+        if not agrees(given.get(key), value)
+    )
+
+
+def agrees(given, needed) -> bool:
+    """Whether a parameter is the needed one; of a range only the needed keys count."""
+    if isinstance(needed, Mapping) and isinstance(given, Mapping):
+        return all(agrees(given.get(key), value) for key, value in needed.items())
+    return given == needed

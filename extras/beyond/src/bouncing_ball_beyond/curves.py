@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import brief
-from bouncing_ball_beyond.continuation import FollowedBranch, both_ways, flip
+from bouncing_ball_beyond.continuation import FollowedBranch, both_ways
 from bouncing_ball_beyond.equations import (
     KINDS,
     OF_RESTS,
@@ -34,8 +34,9 @@ from bouncing_ball_beyond.equations import (
 )
 from bouncing_ball_beyond.forms import one_impact_less
 from bouncing_ball_beyond.march import CLOSED, newton, unit
-from bouncing_ball_beyond.paths import Path, path_of, place_on
+from bouncing_ball_beyond.paths import Path, path_of
 from bouncing_ball_beyond.special_orbits import GENERALIZED
+from bouncing_ball_beyond.starts import flip
 
 OTHER = 1e-3
 """A start that is farther from the corrected special orbit is no special orbit of its kind."""
@@ -167,11 +168,7 @@ def _start(special: Any, along) -> tuple[OrbitEquations, NDArray, NDArray | None
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     if len({path.name for path in paths}) != 2:
         raise ValueError(f"along = {along!r}: must be two different parameters")
-    here = special.ball, special.amplitude
-    given = {"ball": special.ball, "amplitude": special.amplitude, "table": special.table}
-    equations = replace(special.equations, along=paths, **given)
-    values = [float(place_on(path, *here, special.table)) for path in paths]
-    z = np.append(special.z[: equations.size], values)
+    equations, z = special.on(*paths)
     if special.kind == "grazing of an impact":
         others, row = one_impact_less(equations, z)
         return replace(others, kind="grazing of a flight"), row, None

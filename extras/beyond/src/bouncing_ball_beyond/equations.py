@@ -9,7 +9,7 @@ them the values of the parameters that may change. Functions take many rows at o
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -456,14 +456,6 @@ class OrbitEquations:
         )
         return -depth.max(axis=-1)
 
-    def rest(self, z) -> NDArray:
-        """How long the ball rests on the table in each period: not at all."""
-        return np.zeros(len(z))
-
-    def fall(self, z) -> NDArray:
-        """How fast the table falls away at a lift-off: there is none."""
-        return np.full(len(z), FAR)
-
     def halves(self, z) -> NDArray:
         """Differences of the impacts half an orbit apart, shape (rows, kq/2).
 
@@ -478,13 +470,6 @@ class OrbitEquations:
         apart = x[:, :half] - x[:, half:]
         apart[..., 0] += np.pi * periods
         return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
-
-    def halving(self, z) -> NDArray:
-        """Difference of the speeds at two impacts half an orbit apart, shape (rows,).
-
-        It is zero at a period halving, and perhaps elsewhere; 1 for an odd number of impacts.
-        """
-        return self.halves(z)[:, 1 if self.impacts % 2 == 0 else 0]
 
     def halved(self, z) -> tuple["OrbitEquations", NDArray]:
         """The equations of half the period, and the mean of the halves of orbits."""
@@ -680,12 +665,32 @@ class PeriodicOrbit:
 
     @cached_property
     def _impacts(self) -> NDArray:
-        return self.z[: self.equations.size].reshape(self.impacts, -1)
+        return self.equations.split(self.z[np.newaxis])[0][0]
+
+    def on(self, *paths: Path) -> tuple[OrbitEquations, NDArray]:
+        """The equations along paths through this orbit, and its row.
+
+        Raises
+        ------
+        ValueError
+            If the orbit is not on a path.
+        """
+        here = self.ball, self.amplitude, self.table
+        equations = replace(
+            self.equations, ball=here[0], amplitude=here[1], table=here[2], along=paths
+        )
+        values = [float(path.place(*here)) for path in paths]
+        return equations, np.append(self.z[: equations.size], values)
 
     @cached_property
     def _ends(self):
         ends = self.equations.ends(self.z[np.newaxis])
         return type(ends)(*(each[0] for each in ends[:5]), self.table)
+
+    @cached_property
+    def _release(self) -> tuple[NDArray, NDArray]:
+        """When the ball leaves the table after its impacts, and δ′ then."""
+        return self._ends.leaves, self._ends.speed
 
     @cached_property
     def _linear(self) -> Linear:
@@ -713,12 +718,12 @@ class PeriodicOrbit:
     @property
     def release_phase(self):
         """Phase of the table at the end of the contact, in (-π, π]."""
-        return self._each(np.pi - (np.pi - self._ends.leaves) % (2 * np.pi))
+        return self._each(np.pi - (np.pi - self._release[0]) % (2 * np.pi))
 
     @property
     def contact_duration(self):
         """Duration of the contact."""
-        return self._each(self._ends.leaves - self.times)
+        return self._each(self._release[0] - self.times)
 
     @property
     def flight_time(self):
@@ -733,7 +738,7 @@ class PeriodicOrbit:
     @property
     def relative_bounce_velocity(self):
         """δ′ as the contact ends."""
-        return self._each(self._ends.speed)
+        return self._each(self._release[1])
 
     @property
     def impact_velocity(self):
@@ -743,13 +748,13 @@ class PeriodicOrbit:
     @property
     def bounce_velocity(self):
         """Velocity of the ball as the contact ends."""
-        velocity = self.amplitude * self.table(self._ends.leaves, 1)
-        return self._each(velocity + self._ends.speed)
+        leaves, speed = self._release
+        return self._each(self.amplitude * self.table(leaves, 1) + speed)
 
     @property
     def apparent_restitution(self):
         """r_a = -δ′_b/δ′_i (Eq. 17)."""
-        return self._each(self._ends.speed / self.speeds)
+        return self._each(self._release[1] / self.speeds)
 
     @cached_property
     def max_height(self) -> float:
@@ -844,7 +849,7 @@ class Kind(NamedTuple):
     why branches end there, and is empty if they go on.
     """
 
-    test: Callable[[OrbitEquations, NDArray, Linear], NDArray]
+    test: Callable[[Any, NDArray, Linear], NDArray]
     end: str = ""
 
 
@@ -866,7 +871,7 @@ KINDS = {
         "the ball no longer leaves the table as a contact ends",
     ),
     "period halving": Kind(
-        lambda equations, z, linear: equations.halving(z),
+        lambda equations, z, linear: np.linalg.norm(equations.halves(z), axis=1),
         "the orbit merges with one of half its period",
     ),
     "end of a rest": Kind(

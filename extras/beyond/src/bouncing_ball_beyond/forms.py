@@ -421,9 +421,7 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     """
     # On a curve two parameters change, of which the first one counts.
     path = orbit.equations.along[0]
-    given = orbit.ball, orbit.impacts, orbit.periods, orbit.amplitude
-    equations = OrbitEquations(*given, along=(path,), table=orbit.table)
-    z = orbit.z[: equations.length]
+    equations, z = orbit.on(path)
     at = _grazing(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)

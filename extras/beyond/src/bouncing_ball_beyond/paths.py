@@ -215,11 +215,6 @@ def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
     return Frequency() if along == "frequency" else Parameter(along)
 
 
-def place_on(path: Path, ball: Ball, amplitude, table: Table):
-    """The value of what changes on a path; only the parameters of a table need the table."""
-    return path.place(ball, amplitude, table) if table.parameters else path.place(ball, amplitude)
-
-
 def _check_analytic(name, function, samples):
     """Raise ValueError unless complex steps give the derivatives, and these have no jump."""
 

@@ -114,6 +114,11 @@ class RestEquations(OrbitEquations):
         matrix = np.concatenate([linear.derivatives, border], axis=1)
         return solved_or_nan(matrix, np.concatenate([legs, right], axis=1))
 
+    def residuals(self, z):
+        """The equations, shape (rows, N - p), and their Jacobian, shape (rows, N - p, N)."""
+        linear = self.linear(z)
+        return linear.legs[..., 0], linear.derivatives
+
     def tests(self, z, linear):
         """What is zero at the kinds that are watched."""
         ones = np.ones(len(z))
@@ -193,12 +198,11 @@ class _Lifted(Flights):
 class RestOrbit(PeriodicOrbit):
     """A periodic motion of a ball that rests on the table once in its period.
 
-    The impacts are those up to the bounces that are summed up; see :class:`PeriodicOrbit`.
+    The impacts, which are instants, are those up to the bounces that are summed up. Times of flight
+    are those before the impacts, the first one from the lift-off on; see :class:`PeriodicOrbit`.
     """
 
-    @cached_property
-    def _impacts(self):
-        return self.z[: 2 * self.impacts].reshape(self.impacts, 2)
+    equations: RestEquations
 
     @property
     def lift_off(self) -> float:
@@ -210,37 +214,10 @@ class RestOrbit(PeriodicOrbit):
         """How long the ball rests on the table."""
         return float(self.equations.rest(self.z[np.newaxis])[0])
 
-    @property
-    def contact_duration(self):
-        """Impacts are instants; the rest is not counted."""
-        return self._each(np.zeros(self.impacts))
-
-    @property
-    def flight_time(self):
-        """Durations of the flights before the impacts, the first one from the lift-off on."""
-        return self._each(self._ends.flight)
-
-    @property
-    def release_phase(self):
-        """Phase of the table at the impacts, in (-π, π]."""
-        return self.phase
-
-    @property
-    def relative_bounce_velocity(self):
-        """δ′ after the impacts."""
+    @cached_property
+    def _release(self) -> tuple[NDArray, NDArray]:
         given = self.times, self.speeds, None, self.amplitude
-        return self._each(self.ball.contact(*given, table=self.table).speed)
-
-    @property
-    def bounce_velocity(self):
-        """Velocity of the ball after the impacts."""
-        velocity = self.amplitude * self.table(self.times, 1)
-        return self._each(velocity + self.relative_bounce_velocity)
-
-    @property
-    def apparent_restitution(self):
-        """r."""
-        return self._each(self.relative_bounce_velocity / self.speeds)
+        return self.times, self.ball.contact(*given, table=self.table).speed
 
     @property
     def monodromy(self) -> NDArray:
@@ -251,15 +228,6 @@ class RestOrbit(PeriodicOrbit):
     def multipliers(self) -> NDArray:
         """Both are zero."""
         return np.zeros(2, complex)
-
-    @property
-    def digits_left(self) -> float:
-        """How many decimal places are certain, as of other orbits."""
-        z = self.z[np.newaxis]
-        jacobian = self.equations.linear(z).derivatives[0]
-        rounding = np.finfo(float).eps * np.abs(jacobian) @ np.abs(self.z)
-        error = np.abs(np.linalg.pinv(jacobian[:, : self.equations.size])) @ rounding
-        return float(-np.log10(error.max()))
 
 
 def orbit_with_rest(

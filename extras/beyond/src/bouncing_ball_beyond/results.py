@@ -120,13 +120,12 @@ def to_dataset(found: Found) -> xr.Dataset:
     multipliers = np.array([each.multipliers for each in orbits])
     data["multiplier_real"] = ("point", "multiplier"), multipliers.real
     data["multiplier_imag"] = ("point", "multiplier"), multipliers.imag
-    rests = isinstance(first, RestOrbit)
-    if rests:
-        lifts = [each.z[each.equations.size - 1] for each in orbits]
+    resting = [each for each in orbits if isinstance(each, RestOrbit)]
+    if resting:
+        lifts = [each.z[each.equations.size - 1] for each in resting]
         data["lift_off_time"] = "point", np.array(lifts)
-        z = np.array([each.z for each in orbits])
-        data["rest"] = "point", first.equations.rest(z)
-    unknowns = np.array([each.z[: each.equations.size - rests] for each in orbits])
+        data["rest"] = "point", np.array([each.rest for each in resting])
+    unknowns = np.array([each.z[: each.equations.size - bool(resting)] for each in orbits])
     unknowns = unknowns.reshape(len(orbits), first.impacts, -1)
     data["impact_time"] = ("point", "impact"), unknowns[..., 0]
     if first.ball.lasts:

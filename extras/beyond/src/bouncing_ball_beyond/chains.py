@@ -28,7 +28,7 @@ def dense(derivatives: NDArray) -> NDArray:
     return matrix
 
 
-def solved_or_nan(matrix, values) -> NDArray:
+def solved_or_nan(matrix: NDArray, values: NDArray) -> NDArray:
     """Solutions of linear equations, NaN where a matrix is singular."""
     try:
         return np.linalg.solve(matrix, values)
@@ -39,7 +39,9 @@ def solved_or_nan(matrix, values) -> NDArray:
         )
 
 
-def solve_bordered(derivatives, right, border, border_right) -> NDArray:
+def solve_bordered(
+    derivatives: NDArray, right: NDArray, border: NDArray, border_right: NDArray
+) -> NDArray:
     """Solve the linear equations of the legs together with p further ones.
 
     Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the

@@ -4,10 +4,10 @@ A branch is followed by pseudo-arclength continuation: the predictor goes along 
 corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,7 +72,7 @@ class FollowedBranch:
     start: str
     end: str
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         first, last = self.values[[0, -1]]
         kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
         rows = {
@@ -86,7 +86,7 @@ class FollowedBranch:
         }
         return "\n".join(["FollowedBranch", *(f"  {name:16}{row}" for name, row in rows.items())])
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.z)
 
     @property
@@ -163,7 +163,9 @@ class FollowedBranch:
         raise OrbitNotFound(f"no {kind} on {where}: {others}")
 
 
-def followed(start: Start, window, until, points, own) -> list[FollowedBranch]:
+def followed(
+    start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
+) -> list[FollowedBranch]:
     """Branches from their starts to a value of their parameter, with their special orbits.
 
     ``own`` is the kind of the special orbits at the starts, which are not listed.
@@ -290,7 +292,14 @@ def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:
     return ", ".join(f"{path.name} = {value:.{digits}g}" for path, value in values)
 
 
-def _in_words(end: str, equations, z: NDArray, window: NDArray, goal, passed: list[_Passed]) -> str:
+def _in_words(
+    end: str,
+    equations: OrbitEquations,
+    z: NDArray,
+    window: NDArray,
+    goal: float,
+    passed: list[_Passed],
+) -> str:
     """Why a branch ends at an orbit that is not special."""
     if end == CLOSED:
         return end
@@ -324,7 +333,9 @@ def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
     )
 
 
-def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500):
+def follow(
+    orbit: Any, *, along: str | Path | None = None, to: Any = None, points: int = 500
+) -> Any:
     """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
 
     From an ordinary orbit and from the grazing of a release the branch through it is followed; from
@@ -377,7 +388,7 @@ def follow(orbit, *, along: str | Path | None = None, to=None, points: int = 500
     return found if many else found[0]
 
 
-def cascade(doubling, *, to, impacts: int = 64):
+def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     """The branches of a cascade of period doublings, each up to the doubling where the next begins.
 
     Parameters
@@ -442,7 +453,7 @@ def cascade(doubling, *, to, impacts: int = 64):
     return whole
 
 
-def _listed(given, name: str, wanted: str) -> list:
+def _listed(given: Any, name: str, wanted: str) -> list:
     """Several orbits as a list; ValueError with one line for anything else."""
     found = list(given) if isinstance(given, Iterable) else [given]
     if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
@@ -450,7 +461,9 @@ def _listed(given, name: str, wanted: str) -> list:
     return found
 
 
-def _follow_all(orbits, along, to, points, until) -> list:
+def _follow_all(
+    orbits: list, along: str | Path | None, to: Any, points: int, until: NDArray
+) -> list:
     """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
     found = list(orbits)
     several = 2 if isinstance(to, tuple) else len(found)
@@ -481,7 +494,7 @@ def _follow_all(orbits, along, to, points, until) -> list:
     return found
 
 
-def _task(orbit: PeriodicOrbit, path: Path, to, until: NDArray) -> Task:
+def _task(orbit: PeriodicOrbit, path: Path, to: Any, until: NDArray) -> Task:
     """What is to be followed from one orbit, as one row.
 
     Raises
@@ -518,7 +531,7 @@ def _stacked(tasks: list[Task]) -> Task:
     return Task(equations, *(np.concatenate(rows) for rows in columns))
 
 
-def _in_rows(several: list):
+def _in_rows(several: list) -> Any:
     """One ball, or one table, with the parameters of several as arrays."""
     first = several[0]
     values = {
@@ -527,7 +540,7 @@ def _in_rows(several: list):
     return first.at(**values) if values else first
 
 
-def _from_special(task: Task, way: int, kind, points) -> list:
+def _from_special(task: Task, way: int, kind: str, points: int) -> list:
     """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
     if kind not in STARTS:
         return [OrbitNotFound("branches end at a special orbit of this kind")] * len(task.z)
@@ -549,7 +562,7 @@ def _from_special(task: Task, way: int, kind, points) -> list:
     return found
 
 
-def _joined(parts: list):
+def _joined(parts: list) -> Any:
     """A branch that is followed both ways, or the one part that there is."""
     branches = [each for each in parts if not isinstance(each, OrbitNotFound)]
     if len(branches) < 2:
@@ -569,7 +582,7 @@ class Limits(NamedTuple):
     saddle_node: PeriodicOrbit | OrbitNotFound
     period_doubling: PeriodicOrbit | OrbitNotFound
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         places = (
             f"{each.kind} at Λ = {each.amplitude:.10g}"
             if isinstance(each, PeriodicOrbit)

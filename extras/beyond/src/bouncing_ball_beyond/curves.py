@@ -54,7 +54,7 @@ class SpecialCurve(FollowedBranch):
 
     kind: str = ""
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return super().__repr__().replace("FollowedBranch", f"SpecialCurve: {self.kind}")
 
     @property
@@ -144,7 +144,7 @@ def special_curve(
 SUCH = "such as branch.first('period doubling')"
 
 
-def _start(special: Any, along) -> tuple[OrbitEquations, NDArray, NDArray | None]:
+def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray | None]:
     """The equations of special orbits along two parameters, one of them, and the normal of a plane
     across their curve, if it is not that of the last parameter.
     """
@@ -185,7 +185,7 @@ def _start(special: Any, along) -> tuple[OrbitEquations, NDArray, NDArray | None
     return replace(equations, kind=special.kind), z, None
 
 
-def _limits(equations, z, special, ranges) -> NDArray:
+def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, ranges: Any) -> NDArray:
     """The ends of both parameters, shape (2, 2): the least and the greatest values."""
     wanted = {} if ranges is None else ranges
     if not isinstance(wanted, Mapping) or any(np.size(each) != 2 for each in wanted.values()):

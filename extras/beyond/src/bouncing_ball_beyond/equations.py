@@ -62,7 +62,7 @@ class Flights(NamedTuple):
     amplitude: NDArray
     table: Table
 
-    def at(self, t) -> tuple[NDArray, NDArray]:
+    def at(self, t: NDArray) -> tuple[NDArray, NDArray]:
         """δ and δ′ at times t since the release, shape (rows, k, times)."""
         leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self[:5])
         table = self.table.rows(np.s_[..., np.newaxis])
@@ -81,7 +81,7 @@ class Flights(NamedTuple):
         return np.fmin(times, self.flight[..., np.newaxis])
 
 
-def _some(values, which):
+def _some(values: Any, which: Any) -> Any:
     """The values of some rows; a number is that of all."""
     return values[which] if np.ndim(values) else values
 
@@ -131,7 +131,7 @@ class OrbitEquations:
         """The number N of entries of a row."""
         return self.size + len(self.along)
 
-    def rows(self, which) -> "OrbitEquations":
+    def rows(self, which: Any) -> "OrbitEquations":
         """The equations of some of the rows, by an index, a slice or a mask of them."""
         return replace(
             self,
@@ -147,36 +147,36 @@ class OrbitEquations:
         ball = self.ball.rows(np.s_[:, np.newaxis])
         return ball, np.asarray(self.amplitude, float)[..., np.newaxis]
 
-    def at(self, values) -> tuple[Ball, NDArray]:
+    def at(self, values: NDArray) -> tuple[Ball, NDArray]:
         """The ball and Λ, beside impacts, at values of what changes, shape (..., p)."""
         ball, amplitude = self._beside_impacts
         for j, path in enumerate(self.along):
             ball, amplitude = path.apply(ball, amplitude, values[..., j, np.newaxis])
         return ball, amplitude
 
-    def table_at(self, values) -> Table:
+    def table_at(self, values: NDArray) -> Table:
         """The table, beside impacts, at values of what changes."""
         table = self.table.rows(np.s_[:, np.newaxis])
         for j, path in enumerate(self.along if table.parameters else ()):
             table = path.shape(table, values[..., j, np.newaxis])
         return table
 
-    def orbit(self, z: NDArray, kind: str = ""):
+    def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
         """One orbit, shape (N,), with its quantities."""
         return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
-    def split(self, z) -> tuple[NDArray, Ball, NDArray]:
+    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray]:
         """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
 
-    def sizes(self, z) -> NDArray:
+    def sizes(self, z: NDArray) -> NDArray:
         """1 + the largest unknown of the impacts, and 1 + |p| of parameters, shape (rows, N)."""
         sizes = 1 + np.abs(z)
         sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
         return sizes
 
-    def scales(self, z) -> NDArray:
+    def scales(self, z: NDArray) -> NDArray:
         """Units of the unknowns in which steps are measured, shape (rows, N).
 
         Changes of T count relatively where a contact lasts for many free oscillations.
@@ -188,7 +188,7 @@ class OrbitEquations:
         units[:, self.size :] = np.maximum(np.abs(z[:, self.size :]), 1e-2)
         return units
 
-    def following(self, x) -> NDArray:
+    def following(self, x: NDArray) -> NDArray:
         """For each impact the next one; after the last the first, m periods later."""
         following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
         following[:, -1, 0] += 2 * np.pi * np.asarray(self.periods)
@@ -201,7 +201,7 @@ class OrbitEquations:
         steps = 1j * H * np.eye(inner + len(self.along))
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
-    def linear(self, z) -> Linear:
+    def linear(self, z: NDArray) -> Linear:
         """The legs and their derivatives.
 
         A leg is a contact and the flight after it. Its equations are that the contact ends where
@@ -216,13 +216,15 @@ class OrbitEquations:
         legs, flights = self._legs(y, *self.at(values), self.table_at(values))
         return Linear(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
-    def legs(self, z) -> NDArray:
+    def legs(self, z: NDArray) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
         x, ball, amplitude = self.split(z)
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
         return self._legs(y, ball, amplitude, self.table_at(z[:, self.size :]))[0]
 
-    def _legs(self, y, ball, amplitude, table) -> tuple[NDArray, NDArray]:
+    def _legs(
+        self, y: NDArray, ball: Ball, amplitude: Any, table: Table
+    ) -> tuple[NDArray, NDArray]:
         """Legs between impacts and the next ones, and their times of flight.
 
         y has the q unknowns of the former, then τ and u of the latter.
@@ -239,7 +241,7 @@ class OrbitEquations:
         legs[..., q - 1] = rate + y[..., q + 1]
         return legs, flights
 
-    def bordered(self, z, linear: Linear, normal: NDArray) -> NDArray:
+    def bordered(self, z: NDArray, linear: Linear, normal: NDArray) -> NDArray:
         """The step of Newton's method to the plane through z across a normal, and the tangent.
 
         Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations. With
@@ -260,7 +262,7 @@ class OrbitEquations:
         legs = np.stack([-linear.legs, 0 * linear.legs], axis=-1)
         return solve_bordered(linear.derivatives, legs, border, right)
 
-    def condition(self, z) -> tuple[NDArray, NDArray]:
+    def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
 
         For a multiplier μ = 1 or -1 it is χ = μ² - μ tr + det = 0. Where a release is lost, the
@@ -305,7 +307,7 @@ class OrbitEquations:
             RESONANCES.get(name, name) if name == self.kind else name for name in self.kinds
         )
 
-    def tests(self, z, linear: Linear) -> NDArray:
+    def tests(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at the special orbits that a march watches, shape (rows, tests).
 
         That of a period halving is the distance from one.
@@ -324,7 +326,7 @@ class OrbitEquations:
             axis=1,
         )
 
-    def residuals(self, z) -> tuple[NDArray, NDArray]:
+    def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
         linear = self.linear(z)
         legs = linear.legs.reshape(len(z), self.size)
@@ -361,7 +363,7 @@ class OrbitEquations:
         # The determinant of an elastic ball is 1 up to rounding.
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
 
-    def ends(self, z) -> Flights:
+    def ends(self, z: NDArray) -> Flights:
         """The ends of the contacts and the flights after them."""
         x, ball, amplitude = self.split(z)
         table = self.table_at(z[:, self.size :])
@@ -371,7 +373,7 @@ class OrbitEquations:
         amplitude = np.broadcast_to(amplitude, leaves.shape)
         return Flights(leaves, impact.gap, impact.speed, time, amplitude, table)
 
-    def clearance(self, z, flights: Flights | None = None) -> NDArray:
+    def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
         """How far balls are above the table where flights turn back from it: the least of all."""
         flights = flights or self.ends(z)
         # Between these times δ′ is monotonic, so that short dips after a slow start are found, too.
@@ -384,22 +386,22 @@ class OrbitEquations:
             waves=self.table.orders[-1],
         ).min(axis=-1)
 
-    def contact_clearance(self, z) -> NDArray:
+    def contact_clearance(self, z: NDArray) -> NDArray:
         """How far release functions are below zero where they turn back: the least of all."""
         if not self.ball.lasts:
             return np.full(len(z), FAR)
         during = self._during(z)
 
-        def release(t):
+        def release(t: NDArray) -> Any:
             return during(t).release
 
-        def falls(t):
+        def falls(t: NDArray) -> NDArray:
             return -_derivative(release, t)
 
         length = self.split(z)[0][..., 2]
         return turns_back(falls, lambda t: -release(t), length).min(axis=-1)
 
-    def max_height(self, z) -> NDArray:
+    def max_height(self, z: NDArray) -> NDArray:
         """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.
 
         In a compliant contact the table may lift the ball higher than it flies.
@@ -415,7 +417,7 @@ class OrbitEquations:
 
         table = table.rows(np.s_[..., np.newaxis])
 
-        def moved(t, order):
+        def moved(t: NDArray, order: int) -> NDArray:
             phase = x[..., 0, np.newaxis] + during(t).duration
             return amplitude[..., np.newaxis] * table(phase, order)
 
@@ -426,7 +428,7 @@ class OrbitEquations:
         )
         return np.maximum(height, -lifted).max(axis=-1)
 
-    def _during(self, z) -> Callable[[NDArray], Impact]:
+    def _during(self, z: NDArray) -> Callable[[NDArray], Impact]:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""
         x, ball, amplitude = self.split(z)
         beside = ball.rows(np.s_[..., np.newaxis])
@@ -435,12 +437,12 @@ class OrbitEquations:
         amplitude = np.asarray(amplitude)[..., np.newaxis]
         return lambda t: beside.contact(*given, t, amplitude, table=table)
 
-    def least_speed(self, z) -> NDArray:
+    def least_speed(self, z: NDArray) -> NDArray:
         """The closing speed next to zero, negative if an odd number of impacts have u < 0."""
         speeds = self.split(z)[0][..., 1]
         return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
 
-    def least_release(self, linear: Linear, z) -> NDArray:
+    def least_release(self, linear: Linear, z: NDArray) -> NDArray:
         """How well balls leave the table after impacts: the least of all, zero if one does not.
 
         It is the speed with which the release function passes zero, or the relative speed after an
@@ -456,7 +458,7 @@ class OrbitEquations:
         )
         return -depth.max(axis=-1)
 
-    def halves(self, z) -> NDArray:
+    def halves(self, z: NDArray) -> NDArray:
         """Differences of the impacts half an orbit apart, shape (rows, kq/2).
 
         They are zero if the orbit is one of half the period, taken twice, and 1 if the impacts or
@@ -471,7 +473,7 @@ class OrbitEquations:
         apart[..., 0] += np.pi * periods
         return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
 
-    def halved(self, z) -> tuple["OrbitEquations", NDArray]:
+    def halved(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
         """The equations of half the period, and the mean of the halves of orbits."""
         k = self.impacts // 2
         half = replace(self, impacts=k, periods=np.asarray(self.periods) // 2)
@@ -480,7 +482,7 @@ class OrbitEquations:
         mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
         return half, np.concatenate([mean, z[:, self.size :]], axis=1)
 
-    def doubled(self, z) -> tuple["OrbitEquations", NDArray]:
+    def doubled(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
         """The equations of twice the period, and orbits taken twice."""
         twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
         x = z[:, : self.size].reshape(len(z), self.impacts, -1)
@@ -489,7 +491,7 @@ class OrbitEquations:
         both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
         return twice, np.concatenate([both, z[:, self.size :]], axis=1)
 
-    def admissible(self, z) -> NDArray:
+    def admissible(self, z: NDArray) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
         x, ball, _ = self.split(z)
         ends = self.ends(z)
@@ -503,7 +505,7 @@ class OrbitEquations:
         return clear & leaving & (landing & lasting).all(axis=-1)
 
 
-def _derivative(function, t):
+def _derivative(function: Callable, t: NDArray) -> NDArray:
     """The derivative of an analytic function, also at complex steps, whose derivatives it has."""
     if not np.iscomplexobj(t):
         return function(t + 1j * H).imag / H
@@ -513,7 +515,9 @@ def _derivative(function, t):
     return slopes[1] + 1j * H * (slopes[2] - slopes[0]) / (2 * step)
 
 
-def flight(s, leaves, gap, speed, amplitude, table=SINE):
+def flight(
+    s: Any, leaves: Any, gap: Any, speed: Any, amplitude: Any, table: Table = SINE
+) -> tuple[Any, Any]:
     """Gap δ and its derivative δ′ a time s after a ball left at the time `leaves` with δ′ = speed.
 
     The table is at w = ΛW(τ) and 1 is gravity, so that δ″ = -1 - w″.
@@ -523,12 +527,20 @@ def flight(s, leaves, gap, speed, amplitude, table=SINE):
     return gap + (bounce - s / 2) * s - amplitude * height, speed - s - amplitude * gained
 
 
-def _longest(times) -> float:
+def _longest(times: NDArray) -> float:
     """The greatest of times, at least 0; NaN, of a ball that does not leave the table, is none."""
     return np.fmax.reduce(times, axis=None, initial=0.0)
 
 
-def turns_back(slope, value, ends, *, first: bool = False, among=None, waves: int = 1) -> NDArray:
+def turns_back(
+    slope: Callable,
+    value: Callable,
+    ends: NDArray,
+    *,
+    first: bool = False,
+    among: NDArray | None = None,
+    waves: int = 1,
+) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
     Minima are found if the slope changes its sign between two of 32 samples in a time of 2π, or of
@@ -600,7 +612,7 @@ class PeriodicOrbit:
     z: NDArray
     kind: str = ""
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         rows = {
             **({"kind": self.kind} if self.kind else {}),
             "impacts": self.impacts,
@@ -683,9 +695,10 @@ class PeriodicOrbit:
         return equations, np.append(self.z[: equations.size], values)
 
     @cached_property
-    def _ends(self):
+    def _ends(self) -> Flights:
         ends = self.equations.ends(self.z[np.newaxis])
-        return type(ends)(*(each[0] for each in ends[:5]), self.table)
+        leaves, gap, speed, time, amplitude = (each[0] for each in ends[:5])
+        return Flights(leaves, gap, speed, time, amplitude, self.table)
 
     @cached_property
     def _release(self) -> tuple[NDArray, NDArray]:
@@ -696,7 +709,7 @@ class PeriodicOrbit:
     def _linear(self) -> Linear:
         return self.equations.linear(self.z[np.newaxis])
 
-    def _each(self, values):
+    def _each(self, values: NDArray) -> float | NDArray:
         """A float for one impact, an array for several."""
         return float(values[0]) if self.impacts == 1 else values
 
@@ -711,48 +724,48 @@ class PeriodicOrbit:
         return self._impacts[:, 1]
 
     @property
-    def phase(self):
+    def phase(self) -> float | NDArray:
         """Phase of the table as an impact starts, in (-π, π]."""
         return self._each(np.pi - (np.pi - self.times) % (2 * np.pi))
 
     @property
-    def release_phase(self):
+    def release_phase(self) -> float | NDArray:
         """Phase of the table at the end of the contact, in (-π, π]."""
         return self._each(np.pi - (np.pi - self._release[0]) % (2 * np.pi))
 
     @property
-    def contact_duration(self):
+    def contact_duration(self) -> float | NDArray:
         """Duration of the contact."""
         return self._each(self._release[0] - self.times)
 
     @property
-    def flight_time(self):
+    def flight_time(self) -> float | NDArray:
         """Duration of the flight after the contact."""
         return self._each(self._ends.flight)
 
     @property
-    def relative_impact_velocity(self):
+    def relative_impact_velocity(self) -> float | NDArray:
         """δ′ as an impact starts, negative but where a contact resumes."""
         return self._each(-self.speeds)
 
     @property
-    def relative_bounce_velocity(self):
+    def relative_bounce_velocity(self) -> float | NDArray:
         """δ′ as the contact ends."""
         return self._each(self._release[1])
 
     @property
-    def impact_velocity(self):
+    def impact_velocity(self) -> float | NDArray:
         """Absolute velocity of the ball as an impact starts, in units of g/Ω."""
         return self._each(self.amplitude * self.table(self.times, 1) - self.speeds)
 
     @property
-    def bounce_velocity(self):
+    def bounce_velocity(self) -> float | NDArray:
         """Velocity of the ball as the contact ends."""
         leaves, speed = self._release
         return self._each(self.amplitude * self.table(leaves, 1) + speed)
 
     @property
-    def apparent_restitution(self):
+    def apparent_restitution(self) -> float | NDArray:
         """r_a = -δ′_b/δ′_i (Eq. 17)."""
         return self._each(self._release[1] / self.speeds)
 
@@ -834,7 +847,7 @@ class PeriodicOrbit:
         return float(min(np.abs(shift).max() for shift in shifts))
 
 
-def _short(value) -> str:
+def _short(value: Any) -> str:
     """A value of a quantity with six digits."""
     if isinstance(value, np.ndarray):
         text = " ".join(f"{each:.6g}" for each in value[:4])

@@ -73,7 +73,7 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 
 
 def curvature(
-    equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step
+    equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
     """Derivatives of the legs along a vector v of the impacts that comes back multiplied by ±1.
 

@@ -8,7 +8,8 @@ plane across it. Many of them, rows, are followed side by side.
 Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
 """
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +147,7 @@ class Start(NamedTuple):
     step: float | NDArray = FIRST_STEP
     origin: NDArray | None = None
 
-    def take(self, which) -> "Start":
+    def take(self, which: Any) -> "Start":
         """Some of the rows."""
         taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
         return self._replace(equations=self.equations.rows(which), **taken)
@@ -177,12 +178,12 @@ class Points(NamedTuple):
     tests: NDArray
     halves: NDArray
 
-    def take(self, which) -> "Points":
+    def take(self, which: Any) -> "Points":
         """Some of the rows."""
         return Points(*(each[which] for each in self))
 
 
-def points_at(equations, z, tangents, linear: Linear) -> Points:
+def points_at(equations: OrbitEquations, z: NDArray, tangents: NDArray, linear: Linear) -> Points:
     """Orbits with their tests."""
     return Points(z, tangents, equations.tests(z, linear), equations.halves(z))
 
@@ -195,7 +196,9 @@ def _same_sign(before: Points, after: Points) -> Points:
     return after._replace(tests=tests)
 
 
-def _predicted(equations: OrbitEquations, here: Points, step, units, window) -> tuple:
+def _predicted(
+    equations: OrbitEquations, here: Points, step: NDArray, units: NDArray, window: NDArray
+) -> tuple:
     """Steps along the tangents; one that would leave its window ends there, at this parameter.
 
     Returns the lengths of the steps, the predicted solutions, the normals of the planes of the
@@ -225,7 +228,9 @@ AT_GOAL = "the end of the window"
 CLOSED = "the branch is closed: it is back at its start"
 
 
-def march(start: Start, window, until, points: int) -> list[tuple[Points, str]]:
+def march(
+    start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int
+) -> list[tuple[Points, str]]:
     """The accepted points of each branch, and why it ends: its window, or another reason.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
@@ -296,7 +301,7 @@ def march(start: Start, window, until, points: int) -> list[tuple[Points, str]]:
     return [(_path_of(path, end, start.equations, unit), end) for path, end, unit in whole]
 
 
-def _before_end(equations, here: Points, there: Points, normal) -> Points:
+def _before_end(equations: OrbitEquations, here: Points, there: Points, normal: NDArray) -> Points:
     """Points of steps just before the first of the ends that they cross, NaN if not found."""
     before = here.tests[:, SINGULAR]
     after = there.tests[:, SINGULAR]
@@ -308,12 +313,12 @@ def _before_end(equations, here: Points, there: Points, normal) -> Points:
     return _same_sign(here, inner)
 
 
-def _cosine(points: Points, others: Points, units) -> NDArray:
+def _cosine(points: Points, others: Points, units: NDArray) -> NDArray:
     """Cosines of the angles between tangents."""
     return np.sum(unit(points.tangents / units) * unit(others.tangents / units), axis=1)
 
 
-def _end_of_step(passed, last, back, until) -> str:
+def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None) -> str:
     """Why a branch ends with a step in which some kinds of special orbits are passed, or ""."""
     for name in passed:
         if ends_at(name, until):
@@ -328,7 +333,7 @@ def ends_at(kind: str, until: str | None) -> bool:
     return kind == until or (kind in KINDS and KINDS[kind].end != "")
 
 
-def _from_start(equations, first: Points, here: Points, units) -> NDArray:
+def _from_start(equations: OrbitEquations, first: Points, here: Points, units: NDArray) -> NDArray:
     """How far branches are from their starts, up to whole turns of the table."""
     away = here.z - first.z
     turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
@@ -336,7 +341,7 @@ def _from_start(equations, first: Points, here: Points, units) -> NDArray:
     return np.linalg.norm(away / units, axis=1)
 
 
-def _path_of(path: list[Points], end: str, equations, units) -> Points:
+def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDArray) -> Points:
     """The points of one row; a closed branch ends exactly at its start."""
     if end == CLOSED:
         ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0

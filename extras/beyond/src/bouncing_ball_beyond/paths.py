@@ -6,8 +6,10 @@ variable may be an array and complex: derivatives along a path are complex steps
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H
 from bouncing_ball_beyond.tables import SINE, Table
@@ -31,7 +33,7 @@ class Parameter:
 
     name: str
 
-    def apply(self, ball: Ball, amplitude, value):
+    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
         """The ball and the amplitude with the value of this parameter."""
         if self.name == "amplitude":
             return ball, value
@@ -39,15 +41,15 @@ class Parameter:
             return ball, amplitude
         return ball.at(**{self.name: value}), amplitude
 
-    def shape(self, table, value):
+    def shape(self, table: Table, value: Any) -> Table:
         """The table with the value of this parameter, if it is one of the table's."""
         return table.at(**{self.name: value}) if self.name in table.parameters else table
 
-    def place(self, ball: Ball, amplitude, table=SINE):
+    def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """The value of this parameter."""
         return {"amplitude": amplitude, **ball.parameters, **table.parameters}[self.name]
 
-    def limits(self, ball: Ball, amplitude):
+    def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
         """The least and the greatest value."""
         least = -np.inf if self.name.startswith(OF_TABLES) else 0.0
         return LIMITS.get(self.name, (least, np.inf))
@@ -63,24 +65,25 @@ class Frequency:
 
     name: str = "frequency"
 
-    def apply(self, ball: Ball, amplitude, value):
+    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
         """The ball and the amplitude at √Λ = value, from those at another frequency."""
         times = value / np.sqrt(amplitude)
         old = ball.parameters
         powers = ball.frequency_powers.items()
         return ball.at(**{name: old[name] * times**power for name, power in powers}), value**2
 
-    def shape(self, table, value):
+    def shape(self, table: Table, value: Any) -> Table:
         """The table, whose waveform remains as it is."""
         return table
 
-    def place(self, ball: Ball, amplitude, table=SINE):
+    def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """√Λ."""
         return np.sqrt(amplitude)
 
-    def limits(self, ball: Ball, amplitude):
+    def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
         """The frequencies at which Λ is within its limits."""
-        return np.sqrt(LIMITS["amplitude"])
+        low, high = LIMITS["amplitude"]
+        return np.sqrt(low), np.sqrt(high)
 
 
 @dataclass(frozen=True, init=False)
@@ -121,7 +124,7 @@ class ParameterPath:
     high: float
     functions: Mapping[str, Callable] = field(compare=False)
 
-    def __init__(self, name: str, *, low: float, high: float, **functions: Callable):
+    def __init__(self, name: str, *, low: float, high: float, **functions: Callable) -> None:
         if not low < high:
             raise ValueError(f"low = {low:g}, high = {high:g}: low must be below high")
         if not functions:
@@ -136,19 +139,19 @@ class ParameterPath:
         for key, value in {"name": name, "low": low, "high": high, "functions": functions}.items():
             object.__setattr__(self, key, value)
 
-    def apply(self, ball: Ball, amplitude, value):
+    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
         """The ball and the amplitude at a value of the variable."""
         values = {name: function(value) for name, function in self.functions.items()}
         amplitude = values.pop("amplitude", amplitude)
         values = {name: x for name, x in values.items() if not name.startswith(OF_TABLES)}
         return (ball.at(**values) if values else ball), amplitude
 
-    def shape(self, table, value):
+    def shape(self, table: Table, value: Any) -> Table:
         """The table at a value of the variable."""
         names = self.functions.keys() & table.parameters.keys()
         return table.at(**{name: self.functions[name](value) for name in names}) if names else table
 
-    def place(self, ball: Ball, amplitude, table=SINE):
+    def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """The value of the variable, by the first function.
 
         Raises
@@ -177,7 +180,7 @@ class ParameterPath:
                 )
         return place
 
-    def limits(self, ball: Ball, amplitude):
+    def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
         """The range of the variable."""
         return self.low, self.high
 
@@ -215,10 +218,10 @@ def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
     return Frequency() if along == "frequency" else Parameter(along)
 
 
-def _check_analytic(name, function, samples):
+def _check_analytic(name: str, function: Callable, samples: NDArray) -> None:
     """Raise ValueError unless complex steps give the derivatives, and these have no jump."""
 
-    def slopes(x):
+    def slopes(x: NDArray) -> NDArray:
         return np.broadcast_to(np.imag(function(x + 1j * H)) / H, x.shape)
 
     shift = 1e-6 * (samples[-1] - samples[0])

@@ -3,6 +3,8 @@
 An n-T orbit of the paper has one impact in n periods of the table.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -42,7 +44,7 @@ def orbit(
     n: ArrayLike = 1,
     side: str = "stable",
     table: Table = SINE,
-):
+) -> Any:
     """The n-T orbit of a ball at the amplitude Λ of the table.
 
     Parameters
@@ -145,7 +147,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
     return found
 
 
-def one_amplitude(amplitude) -> float:
+def one_amplitude(amplitude: Any) -> float:
     """The amplitude as a number; ValueError unless it is a positive one."""
     value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     if np.ndim(value):

@@ -67,16 +67,16 @@ class RestEquations(OrbitEquations):
     )
     """The first two have no tests: both multipliers are zero."""
 
-    def orbit(self, z, kind=""):
+    def orbit(self, z: NDArray, kind: str = "") -> "RestOrbit":
         """One orbit with a rest."""
         return RestOrbit(self, z, kind)
 
-    def split(self, z):
+    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray]:
         """The impacts (rows, k, 2), the ball and Λ; the lift-off is not among them."""
         x = z[..., : 2 * self.impacts].reshape(*z.shape[:-1], self.impacts, 2)
         return x, *self.at(z[..., self.size :])
 
-    def ends(self, z):
+    def ends(self, z: NDArray) -> Flights:
         """The flights after the lift-off and after all impacts but the last."""
         x, ball, amplitude = self.split(z)
         table = self.table_at(z[..., self.size :])
@@ -88,7 +88,7 @@ class RestEquations(OrbitEquations):
         time = x[..., 0] - leaves
         return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
 
-    def linear(self, z):
+    def linear(self, z: NDArray) -> Linear:
         """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight.
 
         The last slow bounces are not counted as flights that may vanish.
@@ -104,28 +104,28 @@ class RestEquations(OrbitEquations):
         return Linear(values[0].real[..., np.newaxis], derivatives, lasting)
 
     @staticmethod
-    def _tail(speeds):
+    def _tail(speeds: NDArray) -> NDArray:
         """Which of the speeds are those of the last slow bounces, shape (rows, k)."""
         return np.cumprod(np.abs(speeds[:, ::-1]) < TAIL, axis=1)[:, ::-1].astype(bool)
 
-    def solve(self, linear, border, right):
+    def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
         """As of orbits without a rest, by one matrix."""
         legs = np.stack([-linear.legs[..., 0], 0 * linear.legs[..., 0]], axis=-1)
         matrix = np.concatenate([linear.derivatives, border], axis=1)
         return solved_or_nan(matrix, np.concatenate([legs, right], axis=1))
 
-    def residuals(self, z):
+    def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, N - p), and their Jacobian, shape (rows, N - p, N)."""
         linear = self.linear(z)
         return linear.legs[..., 0], linear.derivatives
 
-    def tests(self, z, linear):
+    def tests(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at the kinds that are watched."""
         ones = np.ones(len(z))
         last = self.least_speed(z), self.fall(z), self.rest(z)
         return np.stack([ones, ones, linear.flights.min(axis=1), *last], axis=1)
 
-    def rest(self, z):
+    def rest(self, z: NDArray) -> NDArray:
         """How long the ball rests, shape (rows,): what the bounces leave until the next lift-off.
 
         With g = 1 + w″ and g′ = w‴ at the last impact, infinitely many bounces of the speed w take
@@ -141,19 +141,19 @@ class RestEquations(OrbitEquations):
         period = 2 * np.pi * np.asarray(self.periods)
         return z[:, self.size - 1] + period - (tau + bounces)[..., 0]
 
-    def fall(self, z):
+    def fall(self, z: NDArray) -> NDArray:
         """How fast the table falls away at the lift-off, shape (rows,): -w‴, zero if it no longer
         does."""
         _, _, amplitude = self.split(z)
         table = self.table_at(z[..., self.size :])
         return -(amplitude * table(z[:, self.size - 1 : self.size], 3))[..., 0]
 
-    def least_speed(self, z):
+    def least_speed(self, z: NDArray) -> NDArray:
         """The least closing speed, without the last slow bounces."""
         speeds = self.split(z)[0][..., 1]
         return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
 
-    def clearance(self, z, flights=None):
+    def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
         """How far the ball is above the table where flights turn back, without the last bounces."""
         ends = self.ends(z)
         slow = self._tail(ends.speed)
@@ -161,23 +161,23 @@ class RestEquations(OrbitEquations):
         time = np.where(slow, 0.0, ends.flight)
         return super().clearance(z, _Lifted(*ends._replace(flight=time)))
 
-    def contact_clearance(self, z):
+    def contact_clearance(self, z: NDArray) -> NDArray:
         """There are no contacts."""
         return np.full(len(z), FAR)
 
-    def halves(self, z):
+    def halves(self, z: NDArray) -> NDArray:
         """There are no halves."""
         return np.ones((len(z), 1))
 
-    def trace_and_determinant(self, linear):
+    def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
         """Both are zero, because the ball leaves without a memory."""
         return np.zeros(len(linear.legs)), np.zeros(len(linear.legs))
 
-    def stable(self, linear):
+    def stable(self, linear: Linear) -> NDArray:
         """All orbits are superstable."""
         return np.ones(len(linear.legs), bool)
 
-    def admissible(self, z):
+    def admissible(self, z: NDArray) -> NDArray:
         """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
         linear = self.linear(z)
         good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
@@ -187,7 +187,7 @@ class RestEquations(OrbitEquations):
 class _Lifted(Flights):
     """Flights of which the first one starts with a lift-off."""
 
-    def bends(self):
+    def bends(self) -> NDArray:
         """As of other flights, without the lift-off itself."""
         times = super().bends()
         first = times[:, 0]

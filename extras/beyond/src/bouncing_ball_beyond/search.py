@@ -4,6 +4,7 @@ Rows are searched side by side.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,7 +39,7 @@ def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 
 def guess_of_instants(
-    ball: Ball, periods, amplitude, side: int = 1, table: Table = SINE
+    ball: Ball, periods: int | NDArray, amplitude: NDArray, side: int = 1, table: Table = SINE
 ) -> NDArray:
     """Rows z near n-T orbits, from impacts as instants of free impacts (the corrected model).
 
@@ -59,7 +60,7 @@ def guess_of_instants(
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
     step, before = np.zeros((2, *amplitude.shape))
-    at = np.inf
+    at: Any = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
             # For a guess, the signature at a speed is that at another one within some percent.
@@ -153,7 +154,7 @@ def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tupl
     Where impacts become much faster or longer than all of those at the starts, it is lost.
     """
 
-    def sizes(z):
+    def sizes(z: NDArray) -> NDArray:
         x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
         return np.abs(x[..., 1:]).max(axis=1)
 
@@ -187,7 +188,7 @@ def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
     phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)[:, np.newaxis]
     tau, u = np.broadcast_arrays(phases, speeds)
 
-    def impacts(tau, u, row):
+    def impacts(tau: NDArray, u: NDArray, row: NDArray) -> NDArray:
         columns = [tau, u, amplitude[row]]
         ball = equations.ball.rows(row)
         if ball.lasts:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.equations import KINDS, RESONANCES, SINGULAR, Linear, OrbitEquations
 from bouncing_ball_beyond.forms import RESONANT, degeneracy
-from bouncing_ball_beyond.march import ends_at, newton
+from bouncing_ball_beyond.march import Solution, ends_at, newton
 
 DEGENERATE = {
     "saddle-node": ("cusp", "1:1 resonance"),
@@ -35,7 +35,9 @@ class Crossings(NamedTuple):
     values: NDArray
 
 
-def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
+def crossings_of(
+    equations: OrbitEquations, row: NDArray, z: NDArray, slopes: NDArray, tests: NDArray
+) -> Crossings:
     """All steps in which a test changes its sign, of orbits that belong to rows of the equations.
 
     Parameters
@@ -78,7 +80,7 @@ def crossings_of(equations: OrbitEquations, row, z, slopes, tests) -> Crossings:
     return Crossings(row[at], number[at], kinds, z[both], slopes[both], values[which, both])
 
 
-def _cubic(part, ends, slopes):
+def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
     """Hermite's cubic between the ends of steps, with slopes per unit of the part of a step."""
     x = part[:, np.newaxis]
     chord = ends[1] - ends[0]
@@ -86,7 +88,9 @@ def _cubic(part, ends, slopes):
     return ends[0] + x * (slopes[0] + x * (chord - slopes[0] - bend + x * bend))
 
 
-def _tests_of(kinds, equations, solution, turns) -> NDArray:
+def _tests_of(
+    kinds: NDArray, equations: OrbitEquations, solution: Solution, turns: NDArray
+) -> NDArray:
     """The tests of orbits, each that of its kind; ``turns`` are directions of the parameters."""
     values = np.zeros(len(kinds))
     for name in np.unique(kinds):
@@ -107,7 +111,7 @@ def _tests_of(kinds, equations, solution, turns) -> NDArray:
 
 
 @np.errstate(all="ignore")
-def located(equations, crossings: Crossings) -> tuple[NDArray, NDArray]:
+def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     """The orbits at which the tests are zero, and which of them were found.
 
     The zero is bracketed along the chord of each step, by the rule of Anderson and Björck (BIT 13,

@@ -39,7 +39,7 @@ def _none(task: Task) -> NDArray:
     return np.full(len(task.z), "", object)
 
 
-def _on_side(reasons, away, task: Task, goal, what: str) -> None:
+def _on_side(reasons: NDArray, away: NDArray, task: Task, goal: NDArray, what: str) -> None:
     """Add the reason that orbits are on the other side of a special orbit than the goal."""
     name = task.equations.along[-1].name
     here = task.z[:, -1]

@@ -8,7 +8,7 @@ impact along ``impact`` and those of the orbit beside them; special orbits are r
 
 import json
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from os import PathLike
 from typing import Any
 
@@ -184,7 +184,9 @@ def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
 def encoded(value: Any) -> Any:
     """A ball as its class and its fields, and a function as its name, for json."""
     if isinstance(value, Ball):
-        given = {name: each for name, each in vars(value).items() if each is not None}
+        ball: Any = value
+        given = {field.name: getattr(ball, field.name) for field in fields(ball)}
+        given = {name: each for name, each in given.items() if each is not None}
         return {"class": type(value).__name__, **given}
     if callable(value):
         name = getattr(value, "__name__", repr(value))

@@ -182,6 +182,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
         ("# mass: 58\n# diameter: 67 mm\ntime [s]\n" + column(TIMES), "is a unit missing"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
+        ("drop,rebound\n1,1.12", "it rebounds with 1.12 m from 1 m"),
         ("time [s]\n0.1\n0.9", "no impact lies between"),
         (TWO + "\n\ndrop (in),rebound (in)\n5,3.2", "'drop .in.' below 'drop' is no number"),
         ("time (s)\n" + column(np.delete(TIMES, 1)), "an impact is missing within it"),

@@ -181,7 +181,7 @@ def test_a_time_constant_is_raised_to_two_steps():
     same = asked(None, "mujoco", {"solref": "0.004 1"}, "2 ms")
     assert found.outcome == same.outcome
     off = asked(None, "mujoco", {"solref": "0.001 0.1", "refsafe": 0}, "2 ms")
-    assert any("unstable" in reason for reason in off.reasons)
+    assert "unstable" in off.reasons[0]
 
 
 def test_numbers_that_were_multiplied_by_the_mass_are_recognized():

@@ -304,7 +304,7 @@ def diagnose(
     if found.outcome.depth[1] > contact.problem.deepest:
         why = [] if bounce.restitution is None else _of_design(contact)
         return replace(found, lost=contact.problem.lost, reasons=(*_facts(contact, found), *why))
-    reasons = [*_causes(contact, found), *_facts(contact, found)]
+    reasons = [*_dangers(found), *_causes(contact, found), *_facts(contact, found)]
     if bounce.restitution is None or found.outcome.deviation(bounce.restitution) <= TOLERANCE:
         return replace(found, reasons=tuple(reasons))
     reasons += _guesses(contact, found)
@@ -460,12 +460,29 @@ def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
         r = less
 
 
+def _dangers(found: Diagnosis) -> list[str]:
+    """Return what makes a contact useless in a scene."""
+    highest = found.outcome.restitution[2]
+    size = f"{found.bounce.size_name} of {show(found.bounce.size, 'm')}"
+    return holding(
+        [
+            (
+                highest > 1 + TOLERANCE,
+                f"unstable: the body leaves up to {highest:.3g} times as fast as it came",
+            ),
+            (
+                found.outcome.depth[1] > found.bounce.size,
+                f"it sinks deeper than its {size}",
+            ),
+        ]
+    )
+
+
 def _facts(contact: Contact, found: Diagnosis) -> list[str]:
     """Return what else a user has to know of a contact."""
     row = contact.problem.engine
     bounce = found.bounce
     law = contact.law
-    highest = found.outcome.restitution[2]
     impedance = getattr(law, "high", 1.0)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
@@ -480,10 +497,6 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             f"a contact takes {contact.steps:.2g} steps: r depends on where in a step it begins",
         ),
         (
-            highest > 1 + TOLERANCE,
-            f"unstable: the body leaves up to {highest:.3g} times as fast as it came",
-        ),
-        (
             0 < time < raised and contact.combined.get("refsafe", True),
             f"{row.name} raises the time constant of {time:g} s to {raised:g} s, two steps",
         ),
@@ -491,10 +504,6 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             found.damping_ratio >= 1,
             f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
             "oscillation",
-        ),
-        (
-            found.outcome.depth[1] > bounce.size,
-            f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
         ),
         (
             math.isnan(found.outcome.rest) and not isinstance(law, Impedance),

@@ -185,8 +185,8 @@ class Bounce:
             [
                 (self.mass is None, "the mass is missing: --mass '50 g' or mass='50 g'"),
                 (
-                    not isinstance(self.points, int) or self.points < 1,
-                    f"points = {self.points!r} is no whole number from 1 on",
+                    not isinstance(self.points, int) or not 1 <= self.points <= 1000,
+                    f"points = {self.points!r} is no whole number from 1 to 1000",
                 ),
             ]
         )

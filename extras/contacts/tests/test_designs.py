@@ -227,11 +227,43 @@ def test_without_friction_mujoco_warp_and_newton_have_condim_1():
 
 
 def test_a_body_at_rest_is_not_thrown_back():
-    """With a threshold of 0 it hops for ever by the speed that a step of gravity adds."""
-    ball = Bounce(mass="500 g", restitution=0.8, radius="10 cm")
+    """At twice the speed that a step of gravity adds a ball hopped in PyBullet for ever, at 1/240 s
+    by 1.7 mm for r = 0.8. Above g h/(1 - E) it lay still, for 0.9 at most 0.4 mm deep.
+    """
+    ball = Bounce(mass="500 g", restitution=0.9, radius="10 cm", drop_height="30 cm")
     found = design(ball, "pybullet", "1/240")
-    assert found.parameters["restitutionVelocityThreshold"] > 9.80665 / 240
-    assert found.row.outcome.rest == 0
+    together = found.parameters["restitution"] ** 2
+    least = 9.80665 / 240 / (1 - together)
+    assert least < found.parameters["restitutionVelocityThreshold"] < 1.2 * least
+    assert 0.4e-3 < found.row.outcome.rest < 2e-3
+    assert "drops from less than" in repr(found) and "never lies still" not in repr(found)
+    too_low = {**found.parameters, "restitutionVelocityThreshold": 0.9 * least}
+    hops = diagnose(ball, "pybullet", too_low, "1/240")
+    assert "it never lies still, but hops by up to about" in repr(hops)
+    assert math.isnan(hops.outcome.rest)
+
+
+def test_a_contact_of_mujoco_says_that_it_hardly_feels_gravity():
+    """At 1/240 s a ball of r = 0.9 hopped in MuJoCo by up to 5.8 mm for ever, at 1 ms by 60 µm."""
+    ball = Bounce(mass=0.5, radius=0.1, restitution=0.9, drop_height=0.3)
+    hops = re.search(r"hops by up to about ([\d.]+) mm", repr(design(ball, "mujoco", "1/240")))
+    assert hops and 5.8 < float(hops[1]) < 12
+    assert "hops by" not in repr(found := design(ball, "mujoco", "1 ms"))
+    assert math.isnan(found.row.outcome.rest) and "feel 0.1 % of gravity" in str(found)
+
+
+def test_the_threshold_of_two_bodies_is_that_of_a_scene_with_gravity():
+    """It is one for the whole world of PyBullet, and was written as 0."""
+    pair = Bounce(mass=1, radius=0.05, restitution=0.8, other_mass=1, speed=3)
+    assert design(pair, "pybullet", "1 ms").parameters["restitutionVelocityThreshold"] > 0.049
+
+
+def test_a_body_that_could_not_bounce_has_a_threshold_below_its_speed():
+    """At 1/60 s a threshold of 3 m/s would let this ball come to rest, which has 1.4 m/s."""
+    ball = Bounce(mass=1, restitution=0.98, radius=1, drop_height=0.1)
+    found = design(ball, "pybullet", "1/60", pick=IMPULSE)
+    assert found.row.outcome.restitution[1] == pytest.approx(0.98, abs=0.01)
+    assert "it never lies still" in repr(found)
 
 
 def test_the_permitted_penetration_is_said_to_be_assumed(of_ball):

@@ -48,11 +48,12 @@ _BODY = [
         help=f"{STANDARD_GRAVITY} m/s² if not given; 0 with a speed.",
     ),
 ]
+_FRICTION = click.Option(["--friction"], help="Coefficient of friction.")
 _CONTACT = [
     click.Option(["--penetration"], help="Depth that must not be exceeded."),
     click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
     click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
-    click.Option(["--friction"], help="Coefficient of friction; r is computed without."),
+    _FRICTION,
     click.Option(["--tolerance"], help="Largest deviation of r; 0.02 if not given."),
     click.Option(["--pick"], help="Row that is written, such as 'what you want' or impulse."),
     click.Option(["--script"], type=click.Path(dir_okay=False), help="File for a script to run."),
@@ -189,6 +190,7 @@ def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]
     params=[
         click.Argument(["parameters"], nargs=-1, metavar="[NAME=VALUE]..."),
         *_BODY,
+        _FRICTION,
         _ENGINE,
         _STEP,
         _ONE_BODY,

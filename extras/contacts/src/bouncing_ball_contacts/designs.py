@@ -42,7 +42,9 @@ from bouncing_ball_contacts.schemes import (
     Solved,
     Trials,
     drop,
+    hop,
     nearby,
+    offsets,
 )
 from bouncing_ball_contacts.units import (
     DENSITIES,
@@ -78,6 +80,8 @@ _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250, 
 _FINE_COUNTS = tuple(2.5 * 40 ** (np.arange(117) / 78))
 _SEARCH = nearby(2, 15)
 _ALL = nearby(9, 201)
+SETTLED = 1.1
+"""Thresholds over the least with which a body comes to rest: near it, that takes many bounces."""
 # A permitted depth is aimed at from below: it is found to within half a percent.
 _AIM = 0.995
 
@@ -464,6 +468,34 @@ class Problem:
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
 
+    def hop(self, law: Law, step: float, r: float) -> float:
+        """Return by how much a body with the restitution r still hops at rest in m.
+
+        It is computed where steps of gravity may throw a body back: for numbers, and for MuJoCo's
+        contact, which hardly feels gravity.
+        """
+        fall = self.bounce.load * step
+        if fall == 0 or r >= 1 or not (law.is_number or isinstance(law, Impedance)):
+            return 0.0
+        lost = max(1 - r, LEAST_RESTITUTION)
+        speed = np.minimum(self.bounce.impact_speed, fall / lost * np.linspace(1, 3, 8))
+        scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
+        # After two thirds of so many bounces less than a fiftieth of this speed is left.
+        steps = 6 / lost * (8 + float(law.duration(speed[-1])) / step)
+        found = hop(law, scheme, step, speed, self.bounce.load, offsets(8), math.ceil(steps))
+        return found if found > fall * step / 10 else 0.0
+
+    def restless(self, law: Law, step: float, found: Outcome) -> str:
+        """Return why a body never lies still, and by how much it hops; empty if it does."""
+        hops = self.hop(law, step, found.restitution[2])
+        is_slight = isinstance(law, Impedance) and hops < self.bounce.size / 100
+        return (
+            ""
+            if is_slight or hops == 0
+            else f"it never lies still, but hops by up to about {show(hops, 'm', 2)}, because each "
+            "step of gravity is thrown back: a shorter one less"
+        )
+
     @property
     def duration(self) -> float:
         """T/δ in s/m: how long an undamped contact lasts."""
@@ -612,16 +644,20 @@ class Problem:
     def impulse(self, step: float) -> Row:
         """Return the restitution by number that has the wanted mean r, without a spring.
 
-        The number and r differ by little, so that it is corrected by their difference. A body at
-        rest is not thrown back by the speed that a step of gravity adds.
+        The number and r differ by little, so that it is corrected by their difference. The
+        threshold lets the body come to rest, unless it would not bounce at all.
         """
         engine = self.engine
-        beside = {**engine.undisturbed, engine.threshold: _written(2 * self.bounce.load * step)}
+        fall = self.bounce.gravity * step
         number = self.bounce.restitution
         tried = []
         for _ in range(12):
             alike = _written(engine.rules[engine.number].alike(number))
-            parameters = {engine.number: alike, **beside}
+            parameters = {engine.number: alike, **engine.undisturbed, engine.threshold: 0.0}
+            law: Any = self.law_of(parameters, step)
+            settling = SETTLED * float(law.settling(fall))
+            is_low = settling < self.bounce.impact_speed
+            parameters[engine.threshold] = _written(settling if is_low else 2 * fall)
             outcome = self.outcome(self.law_of(parameters, step), step)
             tried.append(Row(step, math.nan, outcome, parameters))
             # Half of it, because r may depend on the number by jumps.
@@ -734,6 +770,12 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     outcome = row.outcome
     low, mean, high = outcome.restitution
     law = problem.law_of(row.parameters, row.step)
+    restless = problem.restless(law, row.step, outcome)
+    # The threshold is of the speed with that of a step of gravity.
+    slowest = 0.0
+    if bounce.load and law.is_number and not restless:
+        slowest = row.parameters[problem.engine.threshold] - bounce.load * row.step
+    lowest = slowest**2 / (2 * bounce.load) if bounce.load else 0.0
     is_undamped = not law.is_number and float(law.damping) == 0 and mean < bounce.restitution
     slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
     slow = replace(problem, bounce=slower).outcome(law, row.step)
@@ -804,7 +846,13 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 and outcome.depth[1] > bounce.limit,
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
-            (math.isnan(outcome.rest) and not isinstance(law, Impedance), VAGUE),
+            (restless, restless),
+            (math.isnan(outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
+            (
+                10 * slowest > bounce.impact_speed,
+                f"drops from less than {show(lowest, 'm')} do not bounce: at a lower threshold "
+                "than this one the body would not come to rest",
+            ),
             (
                 law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
                 f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
@@ -820,7 +868,8 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 f"r is {span(low, high)}: no contact that is nearer was found",
             ),
             (
-                abs(slow.restitution[1] - mean) > TOLERANCE / 2,
+                abs(slow.restitution[1] - mean) > TOLERANCE / 2
+                and 3 * slowest < bounce.impact_speed,
                 f"at a third of the speed r is {slow.around}",
             ),
             (

@@ -34,7 +34,7 @@ from bouncing_ball_contacts.designs import (
     design,
     holding,
 )
-from bouncing_ball_contacts.engines import ENGINES, MODES, Engine, Parameters, engine_named
+from bouncing_ball_contacts.engines import CONES, ENGINES, MODES, Engine, Parameters, engine_named
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
@@ -50,10 +50,6 @@ from bouncing_ball_contacts.schemes import (
 )
 from bouncing_ball_contacts.units import Refused, in_si, show, within
 
-HOPS = (
-    "no depth at rest is given: the speed that gravity adds in each step exceeds the threshold and "
-    "is thrown back, so that the body may hop for ever"
-)
 _SHARES = (
     "bounce",
     "coefficientRestitution",
@@ -69,8 +65,11 @@ _DIVISORS = ("dampratio", "soft_erp")
 _VECTORS = {
     "solref": (1, 2, "one or two numbers, as in '0.02 1' or '-1000 -20'"),
     "solimp": (1, 5, "up to five numbers"),
+    "friction": (1, 3, "up to three numbers"),
 }
 """The least and the most numbers of parameters that have several, in figures and in words."""
+_WORDS = {"restitutionCombineMode": tuple(MODES), "cone": CONES}
+"""Parameters that are one of several words."""
 _WHY = {
     "contactProcessingThreshold": "PyBullet sees the surface ahead, and ",
     "max_vel": "max_vel caps the rebound, and ",
@@ -276,7 +275,9 @@ def diagnose(
         raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
     if row.sets_pair and other is not None:
         raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
-    given = _given(row, parameters or {})
+    is_told = bounce.friction is not None and "friction" in row.rules
+    rubs = {"friction": bounce.friction} if is_told else {}
+    given = _given(row, {**rubs, **(parameters or {})})
     differs = None if other is None else _given(row, other)
     contact = Contact(
         problem=Problem(bounce, row),
@@ -285,6 +286,9 @@ def diagnose(
         step=bounce.step(time_step),
     )
     spring = _spring(contact.law)
+    outcome = contact.outcome()
+    if contact.law.is_number and contact.problem.restless(contact.law, contact.step, outcome):
+        outcome = replace(outcome, rest=math.nan)
     found = Diagnosis(
         engine=row.name,
         source=row,
@@ -293,7 +297,7 @@ def diagnose(
         parameters=contact.one,
         given=given,
         other=differs,
-        outcome=contact.outcome(),
+        outcome=outcome,
         limit=_in_short_steps(contact, bounce.load),
         free=_in_short_steps(contact, 0.0),
         stiffness=float(spring.stiffness) * bounce.reduced_mass,
@@ -359,13 +363,18 @@ def _unknown(engine: Engine, typed: str) -> str:
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
     """Return a parameter as a number, as several numbers or as a word."""
-    if name in _VECTORS:
+    if name in ("solref", "solimp"):
         return _vector(name, value)
-    if name == "restitutionCombineMode":
-        if str(value).lower() not in MODES:
-            raise Refused(f"{name} = {value} is none of {', '.join(MODES)}")
+    if name in _WORDS:
+        if str(value).lower() not in _WORDS[name]:
+            raise Refused(f"{name} = {value} is none of {', '.join(_WORDS[name])}")
         return str(value).lower()
+    if name == "friction":
+        # Of several numbers, the first acts along the surface.
+        value = _vector(name, value)[0]
     number = in_si(name, value, engine.units.get(name, ""))
+    if name == "condim" and number not in (1, 3, 4, 6):
+        raise Refused(f"condim = {value} is none of 1, 3, 4, 6")
     if number == engine.defaults.get(name):
         return number
     if number == 0 and name in (engine.names[0], *_DIVISORS):
@@ -483,7 +492,14 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
     row = contact.problem.engine
     bounce = found.bounce
     law = contact.law
-    impedance = getattr(law, "high", 1.0)
+    restless = contact.problem.restless(law, contact.step, found.outcome)
+    # Of a friction pyramid without friction, and of an elliptic cone.
+    smooth, cone = (
+        contact.problem.outcome(replace(law, edges=edges), contact.step, _MEAN).restitution[1]
+        if isinstance(law, Impedance)
+        else found.outcome.restitution[1]
+        for edges in (0.0, 1.0)
+    )
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
     facts = [
@@ -506,14 +522,15 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             "oscillation",
         ),
         (
-            math.isnan(found.outcome.rest) and not isinstance(law, Impedance),
-            HOPS if law.is_number else VAGUE,
+            restless,
+            restless,
         ),
+        (math.isnan(found.outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
         (
-            impedance < 0.99,
-            f"at an impedance of {impedance:g} this is r at a friction of 1, and another one "
-            f"changes it; at solimp = {_spelled(row.beside.get('solimp', ''))}, as designs have, "
-            "no friction does",
+            abs(smooth - cone) > _VISIBLE or abs(smooth - found.outcome.restitution[1]) > _VISIBLE,
+            f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
+            f"with the elliptic cone {cone:.3f} at every friction; at solimp = "
+            f"{_spelled(row.beside.get('solimp', ''))}, as designs have, none changes it",
         ),
         (row.caution, row.caution),
         (bounce.points > 1 and row.box, row.box),

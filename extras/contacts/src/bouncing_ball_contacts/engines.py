@@ -39,6 +39,9 @@ neither on the load and the number of points, nor on the friction, its cone and 
 a friction pyramid turn an impedance d into d/(d + (1 - d) μ² (1 + μ²)/2).
 """
 _LEAST_IMPEDANCE = 1e-4
+_LEAST_FRICTION = 1e-5
+CONES = ("pyramidal", "elliptic")
+"""Of friction in MuJoCo, the default first."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,7 @@ SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2, lambda x, other: x - ot
 MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x, lambda x, other: 2 * x - other)
 PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt, lambda x, other: x / other)
 LEAST = Rule("the least of both", min, lambda x: x, lambda x, other: x)
+LARGER = Rule("the larger of both counts", max, lambda x: x, lambda x, other: x)
 PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
 
 
@@ -320,6 +324,8 @@ def _read_mujoco(p: Parameters, at: Setting, least: float = 1e-15) -> Law:
     else:
         k = -first / high**2
         b = abs(second) / high
+    friction = max(p.get("friction", 1.0), _LEAST_FRICTION)
+    is_pyramid = p.get("cone", CONES[0]) == CONES[0] and p.get("condim", 3) > 1
     return Impedance(
         stiffness=np.asarray(k),
         damping=np.asarray(b),
@@ -329,6 +335,7 @@ def _read_mujoco(p: Parameters, at: Setting, least: float = 1e-15) -> Law:
         width=width,
         middle=middle,
         power=power,
+        edges=friction**2 * (1 + friction**2) / (p.get("condim", 3) - 1) if is_pyramid else 1.0,
     )
 
 
@@ -357,6 +364,9 @@ _MUJOCO_RULES = {
     "solref": Rule("least of both", _mix_solref, lambda x: x, lambda x, other: x),
     "solimp": _SOLIMP,
     "refsafe": PAIR,
+    "friction": LARGER,
+    "condim": LARGER,
+    "cone": PAIR,
 }
 
 
@@ -542,6 +552,10 @@ def _read_physx(p: Parameters, at: Setting) -> Law:
     )
 
 
+_WEIGHTLESS = (
+    "These contacts feel 0.1 % of gravity: a load does not press them in by its weight over k, and "
+    "a body at rest hops a little"
+)
 # In MuJoCo the damper acts along the surface as well.
 _PUSHED_UP = Sliding(adds=0.07, below=0.6)
 _EVERY_FRICTION = (
@@ -570,12 +584,20 @@ _MUJOCO = Engine(
     meaning="solref = -k/m -c/m, solimp = 0.999 0.999 0.001",
     rules=_MUJOCO_RULES,
     of_depth=_impedance_of_depth,
-    defaults={"solref": (0.02, 1.0), "solimp": _DEFAULT_SOLIMP, "refsafe": 1.0},
+    defaults={
+        "solref": (0.02, 1.0),
+        "solimp": _DEFAULT_SOLIMP,
+        "refsafe": 1.0,
+        "friction": 1.0,
+        "condim": 3.0,
+        "cone": CONES[0],
+    },
     ran="MuJoCo 4.0.0",
     notes=(
         "The numbers of solref are per unit of mass: they hold for every mass, and for two free "
         "bodies",
         "Give both geoms the class, because MuJoCo averages their solimp",
+        _WEIGHTLESS,
     ),
     friction=_EVERY_FRICTION,
     sliding=_PUSHED_UP,
@@ -761,7 +783,7 @@ ENGINES: Mapping[str, Engine] = {
             defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
             resolution=_SINGLE,
             ran="Newton 1.8.0",
-            notes=("Without friction it needs condim = 1, or there are no numbers",),
+            notes=("Without friction it needs condim = 1, or there are no numbers", _WEIGHTLESS),
             friction=_EVERY_FRICTION,
             sliding=_PUSHED_UP,
         ),
@@ -778,7 +800,7 @@ ENGINES: Mapping[str, Engine] = {
             units={"timeconst": "s"},
             rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
             defaults={"solimp": _DEFAULT_SOLIMP},
-            notes=("The numbers hold for every mass",),
+            notes=("The numbers hold for every mass", _WEIGHTLESS),
             friction=_EVERY_FRICTION,
             sliding=_PUSHED_UP,
         ),

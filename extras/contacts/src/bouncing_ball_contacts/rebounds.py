@@ -21,12 +21,11 @@ import numpy as np
 
 from bouncing_ball_contacts import step_rules
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Page, Quantity
-from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, Rule
+from bouncing_ball_contacts.engines import LARGER, MEAN, PAIR, PRODUCT, Rule
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si, within
 
-LARGER = Rule("the larger of both counts", max, lambda x: x, lambda x, other: x)
 _CLAMPED_SUM = Rule(
     "added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2, lambda x, other: x
 )
@@ -373,7 +372,7 @@ def falling(**quantities: Quantity) -> Bounce:
         If a quantity cannot be read, or has no place here.
     """
     given = {name: value for name, value in quantities.items() if value is not None}
-    for name in ("penetration", "stiffness", "contact_time", "other_mass", "friction"):
+    for name in ("penetration", "stiffness", "contact_time", "other_mass"):
         if name in given:
             option = name.replace("_", "-")
             raise Refused(f"--{option} has no place where the restitution is a number")
@@ -495,6 +494,8 @@ class Rebound(Page):
             f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}.",
             *(f"{note}." for note in row.notes),
         ]
+        if self.bounce.friction is not None:
+            lines.append("Friction acts along the surface only: r is computed without it.")
         if self.bounce.drop_height is self.bounce.speed is None:
             lines.append("Assumed: a drop from 1 m (--drop-height or --speed).")
         return "\n".join(lines)

@@ -21,7 +21,7 @@ import numpy as np
 
 from bouncing_ball_contacts import step_rules
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Page, Quantity
-from bouncing_ball_contacts.engines import LARGER, MEAN, PAIR, PRODUCT, Rule
+from bouncing_ball_contacts.engines import LARGER, LEAST, MEAN, PAIR, PRODUCT, Rule
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si, within
@@ -29,6 +29,8 @@ from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si,
 _CLAMPED_SUM = Rule(
     "added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2, lambda x, other: x
 )
+COMBINED = {"average": MEAN, "minimum": LEAST, "multiply": PRODUCT, "maximum": LARGER}
+"""The modes of PhysX materials."""
 INSTANTS = 24
 """Of the impact within a step; a sixth of them in short steps, where r hardly depends on them."""
 # Where a body flies freely: no engine finds its contact farther away, in m.
@@ -45,7 +47,10 @@ class ByNumber:
     there is none that can be changed. ``sinks`` is by how many times g h² a body falls farther in a
     step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
     ``springs`` is the row of the same engine in :data:`.ENGINES`, if it takes a stiffness as well.
-    ``written`` is the line to paste.
+    ``written`` is the line to paste, and ``lowered`` the one of another threshold. If it
+    ``has_modes``, materials say how their numbers are combined. ``damped_by`` is
+    the linear damping of a body with its default ``damping``, and ``kept`` the share of a velocity
+    that it leaves in a step.
     """
 
     name: str
@@ -61,6 +66,11 @@ class ByNumber:
     sinks: float = 1.0
     remembers: int = 2
     springs: str = ""
+    lowered: str = ""
+    has_modes: bool = False
+    damped_by: str = ""
+    damping: float = 0.0
+    kept: Callable[[float, float], float] = lambda damping, step: 1.0
     notes: tuple[str, ...] = ()
 
     @property
@@ -70,7 +80,18 @@ class ByNumber:
         if self.set_by:
             last = re.split(r"[.:/]", self.set_by.lower())[-1]
             known |= {"threshold": "threshold", last: "threshold"}
+        if self.has_modes:
+            known |= dict.fromkeys(
+                ("combine", "bouncecombine", "restitutioncombinemode"), "combine"
+            )
+        if self.damped_by:
+            known |= {self.damped_by.lower(): "damping"}
         return known
+
+    def fall(self, number: float, bounce: Bounce, step: float, threshold: float) -> Fall:
+        """Return how a ball falls, with the number of both bodies together."""
+        keeps = self.kept(self.damping, step)
+        return Fall(number, step, bounce.load, threshold, bounce.size, keeps)
 
 
 _JOLT = ByNumber(
@@ -82,6 +103,10 @@ _JOLT = ByNumber(
     pair=LARGER,
     threshold=1.0,
     set_by="PhysicsSettings::mMinVelocityForRestitution",
+    lowered="physicsSettings.mMinVelocityForRestitution = {threshold}f;",
+    damped_by="mLinearDamping",
+    damping=0.05,
+    kept=lambda damping, step: max(1 - damping * step, 0.0),
 )
 _PHYSX = ByNumber(
     name="physx",
@@ -91,6 +116,8 @@ _PHYSX = ByNumber(
     threshold=2.0,
     set_by="bounceThresholdVelocity",
     springs="physx",
+    has_modes=True,
+    lowered="sceneDesc.bounceThresholdVelocity = {threshold}f;",
 )
 _BOX2D_2 = ByNumber(
     name="box2d-2",
@@ -130,6 +157,10 @@ BY_NUMBER = {
             parameter="bounce",
             pair=_CLAMPED_SUM,
             set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
+            lowered="physics/jolt_physics_3d/simulation/bounce_velocity_threshold={threshold}"
+            "  # project setting",
+            damped_by="default_linear_damp",
+            damping=0.1,
             notes=("Godot was not run: its source hands these numbers to Jolt",),
         ),
         _PHYSX,
@@ -137,10 +168,11 @@ BY_NUMBER = {
             _PHYSX,
             name="unity",
             rule=partial(step_rules.physx, ahead=0.02),
-            written="material.bounciness = {number}f;  // of both colliders, combined by Average",
+            written="material.bounciness = {number}f;  // of both colliders",
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
             springs="",
+            lowered="Physics.bounceThreshold = {threshold}f;",
             notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
         ),
         replace(
@@ -150,6 +182,7 @@ BY_NUMBER = {
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
+            lowered="PhysxCfg(bounce_threshold_velocity={threshold})  # of SimulationCfg(physx=…)",
             notes=(
                 "Isaac Lab was not run: it has PhysX 5. The contact offset is taken as longer than "
                 "the way of the body in a step",
@@ -162,6 +195,7 @@ BY_NUMBER = {
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.0,
             set_by="physxScene:bounceThreshold",
+            lowered="float physxScene:bounceThreshold = {threshold}",
             notes=(
                 "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold. The "
                 "contact offset is taken as longer than the way of the body in a step",
@@ -176,6 +210,7 @@ BY_NUMBER = {
             pair=LARGER,
             threshold=1.0,
             set_by="b2WorldDef.restitutionThreshold",
+            lowered="worldDef.restitutionThreshold = {threshold}f;",
             sinks=_RAPIER.sinks,
             notes=("Box2D 2 has another rule: --engine box2d-2",),
         ),
@@ -186,6 +221,7 @@ BY_NUMBER = {
             ran="planck 1.4.2",
             written="body.createFixture({{shape, restitution: {number}}})  // one of both",
             set_by="Settings.velocityThreshold",
+            lowered="Settings.velocityThreshold = {threshold};",
             notes=(),
         ),
         ByNumber(
@@ -218,9 +254,11 @@ BY_NUMBER = {
             notes=(
                 "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
                 "that is lower by 0.02",
-                "Of gravity and lengths in pixels give those in metres at the same ratio, and "
-                "frictionAir = 0",
+                "Of gravity and lengths in pixels give those in metres at the same ratio",
             ),
+            damped_by="frictionAir",
+            damping=0.01,
+            kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
         ),
         ByNumber(
             name="newton-xpbd",
@@ -239,6 +277,9 @@ BY_NUMBER = {
                 "With contactEquationRelaxation = 3 and contactEquationStiffness = 1e7, the "
                 "defaults; r depends on where in a step the impact is",
             ),
+            damped_by="linearDamping",
+            damping=0.01,
+            kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
         ),
     )
 }
@@ -300,13 +341,30 @@ def engine_by_number(name: str) -> ByNumber | None:
     return BY_NUMBER.get(found or "")
 
 
+def _damped(engine: ByNumber, at: Fall, z: float, v: float) -> tuple[Array, Array]:
+    """Return heights and velocities of a free flight with a linear damping, until it is low."""
+    # A step far above the surface.
+    pull = -next(engine.rule(at, 1e6, 0.0))[1]
+    time = (v + math.sqrt(v * v + 2 * at.gravity * z)) / at.gravity
+    n = np.arange(1, math.ceil(2 * time / at.step) + 10)
+    left = at.keeps**n
+    speeds = left * v - pull * (1 - left) / (1 - at.keeps)
+    return z + at.step * np.cumsum(speeds), speeds
+
+
 def _first_rebound(engine: ByNumber, at: Fall, height: float, speed: float) -> float:
     """Return r of a ball that is dropped from a height, or without gravity arrives with a speed."""
     z = height
     v = 0.0 if at.gravity else -speed
     near = _REACH + 4 * speed * at.step
     drop = at.added * at.step
-    if drop:
+    if at.keeps < 1 and drop:
+        heights, speeds = _damped(engine, at, z, v)
+        n = max(int(np.argmax(heights < near)) - engine.remembers, 0)
+        if n:
+            z = float(heights[n - 1])
+            v = float(speeds[n - 1])
+    elif drop:
         # Down to where a contact may be found the ball flies n steps freely.
         n = math.floor(math.sqrt(2 * max(z - near, 0.0) / drop))
         n = max(n - engine.remembers, 0)
@@ -324,6 +382,8 @@ def _first_rebound(engine: ByNumber, at: Fall, height: float, speed: float) -> f
             if not drop:
                 return v / speed
             # And so it flies up to its top.
+            if at.keeps < 1:
+                return math.sqrt(max(z, float(_damped(engine, at, z, v)[0].max())) / height)
             n = max(math.floor(v / at.added - engine.sinks) + 1, 0)
             z += n * at.step * v - drop * (n * (n - 1) / 2 + engine.sinks * n)
             return math.sqrt(z / height)
@@ -402,8 +462,12 @@ class Rebound(Page):
     threshold: float
     restitution: tuple[float, float, float]
     slower: tuple[float, float, float]
+    damping: float = 0.0
+    combine: str = ""
     change: "Rebound | None" = None
     shorter: "Rebound | None" = None
+    is_beyond: bool = False
+    """Whether no number keeps r at this step."""
 
     @property
     def deviation(self) -> float:
@@ -416,7 +480,7 @@ class Rebound(Page):
         """What is pasted into the engine."""
         row = BY_NUMBER[self.engine]
         line = row.written.format(number=f"{self.written:.4g}")
-        lowered = f"{row.set_by} = {self.threshold:.2g}"
+        lowered = row.lowered.format(threshold=f"{self.threshold:.2g}")
         return line if self.threshold == row.threshold else f"{line}\n{lowered}"
 
     @property
@@ -431,7 +495,7 @@ class Rebound(Page):
         lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
         way = speed * self.time_step
         said = {
-            f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}": (
+            f"nothing bounces: the other body has 0, and the numbers are {self.combine}": (
                 self.number == 0 < self.written
             ),
             f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of {limit}": (
@@ -447,7 +511,7 @@ class Rebound(Page):
             f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
                 not is_slow and lowest > 0 and self.number > 0
             ),
-            f"no number keeps r within {TOLERANCE:g} at this step": self.shorter is not None,
+            f"no number keeps r within {TOLERANCE:g} at this step": self.is_beyond,
             f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
             "table": way > self.bounce.size,
         }
@@ -485,15 +549,23 @@ class Rebound(Page):
         if self.shorter is not None:
             step_of = show(self.shorter.time_step, "s", 4)
             lines.append(f"At a step of {step_of} {self.shorter.gives}.")
+        elif self.is_beyond:
+            lines.append("Nor does one at a half, a quarter, … a 128th of the step.")
         lines += [
             "",
             (self.change or self).snippet,
             "",
             f"Given: {', '.join([*(f'{name} {value}' for name, value in given.items()), step])}.",
-            f"The numbers of both bodies, {other}: {row.pair.text}; together {self.number:.4g}.",
+            f"The numbers of both bodies, {other}: {self.combine}; together {self.number:.4g}.",
             f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}.",
             *(f"{note}." for note in row.notes),
         ]
+        if row.damped_by:
+            default = ", the default" if self.damping == row.damping else ""
+            lines.append(
+                f"The flights are damped by {row.damped_by} = {self.damping:g}{default}, which "
+                "lowers r: it holds for this height only."
+            )
         if self.bounce.friction is not None:
             lines.append("Friction acts along the surface only: r is computed without it.")
         if self.bounce.drop_height is self.bounce.speed is None:
@@ -517,7 +589,7 @@ def _rebound(
 ) -> Rebound:
     """Return what a number does."""
     number = engine.pair.of(written, written if other is None else other)
-    at = Fall(number, step, bounce.load, threshold, bounce.size)
+    at = engine.fall(number, bounce, step, threshold)
     speed = bounce.impact_speed
     found = restitutions(engine, at, speed)
     try:
@@ -534,6 +606,8 @@ def _rebound(
         threshold=threshold,
         restitution=(float(found.min()), float(found.mean()), float(found.max())),
         slower=(float(slower.min()), float(slower.mean()), float(slower.max())),
+        damping=engine.damping,
+        combine=engine.pair.text,
     )
 
 
@@ -547,7 +621,7 @@ def _nearest(
     while high - low > 1e-4:
         written = (low + high) / 2
         number = engine.pair.of(written, written if other is None else other)
-        at = Fall(number, step, bounce.load, threshold, bounce.size)
+        at = engine.fall(number, bounce, step, threshold)
         if restitutions(engine, at, speed).mean() < bounce.restitution:
             low = written
         else:
@@ -591,7 +665,8 @@ def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound
     if bounce.restitution is None:
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     found = _wanted(engine, bounce, _step(time_step), engine.threshold, None)
-    return replace(found, shorter=_shorter(found, engine))
+    is_beyond = found.deviation > TOLERANCE
+    return replace(found, shorter=_shorter(found, engine), is_beyond=is_beyond)
 
 
 def rebound(
@@ -624,6 +699,11 @@ def rebound(
     given = _given(engine, parameters)
     if "number" not in given:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
+    engine = replace(
+        engine,
+        damping=given.get("damping", engine.damping),
+        pair=given.get("combine", engine.pair),
+    )
     beside = None
     if other is not None:
         beside = _given(engine, other).get("number", engine.default)
@@ -636,7 +716,12 @@ def rebound(
         # The number of one body may not be enough.
         alike = _wanted(engine, bounce, step, threshold, None)
         change = min(change, alike, key=lambda each: each.deviation)
-    return replace(found, change=change, shorter=_shorter(change, engine))
+    return replace(
+        found,
+        change=change,
+        shorter=_shorter(change, engine),
+        is_beyond=change.deviation > TOLERANCE,
+    )
 
 
 def _step(time_step: Quantity) -> float:
@@ -645,16 +730,25 @@ def _step(time_step: Quantity) -> float:
     return step_in_si(time_step)
 
 
-def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, float]:
-    """Return the number and the threshold that were typed."""
-    found = {}
+def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the number, the threshold, the damping and how two numbers are combined, as typed."""
+    found: dict[str, Any] = {}
     for name, value in typed.items():
         meant = engine.names.get(name.lower())
         if meant == "number":
             found[meant] = within(name, value, 0, 1)
         elif meant == "threshold":
             found[meant] = within(name, in_si(name, value, "m/s"), 0, math.inf)
+        elif meant == "damping":
+            found[meant] = within(name, value, 0, math.inf)
+        elif meant == "combine":
+            modes = [mode for mode in COMBINED if mode.startswith(str(value).lower()[:3])]
+            if len(str(value)) < 3 or not modes:
+                raise Refused(f"{name} = {value} is none of {', '.join(COMBINED)}")
+            found[meant] = COMBINED[modes[0]]
         else:
-            has = " and ".join(filter(None, [engine.parameter, engine.set_by]))
+            combine = "combine" if "combine" in engine.names else ""
+            known = [engine.parameter, engine.set_by, engine.damped_by, combine]
+            has = " and ".join(filter(None, known))
             raise Refused(f"{engine.name} does not use {name!r}: it has {has}")
     return found

@@ -17,7 +17,8 @@ class Fall:
     """A ball on its way down: what the rule of an engine depends on, in SI units.
 
     ``number`` is the restitution coefficient of both bodies together. Impacts slower than
-    ``threshold`` have none.
+    ``threshold`` have none. ``keeps`` is the share of its velocity that a linear damping leaves to
+    a body in a step.
     """
 
     number: float
@@ -25,6 +26,7 @@ class Fall:
     gravity: float
     threshold: float
     radius: float
+    keeps: float = 1.0
 
     @property
     def added(self) -> float:
@@ -42,12 +44,15 @@ def jolt(at: Fall, z: float, v: float) -> Steps:
     What is deeper than 20 mm is taken back by a fifth, twice in a step.
     """
     while True:
-        u = v - at.added
+        u = at.keeps * (v - at.added)
         deepest = math.inf
         if z <= 0.02:
             deepest = 0.02
             touches = u < -max(z, 0.0) / at.step
-            u = max(u, -at.number * v if touches and u < -at.threshold else -max(z, 0.0) / at.step)
+            before = u + at.added
+            u = max(
+                u, -at.number * before if touches and u < -at.threshold else -max(z, 0.0) / at.step
+            )
         z += at.step * u
         for _ in range(2):
             z += 0.2 * max(-z - deepest, 0.0)
@@ -254,7 +259,7 @@ def xpbd(at: Fall, z: float, v: float) -> Steps:
 def matter(at: Fall, z: float, v: float) -> Steps:
     """The body is put back to the surface, and its velocity with gravity is reversed."""
     while True:
-        v -= at.added
+        v = at.keeps * v - at.added
         z += at.step * v
         if z < 0 and v < 0:
             z = 0.0
@@ -274,6 +279,6 @@ def cannon(at: Fall, z: float, v: float) -> Steps:
         impulse = 0.0
         if z < 0:
             impulse = max((at.added - z * a - (1 + at.number) * v * b) / (1 + softness), 0.0)
-        v += impulse - at.added
+        v = at.keeps * (v + impulse) - at.added
         z += at.step * v
         yield z, v

@@ -241,16 +241,19 @@ class OrbitEquations:
         legs[..., q - 1] = rate + y[..., q + 1]
         return legs, flights
 
-    def bordered(self, z: NDArray, linear: Linear, normal: NDArray) -> NDArray:
+    def bordered(
+        self, z: NDArray, linear: Linear, normal: NDArray, condition: tuple | None = None
+    ) -> NDArray:
         """The step of Newton's method to the plane through z across a normal, and the tangent.
 
         Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations. With
-        one parameter special orbits are points, which need no plane.
+        one parameter special orbits are points, which need no plane. Their :meth:`condition` may be
+        given.
         """
         border = normal[:, np.newaxis]
         right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
         if self.kind:
-            value, gradient = self.condition(z)
+            value, gradient = condition or self.condition(z)
             special = np.stack([-value, 0 * value], axis=-1)[:, np.newaxis]
             points = len(self.along) == 1
             border = np.concatenate([gradient[:, np.newaxis], border[:, points:]], axis=1)
@@ -261,6 +264,13 @@ class OrbitEquations:
         """The solutions of the linear equations and the border, for -legs and for no legs."""
         legs = np.stack([-linear.legs, 0 * linear.legs], axis=-1)
         return solve_bordered(linear.derivatives, legs, border, right)
+
+    def excess(self, z: NDArray, linear: Linear) -> NDArray:
+        """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
+        if self.kind not in MULTIPLIERS:
+            return KINDS[self.kind].test(self, z: NDArray, linear)
+        trace, determinant = self.trace_and_determinant(linear)
+        return 1 - MULTIPLIERS[self.kind] * trace + determinant
 
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
@@ -276,14 +286,10 @@ class OrbitEquations:
         nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
         each = self.rows(np.tile(np.arange(rows), len(nudges)))
         linear = each.linear(nearby)
+        values = each.excess(nearby, linear)
         rates = np.ones(len(nearby))
-        if self.kind in MULTIPLIERS:
-            trace, determinant = each.trace_and_determinant(linear)
-            values = 1 - MULTIPLIERS[self.kind] * trace + determinant
-            if self.ball.lasts:
-                rates = linear.derivatives[..., 0, 2].prod(axis=-1)
-        else:
-            values = KINDS[self.kind].test(each, nearby, linear)
+        if self.kind in MULTIPLIERS and self.ball.lasts:
+            rates = linear.derivatives[..., 0, 2].prod(axis=-1)
         beside = np.stack([values * rates, rates])[:, rows:].reshape(2, len(nodes), length, rows)
         slopes = np.einsum("n,inlr->irl", weights, beside) / shift
         value = values[:rows]
@@ -404,17 +410,23 @@ class OrbitEquations:
     def max_height(self, z: NDArray) -> NDArray:
         """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.
 
-        In a compliant contact the table may lift the ball higher than it flies.
+        In a compliant contact the table may lift the ball higher than it flies, up to its own
+        highest point.
         """
         leaves, gap, speed, time, amplitude, table = self.ends(z)
         bounce = speed + amplitude * table(leaves, 1)
         rise = np.clip(bounce, 0, time)
         height = gap + amplitude * table(leaves) + (bounce - rise / 2) * rise
-        if not self.ball.lasts:
-            return height.max(axis=-1)
+        height = height.max(axis=-1)
+        lifts = amplitude * sum(np.abs(size) for size in table.sizes)
+        low = height < lifts.max(axis=-1)
+        if not self.ball.lasts or not low.any():
+            return height
+        if not low.all():
+            height[low] = self.rows(low).max_height(z[low])
+            return height
         x, _, _ = self.split(z)
         during = self._during(z)
-
         table = table.rows(np.s_[..., np.newaxis])
 
         def moved(t: NDArray, order: int) -> NDArray:
@@ -426,7 +438,7 @@ class OrbitEquations:
             lambda t: -during(t).gap - moved(t, 0),
             x[..., 2],
         )
-        return np.maximum(height, -lifted).max(axis=-1)
+        return np.maximum(height, -lifted.min(axis=-1))
 
     def _during(self, z: NDArray) -> Callable[[NDArray], Impact]:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""

@@ -27,6 +27,9 @@ SPECIAL = 1e-9
 """The same for special orbits. A step is wrong by its square and by 1e-10 of itself, the error of
 the gradient, so that the error is again that of rounding."""
 
+EXACT = 6
+"""The gradients of special orbits at points are computed in so many steps once."""
+
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
 contacts that last for many periods, and seldom back."""
@@ -109,22 +112,37 @@ def newton(
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
-    """Special orbits; only rows that are not found yet go on, because their gradients cost."""
+    """Special orbits; only rows that are not found yet go on, because their gradients cost.
+
+    Gradients at points are exact in each sixth step only, and in others changed by Broyden's rule:
+    they explain the last value, which should have been zero, by the last step.
+    """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
     left = np.arange(len(z))
     part = equations
-    for _ in range(iterations):
-        solution = part.bordered(z[left], part.linear(z[left]), normal[left])
+    gradient = np.empty_like(z)
+    for number in range(iterations):
+        linear = part.linear(z[left])
+        exact = len(equations.along) > 1 or number % EXACT == 0
+        if exact:
+            value, gradient[left] = part.condition(z[left])
+        else:
+            value = part.excess(z[left], linear)
+            gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        condition = value, gradient[left]
+        solution = part.bordered(z[left], linear, normal[left], condition)
         step = solution[..., 0]
         size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
         step[size > LONG] = np.nan
         z[left] += step
         tangent[left] = solution[..., 1]
         moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
-        found[left] = moved < SPECIAL
-        left = left[moved >= SPECIAL]
+        found[left] = moved < (SPECIAL if exact else TOLERANCE)
+        going = ~found[left] & np.isfinite(moved)
+        step = step[going]
+        left = left[going]
         if not left.size:
             break
         part = equations.rows(left)

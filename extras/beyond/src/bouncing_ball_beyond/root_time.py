@@ -72,7 +72,8 @@ ROWS = 1000
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
 
 FEW_CONTACTS = 50
-"""So few contacts with m = 1, which are nearly linear, are solved by Newton's method as well."""
+"""The linear equations of so few contacts are solved as such and not by sweeps. With m = 1 they are
+nearly linear themselves, and solved by Newton's method."""
 
 TINY = 1e-300
 
@@ -265,7 +266,8 @@ class Linearised(NamedTuple):
 
     def integrated(self, values):
         """Integrals up to the nodes, of values at the nodes, shape (nodes, directions, rows)."""
-        return self.h * np.tensordot(_INTEGRALS, values, 1)
+        flat = _INTEGRALS @ values.reshape(ORDER, -1)
+        return self.h * flat.reshape(values.shape)
 
     def time(self, q):
         """δt from δq at the nodes."""
@@ -397,7 +399,8 @@ def carried(motion, nodes, by, h, *, newton):
     # That in which only the end of a contact moves is still at rest.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
-    push[:, moves] = (linear.solved if newton else linear.swept)(known[:, moves])
+    few = newton or h.size <= FEW_CONTACTS
+    push[:, moves] = (linear.solved if few else linear.swept)(known[:, moves])
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
     return by + np.array([h * np.tensordot(_WEIGHTS, each, 1) for each in (rate, push, pace)])

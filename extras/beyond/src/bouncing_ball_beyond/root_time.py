@@ -585,6 +585,9 @@ class _Contacts:
         doubtful = good & (place < 1)
         factor = np.where(doubtful, place * panel.length / length, factor)
         good &= ~doubtful
+        if self.until is not None:
+            # So many equal panels as before are fewer than those of the best lengths.
+            factor = np.where(good, np.fmax(factor, 1.0), factor)
         self.length[here] = length * np.where(good & (which >= 0), 1.0, factor)
         self.ended[here] = good & last & (which < 0)
         kept = here[good]

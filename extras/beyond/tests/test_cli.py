@@ -4,6 +4,7 @@ import csv
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -11,6 +12,7 @@ from bouncing_ball_beyond.cli import commands, main
 
 LAW = "--law tsuji --restitution 0.85 --set duration=0.1 --set speed=3 --amplitude 1"
 SHAKER = "--frequency 50Hz --acceleration 0.8g --stiffness 1e7N/m --restitution 0.85"
+TWO = "--harmonic 1 1 0 --harmonic 3 0.05 -1.1"
 RIGID = "--restitution 0.65 --amplitude 1"
 SPRING = f"{RIGID} --frequency-ratio 80"
 ANSWERS = {
@@ -35,6 +37,14 @@ ANSWERS = {
         "-0.02579"
     ],
     f"shaker --mass 20g {SHAKER}": ["558.9 µm", "is not good enough"],
+    # Two frequencies, from an implementation that shares no code.
+    f"limits --restitution 0.9 {TWO}": ["period doubling", "0.858168"],
+    f"limits --restitution 0.9 --frequency-ratio 100 {TWO}": ["0.85895"],
+    f"follow --restitution 0.9 --amplitude 0.7 --to 1 {TWO}": ["period doubling at 0.8581675"],
+    f"simulate {RIGID} --impacts 4 {TWO}": ["impact_velocity"],
+    f"motion --restitution 0.5 --amplitude 1 {TWO}": ["kind                periodic"],
+    f"error-law {SPRING} {TWO}": ["max height"],
+    f"shaker --mass 20g {SHAKER} {TWO}": ["good enough"],
 }
 
 
@@ -62,6 +72,9 @@ MISTAKES = {
     f"shaker --mass 20g {SHAKER.replace('50Hz', '50m')}": "--frequency = '50m'",
     f"shaker {SHAKER}": "--mass",
     "shaker --mass 20g": "Missing options --frequency, --restitution.",
+    "orbit": "Missing options --amplitude, --restitution or --law.",
+    f"orbit {RIGID} --harmonic 0 1 0": "--harmonic: (0, 1.0, 0.0): must be",
+    f"orbit {RIGID} --table nowhere.csv": "nowhere.csv",
     f"follow {RIGID}": "Missing option '--to'",
     "fly": "fly",
 }
@@ -75,6 +88,34 @@ def test_mistakes_are_one_line(line, capsys):
     assert ended.value.code == 2 and output.out == ""
     assert output.err.startswith("bouncing-ball: ") and output.err.count("\n") == 1
     assert MISTAKES[line] in output.err
+
+
+def printed(capsys, *arguments):
+    """What a command prints on both streams."""
+    with pytest.raises(SystemExit):
+        main(list(arguments))
+    return "".join(capsys.readouterr())
+
+
+@pytest.mark.parametrize("name", ["height", "acceleration"])
+def test_table_of_recorded_samples(name, tmp_path, capsys):
+    tau = 2 * np.pi * np.arange(64) / 64
+    sign = -1 if name == "acceleration" else 1
+    lines = [f"{sample:.17g}" for sample in sign * np.sin(tau)]
+    file = tmp_path / "period.csv"
+    file.write_text("\n".join([f"time,{name}", *(f"0,{line}" for line in lines)]))
+    line = f"orbit {RIGID}".split()
+    recorded = printed(capsys, *line, "--table", str(file))
+    known = printed(capsys, *line).splitlines()
+    assert set(known) <= set(recorded.splitlines())
+    file.write_text(f"{name}\n0\n1\nx\n0")
+    assert "line 4: 'x' is no number" in printed(capsys, *line, "--table", str(file))
+    file.write_text("0\n1\n0\n-1")
+    assert "must have a first line with height or acceleration" in printed(
+        capsys, *line, "--table", str(file)
+    )
+    both = [*line, *TWO.split(), "--table", str(file)]
+    assert "--harmonic, --table: at most one of them may be given" in printed(capsys, *both)
 
 
 def test_files(tmp_path, capsys):

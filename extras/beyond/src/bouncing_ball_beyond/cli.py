@@ -4,6 +4,7 @@ Each command makes a ball, calls one public function with it, and prints the ans
 imported when a command runs, so that ``--help`` is fast.
 """
 
+import csv
 import math
 import re
 import sys
@@ -31,6 +32,9 @@ class Command(click.Command):
             values, _, _ = self.make_parser(ctx).parse_args(given)
             missing = [each.opts[0] for each in self.params if each.required]
             missing = [name for name in missing if name[2:].replace("-", "_") not in values]
+            names = {each.name for each in self.params}
+            if "law" in names and not values.keys() & {"restitution", "damping_ratio", "law"}:
+                missing.append("--restitution or --law")
             if len(missing) < 2:
                 raise
             raise click.UsageError(f"Missing options {', '.join(missing)}.") from None
@@ -129,10 +133,59 @@ BALL = with_options(
     click.option("--set", "settings", multiple=True, metavar="NAME=NUMBER", help="Of the law."),
     click.option("--corrected", is_flag=True, help="Impacts as instants at the force's centroid."),
 )
+TABLE = with_options(
+    click.option(
+        "--harmonic",
+        "harmonics",
+        type=(int, float, float),
+        multiple=True,
+        metavar="K SIZE PHASE",
+        help="The table is a sum of SIZE sin(Kτ + PHASE); without one, of sin τ.",
+    ),
+    click.option(
+        "--table",
+        "samples",
+        type=click.Path(exists=True, dir_okay=False),
+        metavar="CSV",
+        help="The table by samples of one period, in a column height or acceleration.",
+    ),
+)
+
+
+def with_table(function: Callable) -> Callable:
+    """A command with the options of a waveform, which gets the table in their place."""
+
+    @wraps(function)
+    def command(harmonics, samples, **others):
+        from bouncing_ball_beyond.tables import SINE
+
+        if harmonics and samples:
+            raise ValueError("harmonics, samples: at most one of them may be given")
+        table = bb.Table(harmonics) if harmonics else SINE
+        return function(table=_of_samples(samples) if samples else table, **others)
+
+    return TABLE(command)
+
+
+def _of_samples(path: str) -> Any:
+    """The table of a file with a column of heights or of accelerations."""
+    with open(path, newline="", encoding="utf-8-sig") as file:
+        rows = list(csv.DictReader(file))
+    columns = rows[0].keys() & {"height", "acceleration"} if rows else ()
+    if len(columns) != 1:
+        raise ValueError(f"samples {path}: must have a first line with height or acceleration")
+    (name,) = columns
+    values = []
+    for line, row in enumerate(rows, 2):
+        try:
+            values.append(float(row[name]))
+        except (TypeError, ValueError):
+            raise ValueError(f"samples {path}, line {line}: {row[name]!r} is no number") from None
+    return bb.Table.of_samples(values, acceleration=name == "acceleration")
 
 
 def with_ball(function: Callable) -> Callable:
-    """A command with the options of a ball, which gets the ball in their place."""
+    """A command with the options of a ball and its table, which gets both in their place."""
 
     @wraps(function)
     def command(
@@ -146,7 +199,7 @@ def with_ball(function: Callable) -> Callable:
             ball = bb.SpringDamper(frequency_ratio, restitution, damping_ratio, release)
         return function(bb.Corrected(ball) if corrected else ball, **others)
 
-    return BALL(command)
+    return BALL(with_table(command))
 
 
 def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> Any:
@@ -171,12 +224,13 @@ def with_branch(function: Callable) -> Callable:
     """A command that gets a branch, in place of the options of a ball, an orbit and a parameter."""
 
     @wraps(function)
-    def command(ball, amplitude, n, phase, velocity, along, to, doublings, **others):
+    def command(ball, table, amplitude, n, phase, velocity, along, to, doublings, **others):
         motion = given(phase, velocity)
+        known = {"amplitude": amplitude, "table": table}
         if motion:
-            start = bb.orbit_of_motion(ball, amplitude=amplitude, **motion)
+            start = bb.orbit_of_motion(ball, **known, **motion)
         else:
-            start = bb.orbit(ball, amplitude=amplitude, n=n)
+            start = bb.orbit(ball, **known, n=n)
         goal = {"along": along.replace("-", "_"), "to": to}
         branch = bb.follow(start, **goal)
         for _ in range(doublings):
@@ -230,9 +284,9 @@ def in_columns(head: list[str], columns: list[dict[str, str]]) -> str:
     help="Side of the saddle-node.",
 )
 @DATA
-def orbit(ball, amplitude, n, side, output):
+def orbit(ball, output, **known):
     """The n-T orbit, with one impact in n periods of the table."""
-    found = bb.orbit(ball, amplitude=amplitude, n=n, side=side)
+    found = bb.orbit(ball, **known)
     click.echo(found)
     write(found, output)
 
@@ -241,9 +295,9 @@ def orbit(ball, amplitude, n, side, output):
 @with_ball
 @N
 @DATA
-def limits(ball, n, output):
+def limits(ball, table, n, output):
     """The saddle-node and the period doubling of n-T orbits."""
-    found = list(bb.limits(ball, n=n))
+    found = list(bb.limits(ball, n=n, table=table))
     for special in found:
         click.echo(special)
     write(found, output)
@@ -282,9 +336,9 @@ def follow_special(branch, kind, across, ranges, output):
 @AMPLITUDE
 @START
 @click.option("--impacts", type=int, default=2000, show_default=True, help="Followed at most.")
-def motion(ball, amplitude, phase, velocity, impacts):
+def motion(ball, phase, velocity, **known):
     """The motion on which a ball ends."""
-    found = bb.motion_of(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))
+    found = bb.motion_of(ball, **known, **given(phase, velocity))
     for name, value in found.items():
         click.echo(f"{name:20}{value.item()}")
 
@@ -294,11 +348,11 @@ def motion(ball, amplitude, phase, velocity, impacts):
 @click.option("--amplitude", type=(float, float), required=True, help="First and last Λ.")
 @click.option("--points", type=int, default=300, show_default=True, help="Number of amplitudes.")
 @DRAWN
-def diagram(ball, amplitude, points, output):
+def diagram(ball, table, amplitude, points, output):
     """The motions on which balls end, over the amplitude, each with its share of the starts."""
     import numpy as np
 
-    found = bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points))
+    found = bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points), table=table)
     motions = found[["kind", "periods", "impacts"]].to_dataframe()
     click.echo(motions.groupby("amplitude").value_counts(normalize=True).to_string())
     if output is not None and output.endswith(PICTURES):
@@ -318,9 +372,9 @@ def diagram(ball, amplitude, points, output):
 @START
 @click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
 @DATA
-def impacts_after(ball, amplitude, phase, velocity, impacts, output):
+def impacts_after(ball, phase, velocity, output, **known):
     """The impacts that follow a given one."""
-    found = bb.simulate(ball, amplitude=amplitude, impacts=impacts, **given(phase, velocity))
+    found = bb.simulate(ball, **known, **given(phase, velocity))
     click.echo(found.to_dataframe().to_string())
     write(found, output)
 
@@ -330,7 +384,7 @@ def impacts_after(ball, amplitude, phase, velocity, impacts, output):
 @AMPLITUDE
 @N
 @click.option("--tolerance", type=float, default=0.01, show_default=True, help="Largest error.")
-def needed_ratios(ball, amplitude, n, tolerance):
+def needed_ratios(ball, **known):
     """From which stiffness on simple models are good enough.
 
     The answer is ϖ for a contact with a spring and a damper, also if only r is given. For another
@@ -339,7 +393,6 @@ def needed_ratios(ball, amplitude, n, tolerance):
     contacts, models = _judged(ball)
     if not contacts.lasts:
         contacts = bb.SpringDamper(1.0, restitution=contacts.restitution)
-    known = {"amplitude": amplitude, "n": n, "tolerance": tolerance}
     columns = [
         {
             name: "no orbit" if math.isnan(ratio) else f"{ratio:.6g}"
@@ -369,13 +422,12 @@ def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
 @with_ball
 @AMPLITUDE
 @N
-def error_law(ball, amplitude, n):
+def error_law(ball, **known):
     """Errors of the restitution model on a contact, by the error law and exactly.
 
     With --corrected, also those of this model.
     """
     contact, models = _judged(ball)
-    known = {"amplitude": amplitude, "n": n}
     errors = [bb.law_errors(contact, **known), bb.law_remainders(contact, **known)]
     errors += [bb.exact_errors(contact, simple=simple, **known) for simple in models.values()]
     columns = [{name: f"{error:.4g}" for name, error in each.items()} for each in errors]
@@ -399,6 +451,7 @@ def error_law(ball, amplitude, n):
 @click.option("--gravity", default="9.80665 m/s^2", show_default=True, help="Its acceleration.")
 @N
 @click.option("--tolerance", default="1 %", show_default=True, help="Of the greatest height.")
+@with_table
 def shaker(**quantities):
     """Whether a restitution coefficient is good enough for a ball on a shaker, with units."""
     click.echo(bb.on_shaker(**quantities))

@@ -268,7 +268,7 @@ class OrbitEquations:
     def excess(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
         if self.kind not in MULTIPLIERS:
-            return KINDS[self.kind].test(self, z: NDArray, linear)
+            return KINDS[self.kind].test(self, z, linear)
         trace, determinant = self.trace_and_determinant(linear)
         return 1 - MULTIPLIERS[self.kind] * trace + determinant
 

@@ -122,7 +122,7 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
     found = np.zeros(len(z), bool)
     left = np.arange(len(z))
     part = equations
-    gradient = np.empty_like(z)
+    gradient, step = np.empty((2, *z.shape))
     for number in range(iterations):
         linear = part.linear(z[left])
         exact = len(equations.along) > 1 or number % EXACT == 0

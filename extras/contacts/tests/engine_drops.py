@@ -9,7 +9,11 @@ returns the heights of the balls over the surface, of the shape (steps, drop).
 
 import csv
 import math
+import shutil
+import subprocess
 import sys
+import tempfile
+from glob import glob
 from pathlib import Path
 
 import numpy as np
@@ -139,9 +143,43 @@ def newton_xpbd(r, step, drops, radius, steps):
     return np.array(heights)
 
 
+_MODEL = """<model name="{name}"><static>{is_static}</static><pose>{x!r} 0 {z!r} 0 0 0</pose>
+<link name="link"><inertial><inertia><ixx>{inertia!r}</ixx><iyy>{inertia!r}</iyy>
+<izz>{inertia!r}</izz></inertia></inertial><collision name="shape"><geometry>{shape}</geometry>
+<surface><bounce><restitution_coefficient>{r!r}</restitution_coefficient></bounce></surface>
+</collision></link></model>"""
+
+
+def gazebo_sim(r, step, drops, radius, steps):
+    """Gazebo's physics with DART, by the program engine_gz_sim.cpp."""
+    program = shutil.which("engine_gz_sim")
+    plugins = glob("/usr/lib/*/ign-physics-*/engine-plugins/*dartsim-plugin.so*")
+    if program is None or not plugins:
+        raise ModuleNotFoundError("engine_gz_sim", name="engine_gz_sim")
+    box = "<box><size>1000 10 1</size></box>"
+    models = [
+        _MODEL.format(name="ground", is_static=True, x=0.0, z=-0.5, inertia=1.0, shape=box, r=1.0)
+    ]
+    ball = f"<sphere><radius>{radius!r}</radius></sphere>"
+    for place, drop in enumerate(drops):
+        at = dict(x=3.0 * place, z=float(radius + drop), inertia=0.4 * radius**2)
+        models.append(_MODEL.format(name=f"ball{place}", is_static=False, shape=ball, r=r, **at))
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder, "world.sdf")
+        file.write_text(
+            f"""<sdf version="1.6"><world name="drop"><gravity>0 0 {-G}</gravity>
+            <physics name="dart" type="dart"><max_step_size>{step!r}</max_step_size></physics>
+            {"".join(models)}</world></sdf>"""
+        )
+        command = [program, plugins[0], str(file), repr(step), str(steps)]
+        ran = subprocess.run(command, capture_output=True, check=True, text=True)
+    return np.loadtxt(ran.stdout.splitlines()) - radius
+
+
 ENGINES = {
     "chipmunk": chipmunk,
     "dart": dart,
+    "gazebo-sim": gazebo_sim,
     "box2d-2": box2d_2,
     "rapier": rapier,
     "newton-xpbd": newton_xpbd,

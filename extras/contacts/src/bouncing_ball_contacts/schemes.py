@@ -206,24 +206,24 @@ class Impedance(Law):
     power: float = 2.0
     edges: float = 1.0
 
-    def _impedance(self, p: Array) -> Array:
+    def _impedance(self, p: Array) -> Array | float:
         if self.low == self.high:
-            return np.asarray(self.high)
+            return self.high
         x = np.clip(p / self.width, 0.0, 1.0)
         rising = x**self.power / self.middle ** (self.power - 1)
         falling = 1 - (1 - x) ** self.power / (1 - self.middle) ** (self.power - 1)
         return self.low + (self.high - self.low) * np.where(x <= self.middle, rising, falling)
 
-    def _shared(self, d: Array) -> Array:
+    def _shared(self, d: Array | float) -> Array | float:
         return self.points * d / (self.edges + (self.points - self.edges) * d)
 
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         d = self._impedance(p)
-        return self._shared(d) * (gravity + self.stiffness * d * p + self.damping * w)
+        return self._shared(d) * (gravity + d * self.stiffness * p + self.damping * w)
 
     @property
     def deep(self) -> Linear:
-        shared = self._shared(np.asarray(self.high))
+        shared = self._shared(self.high)
         return Linear(shared * self.high * self.stiffness, shared * self.damping)
 
     def duration(self, speed: float) -> Array:

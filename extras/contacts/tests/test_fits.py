@@ -140,8 +140,9 @@ def test_a_number_that_is_typed_wrongly_is_pointed_at():
     found = fit(typed)
     assert found.interval[0] < found.restitution < found.interval[1]
     assert any("r = 0.08 at 3.13 m/s is far" in note for note in found.notes)
-    right = fit({**typed, "e": [0.8, 0.75, 0.81, 0.8, 0.8]})
-    assert not any("far from" in note for note in right.notes)
+    # Two that are alike are not one that is typed wrongly.
+    for e in ([0.8, 0.75, 0.81, 0.8, 0.8], [0.8, 0.4, 0.41, 0.8, 0.8]):
+        assert not any("far from" in note for note in fit({**typed, "e": e}).notes)
 
 
 def test_a_law_is_compared_with_curves_that_a_parabola_does_not_follow():

@@ -44,6 +44,7 @@ def pairs(form="{},{}", ratio=0.6724):
 FILES = {
     "times": "time [s]\n" + column(TIMES),
     "intervals with a unit behind": "interval_ms\n" + column(1000 * FLIGHTS),
+    "short intervals": "interval_ms\n" + column(3 * FLIGHTS),
     "semicolons and decimal commas": "Nr;Interval (s)\n"
     + "\n".join(f"{i};{x:.6f}".replace(".", ",") for i, x in enumerate(FLIGHTS)),
     "one column with decimal commas": "Interval (s)\n" + column(FLIGHTS).replace(".", ","),
@@ -124,6 +125,8 @@ def test_names_of_another_kind_are_asked_for(tmp_path):
         fit(path)
 
 
+# Straight up and down again, as no ball flies.
+ZIGZAG = "\n".join(f"{i / 60:.4f},{1 - abs(i % 30 - 15) / 15 + 0.01:.4f}" for i in range(150))
 TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
 
 
@@ -169,6 +172,8 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("time\n1\n1.7\n2.2\n0.3\n1.2", "sort the lines, or leave an empty line where"),
         ("interval [s]\n0.5\n0.7\n0.6", "line 3: a flight of 0.7 s follows one of 0.5"),
         ("interval [s]\n0.5\n-0.4", "not positive"),
+        ("interval [s]\n0.0009\n0.0007", "a flight of 0.0009 s is too short"),
+        ("t,y\n" + ZIGZAG, "no impact between two flights of four positions"),
         ("height [m]\n0.5\n0.7\n0.6", "a height of 0.7 m follows one of 0.5"),
         (
             "t,y\n" + "\n".join(reversed(track().split("\n"))),

@@ -548,7 +548,7 @@ def test_the_first_line_on_a_picture_says_which_words_or_which_part_changed(draw
 
     words = "fig14: today's code makes another figures/fig14.svg of the reference: "
     for changed, said in (
-        (labelled, "words: new 'rate', without 'ratio'; line "),
+        (labelled, "words: new 'rate', without 'ratio'"),
         (wider, "line2d_1, line "),
     ):
         drawn.products = [artifacts.picture("fig14", ("fig14",), changed, ()), PAPER]

@@ -116,6 +116,7 @@ class Comparison:
             if name in self.old.data and name not in self.derived
         }
         self.why = cache(self.cause_of_dataset)
+        self.why_made = cache(self.cause_of_product)
 
     def report(self) -> Report:
         """All findings. The cause of differences is stated once for each artifact."""
@@ -208,7 +209,7 @@ class Comparison:
     def found(self, finding: Finding, product: Product, side: Side) -> Finding:
         """A finding on a product; what is wrong in the results alone has no cause in the code."""
         wrong = side is self.new
-        cause = "" if wrong else self.cause_of_product(product)
+        cause = "" if wrong else self.why_made(product)
         return replace(finding, artifact=product.artifact, cause=cause, of_results=wrong)
 
     def followed(self, product: Product, expected: xr.Dataset) -> Iterator[Finding]:

@@ -340,23 +340,15 @@ def text_differences(made: Path, path: Path) -> Iterator[Finding]:
     number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
     words = f"line {number}: {' -> '.join(map(repr, excerpts(*pair)))}"
     if drawn:
-        yield Finding("picture", f"{what_is_drawn(texts, given[:number])}{words}")
+        # Letters are drawn as curves, with the words in comments.
+        labels = [re.findall("<!-- (.*?) -->", text) for text in texts]
+        differ = gained_and_lost(labels[1], labels[0])
+        parts = re.findall('<g id="(.*?)">', "".join(given[:number]))
+        changed = f"words: {differ}" if differ else ", ".join([*parts[-1:], words])
+        yield Finding("picture", changed)
     else:
         unified = difflib.unified_diff(given, expected, "the file", "as its datasets give it", n=1)
         yield Finding("text", words, lines="".join(unified))
-
-
-def what_is_drawn(texts: list[str], lines: list[str]) -> str:
-    """Which words of two SVG files differ, else the part of the first in which some lines end.
-
-    Letters are drawn as curves, with the words in comments.
-    """
-    words = [re.findall("<!-- (.*?) -->", text) for text in texts]
-    differ = gained_and_lost(words[1], words[0])
-    if differ:
-        return f"words: {differ}; "
-    parts = re.findall('<g id="(.*?)">', "".join(lines))
-    return f"{parts[-1]}, " if parts else ""
 
 
 def png_differences(made: Path, path: Path) -> Iterator[Finding]:

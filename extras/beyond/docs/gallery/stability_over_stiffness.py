@@ -15,7 +15,7 @@ for n, colour in ((1, "#0072B2"), (2, "#C77C00"), (3, "#AA3A00")):
     twice = bb.follow(doubling, to=1.6).first("period doubling")
     ends = ((fold, "-", "saddle-node"), (doubling, "--", "doubling"), (twice, ":", "next doubling"))
     for start, line, name in ends:
-        curve = bb.special_curve(start, along=parameters, ranges=ranges)
+        curve = bb.special_curve(start, along=parameters, ranges=ranges).refined()
         label = f"{n}-T orbit: {name}"
         axes.semilogx(*curve.z[:, :-3:-1].T, line, color=colour, label=label)
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="amplitude Λ", title="r = 0.85")

@@ -251,7 +251,8 @@ class OrbitEquations:
         given.
         """
         border = normal[:, np.newaxis]
-        right = np.broadcast_to([0.0, 1.0], (len(z), 1, 2))
+        right = np.zeros((len(z), 1, 2))
+        right[..., 1] = 1.0
         if self.kind:
             value, gradient = condition or self.condition(z)
             special = np.stack([-value, 0 * value], axis=-1)[:, np.newaxis]
@@ -262,7 +263,8 @@ class OrbitEquations:
 
     def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
         """The solutions of the linear equations and the border, for -legs and for no legs."""
-        legs = np.stack([-linear.legs, 0 * linear.legs], axis=-1)
+        legs = np.zeros((*linear.legs.shape, 2))
+        legs[..., 0] = -linear.legs
         return solve_bordered(linear.derivatives, legs, border, right)
 
     def excess(self, z: NDArray, linear: Linear) -> NDArray:

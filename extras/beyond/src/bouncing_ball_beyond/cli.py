@@ -413,7 +413,7 @@ def needed_ratios(ball, **known):
 
 def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
     """The ball with its contact, and the models in its place that are judged, by their names."""
-    if isinstance(ball, bb.Corrected):
+    if ball.sinks:
         return ball.of, {"restitution model": None, "corrected model": bb.Corrected}
     return ball, {"restitution model": None}
 

@@ -9,13 +9,13 @@ part H = 1e-30, then f(x) has the imaginary part H f′(x).
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
 from bouncing_ball_beyond import one_ball, oscillator
 from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
-from bouncing_ball_beyond.tables import SINE
+from bouncing_ball_beyond.tables import SINE, Table, Values
 
 H = 1e-30
 """The imaginary part of a complex step."""
@@ -63,11 +63,13 @@ class Ball:
     sinks: ClassVar[bool] = False
     """Whether impacts are instants below the level of the table, which stand for contacts."""
 
-    simple: ClassVar[bool] = False
-    """Whether its impacts are those of a restitution coefficient that is a number."""
+    @property
+    def simple(self) -> bool:
+        """Whether its impacts are those of a restitution coefficient that is a number."""
+        return False
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Values]:
         """Names and values of the parameters that can be varied."""
         return {
             name: value
@@ -75,7 +77,7 @@ class Ball:
             if not (value is None or callable(value) or isinstance(value, str))
         }
 
-    def at(self, **values):
+    def at(self, **values: Values) -> Any:
         """The same ball with other values of parameters: numbers or arrays, real or complex.
 
         The values are not checked.
@@ -90,62 +92,80 @@ class Ball:
         vars(new).update(vars(self), **values)
         return new
 
-    def rows(self, which):
+    def rows(self, which: Any) -> Any:
         """The same ball with x[which] in place of each parameter x that is an array."""
         arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
         return self.at(**arrays) if arrays else self
 
     @property
-    def kappa(self):
+    def kappa(self) -> Values:
         """κ of a release where δ + κδ′ = 0: 0 for a release where δ = 0."""
         return 0.0
 
     @property
-    def frequency_powers(self):
+    def frequency_powers(self) -> dict[str, Any]:
         """Powers of Ω to which parameters are proportional for one contact, by their names."""
         return {}
 
-    def start(self, u):
+    def start(self, u: Values) -> Values:
         """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
         return np.where(np.real(u) < 0, self.kappa * u, 0.0)
 
-    def free(self, u):
+    def free(self, u: Values) -> Values:
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def left(self, u):
+    def left(self, u: Values) -> Values:
         """How long a contact would last after the instant that stands for it; 0 for others."""
         return 0.0 * u
 
-    def has_closed_form(self, table=SINE):
+    def has_closed_form(self, table: Table = SINE) -> bool:
         """Whether releases of its contacts are found by the closed form of a linear contact."""
         return False
 
-    def looped(self, table):
+    def looped(self, table: Table) -> tuple | None:
         """r, ϖ and ζ, with which :func:`.one_ball.impacts` follows it; None if it does not."""
         return None
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None, table=SINE):
+    def first_release(
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        periods: Values = None,
+        table: Table = SINE,
+    ) -> Values:
         """T of impacts: 0 for impacts without a duration.
 
         Contacts that last longer than a number of periods of the table may be left out, as NaN.
         """
         return 0.0 * (tau + u + amplitude)
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE) -> Impact:
+    def contact(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        table: Table = SINE,
+    ) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
-    def signature(self, u) -> Signature:
+    def signature(self, u: Values) -> Signature:
         """What free impacts of the closing speed u are, as seen from outside."""
         raise NotImplementedError
 
-    def first_impact(self, tau, u, amplitude, gravity=1.0, table=SINE):
+    def first_impact(
+        self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
+    ) -> tuple:
         """T of the first release, and the impact up to it."""
         T = self.first_release(tau, u, amplitude, gravity, table=table)
         return T, self.contact(tau, u, T, amplitude, gravity, table)
 
-    def leaves(self, tau, u, amplitude, table=SINE):
+    def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
         """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
         T, (duration, gap, speed, _) = self.first_impact(tau, u, amplitude, table=table)
         if np.any(self.kappa):
@@ -153,7 +173,7 @@ class Ball:
             gap = -self.kappa * speed
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
-    def at_ratio(self, n=1):
+    def at_ratio(self, n: Any = 1) -> Callable:
         """The function from ϖ, or from a number in its place, to the ball.
 
         Raises
@@ -166,19 +186,19 @@ class Ball:
         )
 
 
-def brief(value):
+def brief(value: Values) -> str:
     """A wrong argument in an error message: as it is written, or its type if that is long."""
     text = repr(value)
     return f"{type(value).__name__}(…)" if "\n" in text or len(text) > 60 else text
 
 
-def check_ball(ball):
+def check_ball(ball: Any) -> None:
     """Raise ValueError with one line for what is no ball."""
     if not isinstance(ball, Ball):
         raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
 
 
-def whole_number(name, value, least=1):
+def whole_number(name: str, value: Values, least: int = 1) -> int:
     """A whole number, also as a float, as an int; ValueError if it is none or below the least."""
     number = np.asarray(value)
     if number.ndim or number.dtype.kind not in "iuf" or number % 1 or number < least:
@@ -186,7 +206,7 @@ def whole_number(name, value, least=1):
     return int(number)
 
 
-def broadcast_named(named):
+def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
     """Pairs of a name and an array as arrays of one shape; a ValueError names those that differ."""
     named = list(named)
     try:
@@ -196,7 +216,7 @@ def broadcast_named(named):
         raise ValueError(f"arrays must have shapes that go together: {shapes}") from None
 
 
-def checked(name, value, low, high, *, low_allowed):
+def checked(name: str, value: Values, low: float, high: float, *, low_allowed: bool) -> Values:
     """The value as a number or an array; ValueError unless all are finite, from low to high."""
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
@@ -213,7 +233,7 @@ def checked(name, value, low, high, *, low_allowed):
     return values if values.ndim else float(values)
 
 
-def _check_function(restitution):
+def _check_function(restitution: Values) -> None:
     """Raise ValueError unless complex steps give the derivative of r(u), as differences do."""
     u = np.array([0.5, 1.0, 2.0])
     step = 1e-5
@@ -245,7 +265,7 @@ class Rigid(Ball):
 
     restitution: float | np.ndarray | Callable
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if callable(self.restitution):
             _check_function(self.restitution)
         else:
@@ -253,7 +273,7 @@ class Rigid(Ball):
             object.__setattr__(self, "restitution", r)
 
     @property
-    def frequency_powers(self):
+    def frequency_powers(self) -> dict[str, Any]:
         """None for a number r; ValueError for r(u), which changes with the unit g/Ω of u."""
         if callable(self.restitution):
             raise ValueError(
@@ -263,35 +283,43 @@ class Rigid(Ball):
         return {}
 
     @property
-    def simple(self):
+    def simple(self) -> bool:
         """Whether r is a number."""
         return not callable(self.restitution)
 
-    def looped(self, table):
+    def looped(self, table: Table) -> tuple | None:
         """r alone."""
         return (self.restitution, 0.0, 0.0) if self.simple and table.compiled else None
 
-    def _restitution(self, u):
+    def _restitution(self, u: Values) -> Values:
         return self.restitution(u) if callable(self.restitution) else self.restitution
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
+    def contact(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        table: Table = SINE,
+    ) -> Impact:
         """The impact at the time τ with the speed u."""
         nothing = 0.0 * (tau + u + amplitude)
         return Impact(nothing, nothing, self._restitution(u) * u + nothing, None)
 
-    def signature(self, u):
+    def signature(self, u: Values) -> Signature:
         """r, and D = t_c = σ = 0."""
         nothing = 0.0 * u
         return Signature(self._restitution(u) + nothing, nothing, nothing, nothing)
 
 
-def damping_of(restitution):
+def damping_of(restitution: Values) -> Values:
     """ζ = -ln r/√(π² + ln² r), with which free contacts that end at δ = 0 have r (Eq. 16)."""
     log = np.log(restitution)
     return -log / np.sqrt(np.pi**2 + log * log)
 
 
-def _arc_over_root(zeta):
+def _arc_over_root(zeta: Values) -> Values:
     """2 arccos ζ/√(1 - ζ²), which is analytic at ζ = 1: 4A/(1 + ζ) with A = arctan(√t)/√t."""
     t = (1 - zeta) / (1 + zeta)
     near = np.abs(t) < 0.1
@@ -344,7 +372,7 @@ class SpringDamper(Ball):
 
     lasts: ClassVar[bool] = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if (self.restitution is None) == (self.damping_ratio is None):
             raise ValueError("restitution, damping_ratio: exactly one of them must be given")
         if self.release not in ("displacement", "force"):
@@ -359,7 +387,7 @@ class SpringDamper(Ball):
             object.__setattr__(self, "damping_ratio", zeta)
         broadcast_named(self.parameters.items())
 
-    def at(self, **values):
+    def at(self, **values: Values) -> Any:
         """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""
         if "damping_ratio" in values:
             values = {"restitution": None} | values
@@ -368,21 +396,29 @@ class SpringDamper(Ball):
         return super().at(**values)
 
     @property
-    def zeta(self):
+    def zeta(self) -> Values:
         """Damping ratio ζ, given or from r."""
         return damping_of(self.restitution) if self.damping_ratio is None else self.damping_ratio
 
     @property
-    def kappa(self):
+    def kappa(self) -> Values:
         """κ of the release δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
         return 2 * self.zeta / self.frequency_ratio if self.release == "force" else 0.0
 
     @property
-    def frequency_powers(self):
+    def frequency_powers(self) -> dict[str, Any]:
         """ϖ is proportional to 1/Ω."""
         return {"frequency_ratio": -1.0}
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
+    def contact(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        table: Table = SINE,
+    ) -> Impact:
         """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""
         ratio = self.frequency_ratio
         duration = T / ratio
@@ -391,7 +427,7 @@ class SpringDamper(Ball):
         gap, speed = oscillator.motion(duration, *given)
         return Impact(duration + 0 * gap, gap, speed, ratio * (gap + self.kappa * speed))
 
-    def free(self, u):
+    def free(self, u: Values) -> Values:
         """T of a free impact: π/√(1 - ζ²), or 2 arccos ζ/√(1 - ζ²) with the force release."""
         zeta = self.zeta
         if self.release == "force":
@@ -399,7 +435,7 @@ class SpringDamper(Ball):
         square = np.where(np.real(zeta) < 1, (1 - zeta) * (1 + zeta), np.nan)
         return np.pi / np.sqrt(square) + 0 * u
 
-    def signature(self, u):
+    def signature(self, u: Values) -> Signature:
         """r = e^{-ζT}, D = T/ϖ, t_c = r (D + κ)/(1 + r), σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ."""
         T = self.free(u)
         r = np.exp(-self.zeta * T)
@@ -408,28 +444,36 @@ class SpringDamper(Ball):
         loss = (1 - r) * through - 2 * self.zeta * (1 + r) / self.frequency_ratio
         return Signature(r, duration, r * through / (1 + r), loss)
 
-    def has_closed_form(self, table=SINE):
+    def has_closed_form(self, table: Table = SINE) -> bool:
         """Whether ζ is below :data:`.oscillator.UNDERDAMPED`, and ϖ away from the resonances."""
         near = oscillator.resonates(self.frequency_ratio, self.zeta, table.orders)
         return bool(np.all((self.zeta <= oscillator.UNDERDAMPED) & ~near))
 
-    def looped(self, table):
+    def looped(self, table: Table) -> tuple | None:
         """ϖ and ζ of contacts with a closed form."""
         if table.compiled and self.has_closed_form():
             return 0.0, self.frequency_ratio, self.zeta
         return None
 
-    def leaves(self, tau, u, amplitude, table=SINE):
+    def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
         """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
         duration, speed = releases(self, tau, u, amplitude, table)
         T = np.where(duration < np.inf, duration * self.frequency_ratio, np.nan)
         return T, duration, -self.kappa * speed, speed
 
-    def at_ratio(self, n=1):
+    def at_ratio(self, n: Any = 1) -> Callable:
         """The function from ϖ to the ball."""
         return lambda ratio: self.at(frequency_ratio=ratio)
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=None, table=SINE):
+    def first_release(
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        periods: Values = None,
+        table: Table = SINE,
+    ) -> Values:
         """T of the first release after impacts at the times τ with the speeds u; an array.
 
         It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.
@@ -442,14 +486,14 @@ class SpringDamper(Ball):
         """
         parameters = self.parameters
         every = np.broadcast_arrays(tau, u, amplitude, *parameters.values())
-        flat = [each.ravel() for each in every]
-        ball = self.at(**dict(zip(parameters, flat[3:], strict=True)))
-        duration, _ = releases(ball, *flat[:3], table)
+        tau, u, amplitude, *others = [each.ravel() for each in every]
+        ball = self.at(**dict(zip(parameters, others, strict=True)))
+        duration, _ = releases(ball, tau, u, amplitude, table)
         duration = duration.reshape(every[0].shape)
         return np.where(duration < np.inf, self.frequency_ratio * duration, np.nan)
 
 
-def root_of_parabola(f, slope, bend):
+def root_of_parabola(f: Values, slope: Values, bend: Values) -> Values:
     """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is none."""
     root = np.sqrt(slope * slope + 2 * bend * f)
     falls = slope < 0
@@ -458,7 +502,9 @@ def root_of_parabola(f, slope, bend):
     return part / np.where(falls, root - slope, np.maximum(bend, 0.0))
 
 
-def safe_steps(t, f, slope, second, bend, jerk):
+def safe_steps(
+    t: Values, f: Values, slope: Values, second: Values, bend: Values, jerk: Values
+) -> tuple:
     """:func:`.one_ball.safe_step` for arrays."""
     step = root_of_parabola(f, slope, bend)
     reach = REACH * step
@@ -471,7 +517,7 @@ def safe_steps(t, f, slope, second, bend, jerk):
 
 
 @np.errstate(all="ignore")  # a contact without a load may vanish in time
-def releases(ball, phase, u, amplitude, table=SINE):
+def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
     """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
     releases: :func:`.one_ball.release` for arrays of one shape, (n,), for all ϖ, ζ and tables.
     """
@@ -480,7 +526,7 @@ def releases(ball, phase, u, amplitude, table=SINE):
     given = [ball.start(u), u, *waves]
     closed = ball.has_closed_form(table)
 
-    def resonance(ball):
+    def resonance(ball: Any) -> Values:
         of_ball = ball.frequency_ratio, ball.zeta
         return 0.0 if closed else 1.0 * oscillator.resonates(*of_ball, table.orders)
 
@@ -489,7 +535,7 @@ def releases(ball, phase, u, amplitude, table=SINE):
     rows = np.array(np.broadcast_arrays(0 * u, *given, *forced))
     of_time = oscillator.closed_motion if closed else oscillator.doubled_motion
     fewest = FEW if closed and table.compiled else 1
-    given = np.broadcast_arrays(*given, amplitude, ball.frequency_ratio, ball.zeta, ball.kappa)
+    given[:] = np.broadcast_arrays(*given, amplitude, ball.frequency_ratio, ball.zeta, ball.kappa)
     duration = np.full(u.shape, np.inf)
     speed = np.full(u.shape, np.nan)
     left = np.arange(u.size)
@@ -546,43 +592,51 @@ class Corrected(Ball):
 
     sinks: ClassVar[bool] = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if not isinstance(self.of, Ball):
             raise ValueError(f"of = {self.of!r}: must be a ball")
         if not all(np.isfinite(each).all() for each in self.of.signature(1.0)):
             raise ValueError(f"of = {self.of!r}: must have free impacts that end")
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Values]:
         """Those of the ball with contacts."""
         return self.of.parameters
 
-    def at(self, **values):
+    def at(self, **values: Values) -> Any:
         """The corrected model of the ball at these values."""
         new = object.__new__(type(self))
         vars(new)["of"] = self.of.at(**values)
         return new
 
     @property
-    def frequency_powers(self):
+    def frequency_powers(self) -> dict[str, Any]:
         """Those of the ball with contacts."""
         return self.of.frequency_powers
 
-    def start(self, u):
+    def start(self, u: Values) -> Values:
         """The gap -u t_c(u) of the instant."""
         return -u * self.of.signature(u).centroid
 
-    def left(self, u):
+    def left(self, u: Values) -> Values:
         """D - t_c."""
         signature = self.of.signature(u)
         return signature.duration - signature.centroid
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
+    def contact(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        table: Table = SINE,
+    ) -> Impact:
         """The instant at the time τ with the speed u."""
         r, _, centroid, loss = self.of.signature(u)
         speed = r * u + loss * (gravity + amplitude * table(tau, 2))
         return Impact(0 * speed, 0 * speed - u * centroid, speed, None)
 
-    def signature(self, u):
+    def signature(self, u: Values) -> Signature:
         """That of the ball with contacts."""
         return self.of.signature(u)

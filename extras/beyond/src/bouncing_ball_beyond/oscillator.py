@@ -11,11 +11,11 @@ motions also complex ones. The loops of :mod:`.one_ball` have the same formulas 
 numbers, because numba compiles them.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond.tables import swing
+from bouncing_ball_beyond.tables import Table, Values, swing
 
 DELICATE = 0.25
 """A contact with |ϖ² - k² + 2ikζϖ| < k DELICATE is near a resonance."""
@@ -33,7 +33,7 @@ class Motion(NamedTuple):
     shoves: list
 
 
-def resonates(ratio, zeta, orders=(1,)):
+def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Values:
     """Whether ϖ is next to a harmonic of the table, and hardly damped."""
     near = False
     for k in orders:
@@ -43,7 +43,7 @@ def resonates(ratio, zeta, orders=(1,)):
     return near
 
 
-def free_responses(s, ratio, zeta):
+def free_responses(s: Values, ratio: Values, zeta: Values) -> tuple:
     """g, g′ and 1 - K, for a ζ that is not next to 1."""
     square = (1 - zeta) * (1 + zeta)
     over = zeta.real > 1
@@ -58,7 +58,7 @@ def free_responses(s, ratio, zeta):
     return tuple(np.where(over, x, y) for x, y in zip(above, under, strict=True))
 
 
-def _underdamped(s, ratio, zeta, omega):
+def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple:
     """The same for ζ < 1, with ω = ϖ√(1 - ζ²)."""
     decay = zeta * ratio
     lost = -np.expm1(-decay * s)
@@ -69,7 +69,7 @@ def _underdamped(s, ratio, zeta, omega):
     return g, envelope - wave - decay * g, lost + wave - decay * g
 
 
-def _overdamped(s, ratio, zeta, root):
+def _overdamped(s: Values, ratio: Values, zeta: Values, root: Values) -> tuple:
     """The same for ζ > 1, with √(ζ² - 1)."""
     slow = np.exp(-ratio * s / (zeta + root))
     fast = np.exp(-ratio * s * (zeta + root))
@@ -78,7 +78,17 @@ def _overdamped(s, ratio, zeta, root):
     return g, cosine - zeta * ratio * g, 1 - cosine - zeta * ratio * g
 
 
-def closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=True):
+def closed_motion(
+    s: Values,
+    gap: Values,
+    u: Values,
+    table: Table,
+    waves: list,
+    gravity: Values,
+    ratio: Values,
+    zeta: Values,
+    loads: bool = True,
+) -> Motion:
     """A contact by the closed form (Eqs. 12 and 13), a time s after it started from δ′ = -u.
 
     The pushes and shoves of the table are left out without ``loads``.
@@ -113,7 +123,16 @@ def closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=True):
     return Motion(position, speed, pushes, shoves)
 
 
-def doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta):
+def doubled_motion(
+    s: Values,
+    gap: Values,
+    u: Values,
+    table: Table,
+    waves: list,
+    gravity: Values,
+    ratio: Values,
+    zeta: Values,
+) -> Motion:
     """The same by a Taylor series over s/2^m and m doublings.
 
     Nothing is divided by, so that values and derivatives keep all digits. The responses are g, its
@@ -127,7 +146,7 @@ def doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta):
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
     part = (s + 0 * loss) / 2.0**doublings
 
-    def rates(g, rate, load, *forced):
+    def rates(g: Values, rate: Values, load: Values, *forced: Any) -> Values:
         waves = zip(table.orders, forced[::2], forced[1::2], strict=True)
         changes = [each for k, sine, cosine in waves for each in (k * cosine, g - k * sine)]
         return np.array([rate, -loss * rate - stiffness * g, g, *changes])
@@ -164,7 +183,16 @@ def doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta):
     return Motion(position, speed, pushes, shoves)
 
 
-def motion(s, gap, u, table, waves, gravity, ratio, zeta):
+def motion(
+    s: Values,
+    gap: Values,
+    u: Values,
+    table: Table,
+    waves: list,
+    gravity: Values,
+    ratio: Values,
+    zeta: Values,
+) -> tuple:
     """δ and δ′ a time s after an impact, by the formula that keeps all digits for each number."""
     square = s * s
     damped = zeta * zeta
@@ -179,17 +207,19 @@ def motion(s, gap, u, table, waves, gravity, ratio, zeta):
     given = np.broadcast_arrays(s, gap, u, *waves, gravity, ratio, zeta)
     delicate = np.broadcast_to(delicate, given[0].shape)
 
-    def ordered(values):
+    def ordered(values: Values) -> Any:
         return *values[:3], table, values[3:-3], *values[-3:]
 
     with np.errstate(all="ignore"):  # of the closed form where it is not used
-        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), loads=False)[:2])
+        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), False)[:2])
     some = doubled_motion(*ordered([each[delicate] for each in given]))
     gap[delicate], speed[delicate] = some[:2]
     return gap[()], speed[()]
 
 
-def forcing(table, waves, ratio, zeta, kappa, resonant):
+def forcing(
+    table: Table, waves: list, ratio: Values, zeta: Values, kappa: Values, resonant: Values
+) -> tuple:
     """What the table adds to the bounds of the search for a release.
 
     The largest steady response of δ + κδ′, of its second derivative and of its third, and the
@@ -212,7 +242,15 @@ def forcing(table, waves, ratio, zeta, kappa, resonant):
     return held, bend, jerk, 2 * resonant * pushed / ratio
 
 
-def bounds(motion, table, forced, ratio, zeta, kappa, resonant):
+def bounds(
+    motion: Values,
+    table: Table,
+    forced: Any,
+    ratio: Values,
+    zeta: Values,
+    kappa: Values,
+    resonant: Values,
+) -> tuple:
     r"""f = -δ - κδ′, f′, δ″ and δ‴, K and J of the search for a release, and whether there is none.
 
     What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +

@@ -8,6 +8,7 @@ parameters, the sizes and phases of the harmonics, so that complex steps give al
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +19,16 @@ SAMPLES = 64
 """Samples in a period of the highest harmonic: between two of them a derivative of W changes by
 1.2e-3 of the size of the second derivative after it, over k²."""
 
+Values = Any
+"""Numbers or arrays, real or complex: complex steps go through all functions."""
+
 REAL = np.dtype(float)
 
 CYCLE = (np.sin, np.cos)
 """sin and its derivatives, which repeat with the opposite sign."""
 
 
-def swing(x):
+def swing(x: Values) -> tuple[Values, Values]:
     """sin x and 1 - cos x, which loses no digits for a small x.
 
     For real numbers numpy finds them faster by a tangent, at whose poles complex steps are lost.
@@ -38,7 +42,7 @@ def swing(x):
     return sine, half * sine
 
 
-def checked_harmonic(each):
+def checked_harmonic(each: Any) -> tuple[int, float, float]:
     """(k, a, p) with a whole k and finite a, p; ValueError otherwise."""
     try:
         k, a, p = each
@@ -84,7 +88,7 @@ class Table:
     compiled = False
     """Whether the loops of :mod:`.one_ball` follow single balls."""
 
-    def __init__(self, harmonics):
+    def __init__(self, harmonics: Any) -> None:
         harmonics = sorted(checked_harmonic(each) for each in harmonics)
         orders = tuple(k for k, _, _ in harmonics)
         if not orders or len(set(orders)) < len(orders) or not any(a for _, a, _ in harmonics):
@@ -94,7 +98,9 @@ class Table:
             object.__setattr__(self, name, value)
 
     @classmethod
-    def of_samples(cls, values, harmonics=None, *, acceleration=False):
+    def of_samples(
+        cls, values: Values, harmonics: Any = None, *, acceleration: bool = False
+    ) -> "Table":
         """The table through equally spaced samples of one period, without their mean.
 
         Parameters
@@ -133,17 +139,17 @@ class Table:
         found = cls(waves)
         return cls((k, a / found.acceleration, p) for k, a, p in found.harmonics)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         harmonics = zip(self.orders, self.sizes, self.phases, strict=True)
         return f"Table([{', '.join(f'({k}, {a!r}, {p!r})' for k, a, p in harmonics)}])"
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Values]:
         """Names and values of the sizes and phases of the harmonics."""
         sizes = {f"harmonic_{k}": a for k, a in zip(self.orders, self.sizes, strict=True)}
         return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
 
-    def at(self, **values):
+    def at(self, **values: Values) -> Any:
         """The same table with other sizes or phases: numbers or arrays, real or complex."""
         new = self.parameters | values
         if len(new) > len(self.parameters):
@@ -157,23 +163,23 @@ class Table:
         )
         return found
 
-    def rows(self, which):
+    def rows(self, which: Any) -> Any:
         """The same table with x[which] in place of each parameter x that is an array."""
         arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
         return self.at(**arrays) if arrays else self
 
     @property
-    def harmonics(self):
+    def harmonics(self) -> Values:
         """(k, a, p) of each harmonic."""
         return zip(self.orders, self.sizes, self.phases, strict=True)
 
-    def __call__(self, tau, order=0):
+    def __call__(self, tau: Values, order: int = 0) -> Values:
         """W or a derivative of it."""
         sign = -1 if order % 4 > 1 else 1
         function = CYCLE[order % 2]
         return sum(sign * k**order * a * function(k * tau + p) for k, a, p in self.harmonics)
 
-    def rise(self, start, time):
+    def rise(self, start: Values, time: Values) -> tuple:
         """W and W′ at a time after a start, less those there, without cancellation."""
         height = rate = 0.0
         for k, a, p in self.harmonics:
@@ -186,7 +192,7 @@ class Table:
 
     # Motions from a start, as sums of x and y of each harmonic: Λa cos and Λa sin of kτ + p there.
 
-    def waves(self, phase, amplitude):
+    def waves(self, phase: Values, amplitude: Values) -> list:
         """x and y of each harmonic: [x₁, y₁, x₂, y₂, …]."""
         found = []
         for k, a, p in self.harmonics:
@@ -195,11 +201,11 @@ class Table:
             found += [scale * (1 - versine), scale * sine]
         return found
 
-    def each_wave(self, waves):
+    def each_wave(self, waves: list) -> Values:
         """k, x and y of each harmonic."""
         return zip(self.orders, waves[::2], waves[1::2], strict=True)
 
-    def pulls(self, waves):
+    def pulls(self, waves: list) -> Values:
         """w′, -w″ and -w‴ at the start."""
         waves = list(self.each_wave(waves))
         return tuple(
@@ -207,11 +213,11 @@ class Table:
             for part in zip(*((k * x, k * k * y, k**3 * x) for k, x, y in waves), strict=True)
         )
 
-    def turned(self, waves):
+    def turned(self, waves: list) -> Values:
         """The waves of w′ in place of those of w."""
         return [each for k, x, y in self.each_wave(waves) for each in (-k * y, k * x)]
 
-    def flights(self, t, gap, w, waves):
+    def flights(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
         """δ, δ′ and δ″ a time t after a release; short flights lose no digits."""
         position = gap + t * (w - t / 2)
         rate = w - t
@@ -226,7 +232,7 @@ class Table:
             second = second + (bend if k == 1 else k * k * bend)
         return position, rate, second
 
-    def third(self, t, w, rate, waves):
+    def third(self, t: Values, w: Values, rate: Values, waves: list) -> Values:
         """δ‴ a time t after a release, where the relative speed is the rate."""
         found = 0.0
         for k, x, y in self.each_wave(waves):
@@ -237,12 +243,12 @@ class Table:
     # Sizes
 
     @cached_property
-    def grid(self):
+    def grid(self) -> Values:
         """Phases of a period, 64 in each of the highest harmonic."""
         return np.linspace(0, TURN, SAMPLES * self.orders[-1] + 1)
 
     @cached_property
-    def bounds(self):
+    def bounds(self) -> Values:
         """What |W| and its first five derivatives do not exceed."""
         rest = (self.grid[1] / 2) ** 2 / 2
         sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
@@ -250,19 +256,19 @@ class Table:
         return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
 
     @cached_property
-    def lift(self):
+    def lift(self) -> Values:
         """The greatest -W″: above Λ = 1/lift the table falls faster than a ball."""
         start = self.grid[np.argmin(self(self.grid, 2))]
         return float(-self(_polished(self, start, 3), 2))
 
     @cached_property
-    def acceleration(self):
+    def acceleration(self) -> Values:
         """The greatest |W″|."""
         start = self.grid[np.abs(self(self.grid, 2)).argmax()]
         return float(abs(self(_polished(self, start, 3), 2)))
 
     @cached_property
-    def peaks(self):
+    def peaks(self) -> Values:
         """The greatest and the least W."""
         values = self(self.grid)
         return tuple(
@@ -271,17 +277,17 @@ class Table:
         )
 
     @cached_property
-    def steepest(self):
+    def steepest(self) -> Values:
         """The phase at which W′ is largest."""
         return float(_polished(self, self.grid[np.argmax(self(self.grid, 1))], 2))
 
     @cached_property
-    def slope(self):
+    def slope(self) -> Values:
         """The greatest W′."""
         return float(self(self.steepest, 1))
 
     @cached_property
-    def _sides(self):
+    def _sides(self) -> Values:
         """Times from the steepest phase to where W′ has fallen to its next minimum, and W′ there.
 
         By samples, after the steepest phase and before it.
@@ -296,7 +302,7 @@ class Table:
         return found
 
     @cached_property
-    def _turns(self):
+    def _turns(self) -> tuple:
         """Times from the steepest phase to where W′ has fallen to zero, and angles of (W′, -W″)."""
         time = np.linspace(0, TURN, 4 * SAMPLES * self.orders[-1] + 1)
         rises = self(self.steepest + time, 1) > 0
@@ -305,7 +311,7 @@ class Table:
         angles = np.arctan2(-self(phase, 2), self(phase, 1))
         return time, np.maximum.accumulate(np.maximum(angles, 0))
 
-    def phase_of_slope(self, slope, side=1):
+    def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
         """The phase after the steepest one, or before it (-1), at which W′ is a given slope.
 
         It is the steepest phase for slopes above the greatest one.
@@ -320,7 +326,7 @@ class Table:
             phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
         return phase
 
-    def phase_of_angle(self, angle):
+    def phase_of_angle(self, angle: Values) -> Values:
         """The phase after the steepest one at which (W′, -W″) has turned by an angle up to π/2."""
         time, angles = self._turns
         phase = self.steepest + np.interp(angle, angles, time)
@@ -331,7 +337,7 @@ class Table:
             phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
         return phase
 
-    def instant(self, speed, amplitude):
+    def instant(self, speed: Values, amplitude: Values) -> tuple:
         """Where w′ has fallen to a speed: the phase, w, -w″ and -w‴ there, NaN where it does not.
 
         The speed may be complex.
@@ -344,14 +350,14 @@ class Table:
         phase = np.where(inside, phase, np.nan)
         return phase, amplitude * self(phase), *(-amplitude * self(phase, m) for m in (2, 3))
 
-    def amplitude_at(self, speed, push):
+    def amplitude_at(self, speed: Values, push: Values) -> tuple:
         """Λ and the phase at which w′ is a speed and -w″ a push."""
         phase = self.phase_of_angle(np.arctan2(push, speed))
         return np.hypot(speed, push) / np.hypot(self(phase, 1), self(phase, 2)), phase
 
     # Where the table falls as fast as a ball
 
-    def levels(self, amplitude):
+    def levels(self, amplitude: Values) -> Values:
         """Phases at which ΛW″ = -1, in an array beside Λ, NaN where there are fewer."""
         amplitude = np.asarray(amplitude, float)[..., np.newaxis]
         table = self.rows(np.s_[..., np.newaxis])
@@ -367,11 +373,11 @@ class Table:
             phase = phase - np.clip(step, -self.grid[1], self.grid[1])
         return np.where(np.take_along_axis(crossed, at, axis=-1), phase, np.nan)
 
-    def lift_offs(self, amplitude):
+    def lift_offs(self, amplitude: Values) -> Values:
         """The phases in [0, 2π) at which a resting ball leaves: where 1 + ΛW″ falls to zero."""
         return _lift_offs(self, float(amplitude))
 
-    def until_lift_off(self, phase, amplitude):
+    def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
         """How long a ball that rests stays on the table, and the phase at which it leaves."""
         phases = self.lift_offs(amplitude)
         if not len(phases):
@@ -384,14 +390,16 @@ class Table:
 
     # Single balls
 
-    def at_release(self, t, gap, w, waves):
+    def at_release(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
         """δ, δ′, δ″ and δ‴ as numbers."""
         return (
             *(float(x) for x in self.flights(t, gap, w, waves)),
             float(self.third(t, w, 0.0, waves)),
         )
 
-    def resumption(self, gap, w, phase, amplitude, kappa):
+    def resumption(
+        self, gap: Values, w: Values, phase: Values, amplitude: Values, kappa: Values
+    ) -> tuple:
         """As :func:`.one_ball.rise`: whether a contact resumes below the level, and the time."""
         waves = self.waves(phase, amplitude)
         a2, a3, a4 = (amplitude * bound for bound in self.bounds[2:5])
@@ -408,7 +416,9 @@ class Table:
                 return True, t
         return True, np.nan
 
-    def emergence(self, start, gap, w, phase, amplitude):
+    def emergence(
+        self, start: Values, gap: Values, w: Values, phase: Values, amplitude: Values
+    ) -> Values:
         """As :func:`.one_ball.emergence`: when a ball rises through the level, or never."""
         waves = self.waves(phase, amplitude)
         a2, a3 = (amplitude * bound for bound in self.bounds[2:4])
@@ -425,7 +435,15 @@ class Table:
                 return t
         return np.inf
 
-    def rest(self, gap, w, restitution, phase, amplitude, left):
+    def rest(
+        self,
+        gap: Values,
+        w: Values,
+        restitution: Values,
+        phase: Values,
+        amplitude: Values,
+        left: Values,
+    ) -> tuple:
         """As :func:`.one_ball.rest`: how long a ball rests, and the phase at which it leaves."""
         if gap == 0:
             _, y, x = (float(each) for each in self.pulls(self.waves(phase, amplitude)))
@@ -441,7 +459,7 @@ class Table:
         return settled + wait, leaves
 
 
-def _polished(table, phase, order):
+def _polished(table: Table, phase: Values, order: int) -> Values:
     """The zero of a derivative of W beside a sample, by Newton's method."""
     for _ in range(6):
         slope = table(phase, order + 1)
@@ -450,7 +468,7 @@ def _polished(table, phase, order):
 
 
 @lru_cache(maxsize=64)
-def _lift_offs(table, amplitude):
+def _lift_offs(table: Table, amplitude: Values) -> Values:
     if amplitude * table.lift <= 1:
         return np.empty(0)
     phases = table.levels(amplitude)
@@ -467,7 +485,7 @@ class Sine(Table):
 
     compiled = True
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__([(1, 1.0, 0.0)])
 
     parameters = {}  # noqa: RUF012
@@ -476,39 +494,39 @@ class Sine(Table):
     peaks = (1.0, -1.0)
     steepest = 0.0
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return "Sine()"
 
-    def at(self, **values):
+    def at(self, **values: Values) -> Any:
         """The sine, which has no parameters."""
         return super().at(**values) if values else self
 
-    def rows(self, which):
+    def rows(self, which: Any) -> Any:
         """The sine, which has no parameters."""
         return self
 
-    def __call__(self, tau, order=0):
+    def __call__(self, tau: Values, order: int = 0) -> Values:
         """sin τ or a derivative of it."""
         value = CYCLE[order % 2](tau)
         return -value if order % 4 > 1 else value
 
-    def rise(self, start, time):
+    def rise(self, start: Values, time: Values) -> tuple:
         """sin and cos at a time after a start, less those there."""
         half = time / 2
         middle = start + half
         part = 2 * np.sin(half)
         return part * np.cos(middle), -part * np.sin(middle)
 
-    def waves(self, phase, amplitude):
+    def waves(self, phase: Values, amplitude: Values) -> list:
         """Λ cos τ and Λ sin τ."""
         sine, versine = swing(phase)
         return [amplitude * (1 - versine), amplitude * sine]
 
-    def pulls(self, waves):
+    def pulls(self, waves: list) -> tuple:
         """w′, -w″ and -w‴ at the start."""
         return waves[0], waves[1], waves[0]
 
-    def flights(self, t, gap, w, waves):
+    def flights(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
         """δ, δ′ and δ″ a time t after a release."""
         x, y = waves
         sine, versine = swing(t)
@@ -516,19 +534,19 @@ class Sine(Table):
         rate = (w - t) + (y * sine + x * versine)
         return position, rate, (y - 1) + (x * sine - y * versine)
 
-    def third(self, t, w, rate, waves):
+    def third(self, t: Values, w: Values, rate: Values, waves: list) -> Values:
         """w′, which is -w‴, from what gravity and the table have changed of the speed."""
         return waves[0] + w - t - rate
 
-    def phase_of_slope(self, slope, side=1):
+    def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
         """± arccos of the slope."""
         return side * np.arccos(np.clip(slope, -1, 1))
 
-    def phase_of_angle(self, angle):
+    def phase_of_angle(self, angle: Values) -> Values:
         """The angle itself."""
         return angle
 
-    def instant(self, speed, amplitude):
+    def instant(self, speed: Values, amplitude: Values) -> tuple:
         """The point at the distance Λ from the origin whose abscissa is the speed."""
         with np.errstate(invalid="ignore"):
             height = np.sqrt((amplitude - speed) * (amplitude + speed))
@@ -538,35 +556,47 @@ class Sine(Table):
                 phase = np.arctan2(height, speed)
         return phase, height, height, speed
 
-    def amplitude_at(self, speed, push):
+    def amplitude_at(self, speed: Values, push: Values) -> tuple:
         """The distance of a point from the origin, and its angle."""
         return np.hypot(speed, push), np.arctan2(push, speed)
 
-    def levels(self, amplitude):
+    def levels(self, amplitude: Values) -> Values:
         """The two phases at which Λ sin τ = 1, and π/2 for both if there are none."""
         level = np.arcsin(np.minimum(1, 1 / np.asarray(amplitude, float)))
         return np.stack([level, np.pi - level], axis=-1)
 
-    def lift_offs(self, amplitude):
+    def lift_offs(self, amplitude: Values) -> Values:
         """arcsin 1/Λ, if Λ > 1."""
         return np.arcsin(1 / np.array([amplitude])) if amplitude > 1 else np.empty(0)
 
-    def until_lift_off(self, phase, amplitude):
+    def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
         """As of a table, by an arcsine."""
         leaves = float(np.arcsin(1 / max(amplitude, 1.0)))
         return one_ball.until_lift_off(phase, amplitude), leaves
 
-    def resumption(self, gap, w, phase, amplitude, kappa):
+    def resumption(
+        self, gap: Values, w: Values, phase: Values, amplitude: Values, kappa: Values
+    ) -> Values:
         """By the loops of :mod:`.one_ball`."""
         x, y = (float(each) for each in self.waves(phase, amplitude))
         return one_ball.rise(gap, w, x, y, amplitude, kappa)
 
-    def emergence(self, start, gap, w, phase, amplitude):
+    def emergence(
+        self, start: Values, gap: Values, w: Values, phase: Values, amplitude: Values
+    ) -> Values:
         """By the loops of :mod:`.one_ball`."""
         x, y = (float(each) for each in self.waves(phase, amplitude))
         return one_ball.emergence(start, gap, w, x, y, amplitude)
 
-    def rest(self, gap, w, restitution, phase, amplitude, left):
+    def rest(
+        self,
+        gap: Values,
+        w: Values,
+        restitution: Values,
+        phase: Values,
+        amplitude: Values,
+        left: Values,
+    ) -> Values:
         """By the loops of :mod:`.one_ball`."""
         return one_ball.rest(gap, w, restitution, phase, amplitude, left)
 
@@ -575,7 +605,7 @@ SINE = Sine()
 """The table of the paper, and the default everywhere."""
 
 
-def check_table(table):
+def check_table(table: Table) -> None:
     """Raise ValueError with one line for what is no table."""
     if not isinstance(table, Table):
         raise ValueError(f"table = {table!r:.60}: must be a Table, such as Table([(1, 1.0, 0.0)])")

@@ -87,6 +87,7 @@ def closed_motion(
     gravity: Values,
     ratio: Values,
     zeta: Values,
+    *,
     loads: bool = True,
 ) -> Motion:
     """A contact by the closed form (Eqs. 12 and 13), a time s after it started from δ′ = -u.
@@ -211,7 +212,7 @@ def motion(
         return *values[:3], table, values[3:-3], *values[-3:]
 
     with np.errstate(all="ignore"):  # of the closed form where it is not used
-        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), False)[:2])
+        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), loads=False)[:2])
     some = doubled_motion(*ordered([each[delicate] for each in given]))
     gap[delicate], speed[delicate] = some[:2]
     return gap[()], speed[()]

@@ -240,9 +240,10 @@ BY_NUMBER = {
             written="<bounce><restitution_coefficient>{number}</restitution_coefficient></bounce>"
             "  <!-- of both collisions -->",
             parameter="restitution_coefficient",
+            ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
             notes=(
-                "Gazebo was not run: with its default engine it hands this number to DART, and the "
-                "threshold of the same element is not read",
+                "With its default engine Gazebo hands this number to DART, and the threshold of "
+                "the same element is not read",
             ),
         ),
         ByNumber(

@@ -16,6 +16,7 @@ within a step. Implicit steps, gravity and strong damping therefore need no form
 
 import html
 import math
+import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -30,6 +31,7 @@ from bouncing_ball_contacts.engines import (
     Setting,
     engine_named,
     filled,
+    gripping,
     snippet_of,
 )
 from bouncing_ball_contacts.schemes import (
@@ -496,6 +498,37 @@ class Problem:
             "step of gravity is thrown back: a shorter one less"
         )
 
+    def slides(self, law: Impedance, damping: float, step: float) -> str:
+        """Return what is left of a sliding speed by a damping along the surface in 1/s.
+
+        A body at rest leaves a contact of MuJoCo for one or two steps each time, in which it is
+        not held on a slope.
+        """
+        share = damping / math.sqrt(float(law.stiffness))
+        creeps = 2 * self.bounce.load * math.sin(math.radians(10)) * step / (math.pi * share)
+        on_a_slope = f", and a body at rest on 10° creeps at up to {1e3 * creeps:.2g} mm/s"
+        return (
+            f"a bounce leaves {100 * math.exp(-math.pi * share):.2g} % of a sliding speed that "
+            f"Coulomb's friction would take{on_a_slope if self.bounce.load else ''}"
+        )
+
+    def grip(self, parameters: Parameters, step: float) -> str:
+        """Return the pair of geoms with which friction in MuJoCo acts more strongly, or nothing."""
+        law: Any = self.law_of(parameters, step)
+        friction = self.bounce.friction or 0.0
+        if not friction or "solref" not in parameters:
+            return ""
+        damping = gripping(law, friction)
+        if damping <= float(law.damping):
+            return ""
+        stiffness, _ = parameters["solref"]
+        values = {"friction": friction, "grips": (stiffness, -_written(damping)), **parameters}
+        return (
+            f"{filled(snippet_of('mujoco-grip'), values).rstrip()}\nWith this pair in place of the "
+            f"class, {self.slides(law, damping, step)}; r of one that slides as fast as it falls "
+            "is lower by 0.01 at most"
+        )
+
     @property
     def duration(self) -> float:
         """T/δ in s/m: how long an undamped contact lasts."""
@@ -879,7 +912,16 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
             ),
             (bounce.friction, problem.engine.friction),
             (
-                bounce.friction and "@friction@" not in found.template,
+                bounce.friction and isinstance(law, Impedance),
+                "friction acts as a damper: "
+                + (
+                    problem.slides(law, float(law.damping), row.step)
+                    if isinstance(law, Impedance) and float(law.damping)
+                    else "nothing of a sliding speed is taken"
+                ),
+            ),
+            (
+                bounce.friction and not re.search("@friction@|@rubs@", found.template),
                 f"a friction of {bounce.friction or 0:g} is not in what is pasted",
             ),
         ]
@@ -924,11 +966,13 @@ class Design(Page):
         """What is pasted into the engine; the parameters of one that is not known here."""
         if not self.template:
             return "\n".join(f"{name} = {value}" for name, value in self.parameters.items())
+        mu = self.bounce.friction or 0.0
         values = {
             "step": self.row.step,
-            "friction": self.bounce.friction or 0.0,
+            "friction": mu,
             "bodies": "one of both bodies" if self.one_body else "both bodies alike",
             "names": "(one,)" if self.one_body else "(one, other)",
+            "rubs": self.source.rubs[bool(mu)].format(mu=mu, root=math.sqrt(mu)),
             "condim": 1 if self.bounce.friction == 0 else 3,
         }
         return filled(self.template, values | self.parameters).rstrip()
@@ -988,6 +1032,7 @@ class Design(Page):
                 "other: no contact keeps r then",
             ),
             (bounce.other_mass is None, engine.floor),
+            (True, Problem(bounce, engine).grip(self.parameters, self.row.step)),
         ]
         return [f"{text}." for text in holding(said) if text]
 

@@ -155,7 +155,7 @@ MISTAKES = {
     'design --mass "50 grams of" --restitution 0.8': "is not known",
     'design --mass "1,500 g" --restitution 0.8': "'1500 g' or as '1.500 g'",
     f"{BALL} --engine mujocco": "did you mean mujoco",
-    f"{BALL} --engine nothing": "known are mujoco",
+    f"{BALL} --engine nothing": "'bounce engines' lists",
     f"{BALL} --engine rapir --time-step 1ms": "did you mean rapier",
     f"{BALL} --time-step 0": "not positive",
     f"{BALL} --time-step 1/0": "divides by zero",

@@ -687,8 +687,8 @@ def test_a_body_whose_centre_passes_a_floor_of_chrono_is_not_designed():
 
 
 def test_friction_in_mujoco_is_said_to_be_weak_and_how_it_grips():
-    """A throw at 3 m/s left 53 % of its sliding speed in MuJoCo, and 27 % with the pair; r was 0.749
-    to 0.773 with both. A crate crept at 7.4 and 3.0 mm/s on a slope of 10°.
+    """A throw at 3 m/s left 53 % of its sliding speed in MuJoCo, and 27 % with the pair; r was
+    0.749 to 0.773 with both. A crate crept at 7.4 and 3.0 mm/s on a slope of 10°.
     """
     ball = Bounce(mass=0.6, radius=0.12, restitution=0.76, drop_height=1.8, friction=0.8)
     found = design(ball, "mujoco", "2 ms")
@@ -702,3 +702,11 @@ def test_friction_in_mujoco_is_said_to_be_weak_and_how_it_grips():
     assert "solreffriction" not in str(design(replace(ball, friction=None), "mujoco", "2 ms"))
     # The damper of a bounce that is as low is strong enough along the surface.
     assert "solreffriction" not in str(design(replace(ball, restitution=0.3), "mujoco", "2 ms"))
+
+
+def test_a_body_lighter_than_air_is_said_so():
+    """Grams and millimetres that lack their units are kilograms and metres."""
+    wrong = Bounce(mass=50, radius=20, restitution=0.8)
+    assert "has 0.0015 kg/m³, less than air" in repr(design(wrong, "mujoco", "2 ms"))
+    assert "more than osmium" in Bounce(mass=1, radius=0.01, restitution=0.8).oddity
+    assert not Bounce(mass="2.7 g", radius="20 mm").oddity

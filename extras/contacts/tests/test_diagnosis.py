@@ -690,3 +690,10 @@ def test_friction_is_an_option_and_a_parameter_of_mujoco():
     for wrong, said in (({"cone": "round"}, "pyramidal, elliptic"), ({"condim": 2}, "1, 3, 4, 6")):
         with pytest.raises(Refused, match=f"is none of {said}"):
             diagnose(ball, "mujoco", wrong, "2 ms")
+
+
+def test_a_damper_that_is_too_strong_for_explicit_steps_has_no_r_above_one():
+    """Drake's default said "the step lowers r from 5.244 to 0.000"."""
+    found = diagnose(Bounce(mass=1, radius=0.1), "drake", None, "1 ms")
+    assert found.limit < 0.01 and found.outcome.restitution[2] < 0.01
+    assert "lowers r" not in repr(found)

@@ -67,6 +67,9 @@ Quantity = Any
 
 TOLERANCE = 0.02
 """Of r, if none is given."""
+LIGHTEST = 1.2
+HEAVIEST = 22600.0
+"""Densities of air and of osmium in kg/m³, between which those of bodies are."""
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
 
@@ -271,6 +274,16 @@ class Bounce:
         solid = 8 if self.points > 1 else 4 / 3 * math.pi
         volume = self.mass / (self.density or DENSITIES["steel"])
         return self.radius or (volume / solid) ** (1 / 3)
+
+    @property
+    def oddity(self) -> str:
+        """What is said of a body that is lighter than air or heavier than osmium; else empty."""
+        solid = 8 if self.points > 1 else 4 / 3 * math.pi
+        density = self.mass / (solid * self.size**3)
+        compared = "less than air" if density < LIGHTEST else "more than osmium"
+        if LIGHTEST <= density <= HEAVIEST:
+            return ""
+        return f"the body has {density:.2g} kg/m³, {compared}: are its mass and size right?"
 
     @property
     def other_size(self) -> float:
@@ -880,6 +893,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
             (restless, restless),
+            (bounce.oddity, bounce.oddity),
             (math.isnan(outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
             (
                 10 * slowest > bounce.impact_speed,

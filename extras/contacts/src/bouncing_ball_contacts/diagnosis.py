@@ -440,7 +440,11 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     speed = contact.problem.bounce.impact_speed
     step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
-    return float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
+    found = float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
+    if found > 1:
+        # A damper that is too strong for explicit steps.
+        found = float(drop(law, scheme, step, speed, gravity, _MEAN).mean)
+    return found
 
 
 def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
@@ -532,6 +536,7 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             f"with the elliptic cone {cone:.3f} at every friction; at solimp = "
             f"{_spelled(row.beside.get('solimp', ''))}, as designs have, none changes it",
         ),
+        (bounce.oddity, bounce.oddity),
         (row.caution, row.caution),
         (bounce.points > 1 and row.box, row.box),
         (bounce.other_mass is None and row.floor, row.floor),

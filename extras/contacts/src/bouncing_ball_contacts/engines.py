@@ -988,5 +988,6 @@ def engine_named(name: str | Engine) -> Engine:
     if wanted in ENGINES:
         return ENGINES[wanted]
     near = difflib.get_close_matches(wanted, [*ENGINES, *_ALIASES], 3)
-    known = f"did you mean {' or '.join(near)}?" if near else f"known are {', '.join(ENGINES)}"
+    meant = f"did you mean {' or '.join(near)}? " if near else ""
+    known = f"{meant}'bounce engines' lists those with a stiffness and those with a number"
     raise Refused(f"engine {name!r} is not known; {known}")

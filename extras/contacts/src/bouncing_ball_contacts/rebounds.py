@@ -308,15 +308,21 @@ _OTHER_NAMES = {
     "xpbd": "newton-xpbd",
 }
 WITHOUT_ANSWER = {
+    "ammo": "ammo.js is Bullet, and was not run; for the Bullet of Python take pybullet",
     "adams": "Adams was not run, and its source cannot be read",
     "bepu": "BepuPhysics 2 has no restitution: a contact is a spring with a frequency and a "
     "damping ratio, which was not run",
+    "blender": "Blender has Bullet, and was not run; for the Bullet of Python take pybullet",
     "brax": "Brax has four pipelines, of which none was run; for the one of MJX take mujoco",
+    "coppeliasim": "CoppeliaSim has several engines: take the one that is chosen there, such as "
+    "pybullet, ode or mujoco",
     "godot": "Godot has two engines: take godot-jolt for Jolt Physics; Godot Physics was not run",
     "havok": "Havok was not run, and its source cannot be read",
     "physx-3": "PhysX 3 was not run; unity and physx have the rule of PhysX 4 and 5",
     "simscape": "Simscape was not run, and its source cannot be read",
+    "three": "three.js has no physics: take the engine beside it, such as cannon-es or rapier",
     "unreal": "Unreal 5 has Chaos, which was not run, and Unreal 4 has PhysX 3.4",
+    "webots": "Webots has an ODE of its own, which was not run; for ODE take ode",
 }
 """Names that people type, and why there is no answer."""
 

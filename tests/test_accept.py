@@ -9,7 +9,7 @@ from tests.repository import commit, git
 
 from bouncing_ball import datasets
 from bouncing_ball.accept import accept
-from bouncing_ball.artifacts import Product
+from bouncing_ball.artifacts import Product, text
 
 
 def made_at(project, name):
@@ -91,6 +91,22 @@ def test_claims_change_only_with_the_dataset_that_decides_them(project):
     assert numbers(project, "fig14").max() == 1.5
     project.follow()
     assert project.accept("fig14") == ["figures/claims.nc", "figures/fig14.nc", "paper.md"]
+
+
+def test_only_what_follows_from_an_accepted_figure_is_made_anew(project):
+    """The table of another figure, whose code changed as well, stays as it is."""
+    project.edit("config/config.yaml", "[1.0, 1.5]", "[1.0, 2.5]")
+    project.edit("src/table.py", 'height"', 'heights"')
+    commit(project.top, "edits")
+    project.run()
+    verdicts = text(
+        "figures/verdicts.md", ("claims",), lambda data: " ".join(data["claims"].verdict.values)
+    )
+    folders = project.results, project.top
+    given = [*project.products, verdicts], project.config, ["fig14"], project.CODE, project.top
+    files = ["figures/claims.nc", "figures/fig14.nc", "figures/verdicts.md", "paper.md"]
+    assert accept(*folders, *given) == files
+    assert (project.top / "figures/fig02.md").read_text().startswith("height\n")
 
 
 def test_what_a_killed_acceptance_left_is_removed(project):

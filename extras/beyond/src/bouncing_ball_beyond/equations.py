@@ -277,9 +277,8 @@ class OrbitEquations:
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
 
-        For a multiplier μ = 1 or -1 it is χ = μ² - μ tr + det = 0. Where a release is lost, the
-        rate ρ of the release function is zero and χ has a pole beside the orbits. But χ ∏ρ has
-        none, and its differences give the gradient.
+        For a multiplier μ = 1 or -1 it is χ = 1 - μ tr + det = 0, and the gradient is that of χ ∏ρ
+        with the rates ρ of the release functions, because χ has poles: see docs/orbits.md.
         """
         rows, length = z.shape
         nodes, weights, step = CURVE if len(self.along) > 1 else POINT

@@ -1,22 +1,9 @@
-r"""Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
+"""Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
 
-The legs of an orbit are a chain L_i(x_i, x_{i+1}) = 0, which is closed by x_k = x_0. Where a
-multiplier μ is 1 or -1, the chain has a vector v ≠ 0 with v_k = μ v_0 that its derivatives L′ take
-to zero, and a left vector w with w L′ = 0. On the centre manifold, along v, the return map is ::
-
-    saddle-node, μ = 1:        ξ → ξ + rate dλ + a ξ²,        a = w B(v, v)/2
-    period doubling, μ = -1:   ξ → -(1 + rate dλ) ξ + b ξ³,   b = w B(v, h) + w C(v, v, v)/6
-
-with the second and third derivatives B and C of the legs and the periodic h of L′h = -B(v, v)/2.
-Here |v_0| = 1, and w is scaled so that it is the left eigenvector p of the return map, with
-p v_0 = 1.
-
-The legs are explicit in the unknowns, and smooth far beyond an orbit, so that differences of their
-first derivatives, which have all digits, give B and C to some twelve digits.
-
-Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.3, 4.5 and 5.4; for
-chains, Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM J. Numer. Anal. 43, 1407
-(2005).
+Along v on the centre manifold, the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
+ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling; docs/orbits.md derives a and b from the chain of
+legs. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.3, 4.5 and
+5.4; Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM J. Numer. Anal. 43, 1407 (2005).
 """
 
 from dataclasses import dataclass, replace
@@ -101,7 +88,8 @@ def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
     """v and w, scaled so that |v_0| = 1 and p v_0 = 1."""
     q = derivatives.shape[-2]
     left, _, right = np.linalg.svd(closed(derivatives, multiplier))
-    v, w = right[-1], left[:, -1]
+    v = right[-1]
+    w = left[:, -1]
     # The direction in which δ′ = -u or τ grows, whichever changes more.
     start = v[:2] * [1.0, -1.0]
     v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)

@@ -1,11 +1,8 @@
 """Orbits of a ball that comes to rest on the table and leaves it with the next lift-off.
 
-A ball with a restitution coefficient that bounces infinitely often in a finite time rests on the
-table until this falls faster than a ball, 1 + w″ = 0. It leaves without a speed, at a phase that is
-always the same, so that it has no memory: the motion from one lift-off to the next repeats, and is
-superstable. Its equations are the lift-off and the flights after it. The ball comes back to rest
-for any values of the parameters nearby, so that its return is no equation. The length of the rest
-is a test function: where it is zero the ball is still bouncing at the next lift-off.
+The equations are the lift-off and the flights after it. The return to rest is no equation, because
+the ball comes to rest for all values of the parameters nearby; the length of the rest is a test
+function, which is zero where the ball is still bouncing at the next lift-off.
 """
 
 from dataclasses import dataclass

@@ -1,6 +1,7 @@
 """Special orbits: where they are between two orbits of a march, or near a guess."""
 
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -54,7 +55,7 @@ def crossings_of(
         "grazing of a release": every.contact_clearance,
     }
     if equations.kind == "period doubling":
-        others[GENERALIZED] = lambda z: degeneracy(every, z)
+        others[GENERALIZED] = partial(degeneracy, every)
     columns = [*tests.T, *(test(z) for name, test in others.items() if name != equations.kind)]
     names = [*equations.watched, *(name for name in others if name != equations.kind)]
     if equations.kind == "saddle-node":

@@ -280,28 +280,30 @@ def curves_of(
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
     prior[1:] -= (np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER) ** 2 / 2
-    # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading:
-    # A = Xᵀ W X + diag(0, 1/0.25²), (β, c) = A⁻¹ Xᵀ W y. The posterior of the ratio, the size and
-    # the exponent has the determinants of W and of A. The middle of ln r is subtracted against
-    # rounding errors.
+    # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading.
+    # Bends less their mean, times the ones, are orthogonal to these, so that c is found first. The
+    # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
+    # middle of ln r is subtracted against rounding errors.
     middle = float(np.mean(impacts.log_r))
     y = (impacts.log_r - middle) @ basis
     bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
     columns = basis.T @ np.stack([np.ones_like(bends), bends], axis=-1)
     weights = 1 / variances
-    precision = (1 / sizes**2)[:, None, None]
-    both = np.einsum("rn,eni,enj->reij", weights, columns, columns)[:, None]
-    inverse = np.linalg.inv(both * precision[..., None] + np.diag([0.0, _SLOPE**-2]))
-    pull = np.einsum("rn,eni,n->rei", weights, columns, y)[:, None] * precision
-    found = np.einsum("rseij,rsej->rsei", inverse, pull)
-    squares = (weights @ y**2)[:, None, None] * precision[..., 0] - np.sum(pull * found, axis=-1)
-    volume = np.sum(np.log(variances), axis=1)[:, None] + 2 * n * np.log(sizes)
-    posterior = (
-        prior[..., None] - (squares + volume[..., None] - np.log(np.linalg.det(inverse))) / 2
-    )
+    precision = (1 / sizes**2)[:, None]
+    products = np.tensordot(weights, columns[..., None] * columns[..., None, :], axes=(1, 1))
+    pull = np.tensordot(weights, columns * y[:, None], axes=(1, 1))
+    ones = products[..., 0, 0]
+    shift = products[..., 0, 1] / ones
+    of_bends = (products[..., 1, 1] - shift**2 * ones)[:, None] * precision + _SLOPE**-2
+    slope = (pull[..., 1] - shift * pull[..., 0])[:, None] * precision / of_bends
+    value = (pull[..., 0] / ones)[:, None] - shift[:, None] * slope
+    left = (weights @ y**2)[:, None] - pull[..., 0] ** 2 / ones
+    squares = left[:, None] * precision - slope**2 * of_bends
+    volume = np.sum(np.log(variances), axis=1)[:, None] + 2 * (n - 1) * np.log(sizes)
+    volume = volume[..., None] + np.log(ones)[:, None] + np.log(of_bends)
+    posterior = prior[..., None] - (squares + volume) / 2
     shares = special.softmax(posterior)
-    means = np.sum(shares[..., None] * found, axis=(0, 1))
-    curve = middle + np.sum(means[:, :1] + means[:, 1:] * bends, axis=0)
+    curve = middle + np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
     errors_of_r = np.exp(curve) - impacts.restitution
     # Two impacts leave no deviation, and have the posterior of all s > 0.
     confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
@@ -316,9 +318,9 @@ def curves_of(
         rounded=error * rounded,
         posterior=posterior,
         confidence=confidence,
-        value=middle + found[..., 0],
-        slope=found[..., 1],
-        spread=np.sqrt(inverse[..., 0, 0]),
+        value=middle + value,
+        slope=slope,
+        spread=np.sqrt((1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends),
         # A curve has two parameters.
         scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 2, 1)),
     )

@@ -602,6 +602,12 @@ def test_pictures_of_another_matplotlib_are_not_compared_and_this_is_said(drawn,
     assert lines[0].startswith("paper: ") and "2 pictures were not compared" in lines[-1]
 
 
+def test_both_versions_of_matplotlib_that_drew_a_picture_are_said(drawn):
+    drawn.edit(other("matplotlib", "3.10.0"), side="reference")
+    drawn.edit(other("matplotlib", "3.10.8"))
+    assert "matplotlib 3.10.0, 3.10.8 drew them" in drawn.report("fig14").lines[-1]
+
+
 def test_libraries_of_other_versions_are_said(record):
     record.edit(other("numpy", "2.1.0"), side="reference")
     today = datasets.versions()["numpy"]

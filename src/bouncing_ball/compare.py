@@ -306,13 +306,13 @@ class Comparison:
 
     # What else a reader should know
 
-    def skipped(self) -> dict[str, str]:
-        """Pictures that are not compared, with the version of matplotlib that drew them."""
+    def skipped(self) -> dict[str, set[str]]:
+        """Pictures that are not compared, with the versions of matplotlib that drew them."""
+        sides = self.old, self.new
         return {
-            file: side.matplotlib(product)
-            for side in (self.old, self.new)
+            file: {side.matplotlib(product) for side in sides if side.drawn_elsewhere(product)}
             for product in self.made
-            if side.drawn_elsewhere(product)
+            if any(side.drawn_elsewhere(product) for side in sides)
             for file in product.files
         }
 
@@ -322,7 +322,7 @@ class Comparison:
         skipped = self.skipped()
         today = datasets.versions()
         if skipped:
-            drew = ", ".join(sorted({*skipped.values()}))
+            drew = ", ".join(sorted(set().union(*skipped.values())))
             found.append(
                 f"{len(skipped)} pictures were not compared: matplotlib {drew} drew them, and this "
                 f"is {today['matplotlib']}."

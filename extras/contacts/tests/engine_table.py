@@ -190,8 +190,9 @@ DESIGNS = (
 FRICTION = 0.3
 RUBBED = (
     f"The same at a friction of {FRICTION}; balls that are dropped move along the table with half "
-    "the speed of their impact as well. The programs for LIGGGHTS, MercuryDPM, Gazebo and Chrono "
-    "have no friction."
+    "the speed of their impact as well. Of SAP in Drake, and of MuJoCo up to r = 0.6, the r of the "
+    "engine is within the range that the answer has for bodies that slide. The programs for "
+    "LIGGGHTS, MercuryDPM, Gazebo and Chrono have no friction."
 )
 SMOOTH = ("liggghts", "liggghts-limit-force", "liggghts-hertz", "mercurydpm", "gazebo", "chrono")
 """Engines that are run without friction only."""
@@ -221,6 +222,7 @@ def cells(name, shape, wanted, time_step, more, friction):
     here = problem.outcome(law, found.row.step, exact(offsets(401)))
     low, _, high = here.restitution
     slide = found.bounce.impact_speed / 2 if friction and shape == "ball" else 0.0
+    wider = problem.promised(here) if slide else (low, high)
     measured = engine_runs.measure(found, shape, slide)
     at_least, at_most = measured.restitution
     given = ", ".join(str(value) for value in wanted.values())
@@ -240,7 +242,10 @@ def cells(name, shape, wanted, time_step, more, friction):
     # Thirteen instants do not meet the extremes of 401, which differ by less than a thirteenth of
     # the range, where r is a smooth function of the instant.
     slack = 0.001 + (high - low) / 13
-    agrees = low - slack <= at_least and at_most <= high + slack
+    agrees = wider[0] - slack <= at_least and at_most <= wider[1] + slack
+    if wider != (low, high):
+        # Of bodies that slide the answer has this range of r, and neither depth nor force.
+        return texts, agrees
     spread = (here.depth[1] - here.depth[0]) / 13
     agrees &= bool(np.isclose(measured.depth, here.depth[1], rtol=0.02, atol=spread))
     spread = (here.force[1] - here.force[0]) / 13

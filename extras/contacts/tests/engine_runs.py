@@ -829,6 +829,10 @@ class Measured(NamedTuple):
 
 def first_bounce(heights):
     """Return the depth of the first contact, the heights after it, and where it ends."""
+    if not (heights < 0).any():
+        # PhysX finds contacts ahead, and turns a body back above the surface.
+        turn = int(np.argmax(np.diff(heights) >= 0))
+        return 0.0, heights[turn:], turn
     start = int(np.argmax(heights < 0))
     inside = heights[start:]
     if not (inside >= 0).any():

@@ -76,7 +76,7 @@ _EXAMPLES = """\b
 Examples:
   bounce design --mass "50 g" --restitution 0.8 --time-step "2 ms" --engine mujoco
   bounce diagnose --engine mujoco solref="0.02 1" --mass "50 g" --time-step "2 ms" --restitution 0.8
-  bounce fit croquet --engine pybullet --time-step 1/240
+  bounce fit golf_ball --engine mujoco --time-step "1 ms"
   bounce engines
 """
 
@@ -226,7 +226,10 @@ def diagnose_command(
         _print(rebound(falling(**bounce), row, typed, time_step, beside), as_json)
         return
     known = engine_named(engine)
-    _print(diagnose(Bounce(**bounce), known, typed, time_step, other=beside), as_json)
+    # Where the rebound is by a number, r does not depend on the mass.
+    needs_no_mass = known.number in typed and not typed.keys() & set(known.names)
+    body = falling(**bounce) if needs_no_mass and not bounce["mass"] else Bounce(**bounce)
+    _print(diagnose(body, known, typed, time_step, other=beside), as_json)
 
 
 def _lines(text: str | None) -> tuple[int, ...]:

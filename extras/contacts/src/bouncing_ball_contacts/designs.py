@@ -192,7 +192,7 @@ class Bounce:
     def __post_init__(self) -> None:
         refuse(
             [
-                (self.mass is None, "the mass is missing: --mass '50 g' or mass='50 g'"),
+                (self.mass is None, "the mass is missing: --mass '50 g', or mass='50 g' in Python"),
                 (
                     not isinstance(self.points, int) or not 1 <= self.points <= 1000,
                     f"points = {self.points!r} is no whole number from 1 to 1000",

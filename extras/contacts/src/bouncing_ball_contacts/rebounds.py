@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts import step_rules
-from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Page, Quantity
+from bouncing_ball_contacts.designs import SETTLED, TOLERANCE, Bounce, Page, Quantity
 from bouncing_ball_contacts.engines import LARGER, LEAST, MEAN, PAIR, PRODUCT, Rule
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
@@ -48,7 +48,8 @@ class ByNumber:
     step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
     ``springs`` is the row of the same engine in :data:`.ENGINES`, if it takes a stiffness as well.
     ``written`` is the line to paste, and ``lowered`` the one of another threshold. If it
-    ``has_modes``, materials say how their numbers are combined. ``damped_by`` is
+    ``is_physx``, materials say how their numbers are combined, and a threshold above g h/(1 - r)
+    lets a body come to rest. ``damped_by`` is
     the linear damping of a body with its default ``damping``, and ``kept`` the share of a velocity
     that it leaves in a step.
     """
@@ -67,7 +68,7 @@ class ByNumber:
     remembers: int = 2
     springs: str = ""
     lowered: str = ""
-    has_modes: bool = False
+    is_physx: bool = False
     damped_by: str = ""
     damping: float = 0.0
     kept: Callable[[float, float], float] = lambda damping, step: 1.0
@@ -80,7 +81,7 @@ class ByNumber:
         if self.set_by:
             last = re.split(r"[.:/]", self.set_by.lower())[-1]
             known |= {"threshold": "threshold", last: "threshold"}
-        if self.has_modes:
+        if self.is_physx:
             known |= dict.fromkeys(
                 ("combine", "bouncecombine", "restitutioncombinemode"), "combine"
             )
@@ -116,7 +117,7 @@ _PHYSX = ByNumber(
     threshold=2.0,
     set_by="bounceThresholdVelocity",
     springs="physx",
-    has_modes=True,
+    is_physx=True,
     lowered="sceneDesc.bounceThresholdVelocity = {threshold}f;",
 )
 _BOX2D_2 = ByNumber(
@@ -501,6 +502,8 @@ class Rebound(Page):
         is_slow = self.number > 0 and 0 < speed <= slowest
         lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
         way = speed * self.time_step
+        settling = self.bounce.load * self.time_step / max(1 - self.number, 1e-9)
+        hops = row.is_physx and 0 < self.number < 1 and self.threshold < settling
         said = {
             f"nothing bounces: the other body has 0, and the numbers are {self.combine}": (
                 self.number == 0 < self.written
@@ -517,6 +520,9 @@ class Rebound(Page):
             and abs(self.slower[1] - mean) > TOLERANCE / 2,
             f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
                 not is_slow and lowest > 0 and self.number > 0
+            ),
+            f"it may hop for ever: above a threshold of {show(settling, 'm/s')} it comes to rest": (
+                hops
             ),
             f"no number keeps r within {TOLERANCE:g} at this step": self.is_beyond,
             f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
@@ -642,11 +648,14 @@ def _wanted(
 ) -> Rebound:
     """Return the nearest rebound, with a lower threshold if this one is in the way.
 
-    It is lowered to a quarter of the speed, where it can be set.
+    It is lowered to a quarter of the speed, or to what lets the ball come to rest.
     """
     found = _nearest(engine, bounce, step, threshold, other)
     if found.deviation > TOLERANCE and engine.set_by and bounce.impact_speed < 1.5 * threshold:
-        lowered = float(f"{bounce.impact_speed / 4:.2g}")
+        settling = SETTLED * bounce.load * step / max(1 - bounce.restitution, 1e-9)
+        settles = engine.is_physx and settling < 0.9 * bounce.impact_speed
+        least = max(bounce.impact_speed / 4, settling * settles)
+        lowered = float(f"{least:.2g}")
         lower = _nearest(engine, bounce, step, lowered, other)
         return min(found, lower, key=lambda each: each.deviation)
     return found
@@ -702,8 +711,8 @@ def rebound(
     Refused
         If a parameter or the step is missing, unknown or out of its range.
     """
-    step = _step(time_step)
     given = _given(engine, parameters)
+    step = _step(time_step)
     if "number" not in given:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
     engine = replace(

@@ -73,6 +73,8 @@ def drop_script(design: Design) -> str:
         gap = speed**2 / (2 * bounce.gravity)
         fall = speed / bounce.gravity
         steps = math.ceil((2.05 * fall + lasts) / row.step) + 10
+    # Twice as long as until all bounces are over, because steps of gravity prolong the last ones.
+    seconds = 2 * fall * (1 + high) / max(1 - high, 0.02) + lasts + 3
     radius = bounce.size
     other = bounce.other_mass or bounce.mass
     other_radius = radius * (other / bounce.mass) ** (1 / 3)
@@ -96,6 +98,9 @@ def drop_script(design: Design) -> str:
     }
     texts = {name: f"{value:.9g}" for name, value in values.items()}
     texts["steps"] = str(steps)
+    texts["long"] = str(max(steps, math.ceil(seconds / row.step)))
+    texts["last"] = str(math.ceil(0.5 / row.step))
+    texts["seconds"] = f"{seconds:.2g}"
     # At this step the ball is in contact.
     texts["fall"] = str(math.ceil(fall / row.step) + 1)
     texts["rise"] = span(low**2 * gap, high**2 * gap, form="g")

@@ -14,6 +14,9 @@ DENSITIES = {
     "steel": 7850.0,
     "aluminium": 2700.0,
     "aluminum": 2700.0,
+    "brass": 8500.0,
+    "copper": 8960.0,
+    "lead": 11340.0,
     "glass": 2500.0,
     "rubber": 1100.0,
     "nylon": 1150.0,
@@ -138,7 +141,7 @@ def step_in_si(value: Any) -> float:
     Refused
         If it cannot be read, or is too long for any simulation of a contact.
     """
-    if isinstance(value, str) and value.strip().endswith("Hz"):
+    if isinstance(value, str) and value.strip().lower().endswith("hz"):
         step = 1 / positive("rate of the steps", value, "Hz")
     else:
         step = positive("time step", value, "s")

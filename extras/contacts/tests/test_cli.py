@@ -205,7 +205,7 @@ MISTAKES = {
     "diagnose": "mass is missing",
     f"{BALL} --gravity 1e12 --time-step 100ms": "moves 141000 m in a step of 100 ms: up to 1 km",
     "diagnose --engine nothing": "engine 'nothing' is not known",
-    "diagnose --mass 1": "time step is missing",
+    "diagnose --mass 1": "stiffness is missing",
     "diagnose solref --mass 1": "is not NAME=VALUE",
     "diagnose =3 --mass 1": "is not NAME=VALUE",
     f"{MUJOCO} solref=-0.02": "neither two negative numbers",

@@ -487,8 +487,7 @@ def _follow_all(
         same.append((i, task))
     for (_, kind, *_), rows in groups:
         together = _stacked([task for _, task in rows])
-        ways = range(together.goals.shape[1])
-        parts = [_from_special(together, way, kind, points) for way in ways]
+        parts = _from_special(together, kind, points)
         for (i, _), *branches in zip(rows, *parts, strict=True):
             found[i] = _joined(branches)
     return found
@@ -540,26 +539,40 @@ def _in_rows(several: list) -> Any:
     return first.at(**values) if values else first
 
 
-def _from_special(task: Task, way: int, kind: str, points: int) -> list:
-    """Branches from orbits of one kind towards one of their goals, or the reasons for none."""
+def _from_special(task: Task, kind: str, points: int) -> list[list]:
+    """Branches from orbits of one kind, or the reasons for none, a list for each of their goals."""
     if kind not in STARTS:
-        return [OrbitNotFound("branches end at a special orbit of this kind")] * len(task.z)
-    start = STARTS[kind](task, way)
+        return [[OrbitNotFound("branches end at a special orbit of this kind")] * len(task.z)]
+    ways = task.goals.shape[1]
+    start = _side_by_side([STARTS[kind](task, way) for way in range(ways)])
+    row = np.tile(np.arange(len(task.z)), ways)
     name = task.equations.along[-1].name
     found: list = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
-    if not going.size:
-        return found
-    # The parameter stays between the goal and a value as far behind the start.
-    behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
-    window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
-    until = task.until[going]
-    branches = followed(start.take(going), window, until, points, kind)
-    for i, branch in zip(going, branches, strict=True):
-        path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
-        text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
-        found[i] = replace(branch, z=path, start=text)
-    return found
+    if going.size:
+        # The parameter stays between the goal and a value as far behind the start.
+        behind = np.clip(2 * task.z[row, -1] - start.goal, *task.limits[row].T)
+        window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
+        branches = followed(start.take(going), window, task.until[row[going]], points, kind)
+        for i, branch in zip(going, branches, strict=True):
+            path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
+            text = f"{kind or 'an orbit'} at {name} = {task.z[row[i], -1]:.10g}"
+            found[i] = replace(branch, z=path, start=text)
+    return [found[way * len(task.z) : (way + 1) * len(task.z)] for way in range(ways)]
+
+
+def _side_by_side(starts: list[Start]) -> Start:
+    """The starts of both ways as rows."""
+    first = starts[0]
+    if len(starts) == 1:
+        return first
+    columns = {
+        name: np.concatenate([getattr(each, name) for each in starts])
+        for name, value in first._asdict().items()
+        if np.ndim(value)
+    }
+    rows = np.tile(np.arange(len(first.z)), len(starts))
+    return first._replace(equations=first.equations.rows(rows), **columns)
 
 
 def _joined(parts: list) -> Any:

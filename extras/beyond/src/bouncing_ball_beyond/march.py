@@ -27,8 +27,9 @@ SPECIAL = 1e-9
 """The same for special orbits. A step is wrong by its square and by 1e-10 of itself, the error of
 the gradient, so that the error is again that of rounding."""
 
-EXACT = 6
-"""The gradients of special orbits at points are computed in so many steps once."""
+FAST = 0.1
+"""A special orbit at a point needs no new gradient if a step is so much shorter than that before;
+the first one is compared with 1."""
 
 LONG = 2.0
 """A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
@@ -114,23 +115,23 @@ def newton(
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
     """Special orbits; only rows that are not found yet go on, because their gradients cost.
 
-    Gradients at points are exact in each sixth step only, and in others changed by Broyden's rule:
-    they explain the last value, which should have been zero, by the last step.
+    As long as steps to points become shorter fast, gradients are changed by Broyden's rule: they
+    explain the last value, which should have been zero, by the last step.
     """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
     left = np.arange(len(z))
     part = equations
-    gradient, step = np.empty((2, *z.shape))
-    for number in range(iterations):
+    gradient, step = np.ones((2, *z.shape))
+    slow = ~found
+    size_before = np.ones(len(z))
+    for _ in range(iterations):
         linear = part.linear(z[left])
-        exact = len(equations.along) > 1 or number % EXACT == 0
-        if exact:
-            value, gradient[left] = part.condition(z[left])
-        else:
-            value = part.excess(z[left], linear)
-            gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        value = part.excess(z[left], linear)
+        gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        if slow.any():
+            _, gradient[left[slow]] = part.rows(slow).condition(z[left[slow]])
         condition = value, gradient[left]
         solution = part.bordered(z[left], linear, normal[left], condition)
         step = solution[..., 0]
@@ -139,8 +140,10 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
         z[left] += step
         tangent[left] = solution[..., 1]
         moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
-        found[left] = moved < (SPECIAL if exact else TOLERANCE)
+        found[left] = moved < np.where(slow, SPECIAL, TOLERANCE)
         going = ~found[left] & np.isfinite(moved)
+        slow = (moved >= FAST * size_before[left])[going] | (len(equations.along) > 1)
+        size_before[left] = moved
         step = step[going]
         left = left[going]
         if not left.size:

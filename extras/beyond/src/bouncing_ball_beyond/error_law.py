@@ -639,8 +639,8 @@ def error_thresholds(
         Largest modulus of the relative error.
     low, high, samples
         The range of ϖ and the number of samples in it, at equal ratios. Between the last one that
-        exceeds the tolerance and the next one a bracketing root finder locates the threshold. Two
-        crossings between two samples are not noticed.
+        exceeds the tolerance and the next one the threshold is the zero of a polynomial through
+        some errors. Two crossings between two samples are not noticed.
 
     Returns
     -------

@@ -8,6 +8,7 @@ docs/validation.md. The exit status is 1 if one differs.
 
 import math
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -16,6 +17,7 @@ import numpy as np
 from engine_page import write
 
 from bouncing_ball_contacts import Bounce, diagnose
+from bouncing_ball_contacts.designs import Problem
 from bouncing_ball_contacts.engines import UNDISTURBED, engine_named
 
 HEIGHT = 0.5
@@ -257,9 +259,14 @@ def cells(case, rub):
     is_still = np.ptp(last) < 1e-4
     rest = -float(np.mean(last)) if is_still else math.nan
     low, mean, high = found.outcome.restitution
-    agrees = low - 1e-3 <= min(measured) and max(measured) <= high + 1e-3
-    # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
-    agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
+    least, most = low, high
+    if rub.slide:
+        problem = Problem(replace(BALL, restitution=mean), engine_named(name))
+        least, most = problem.promised(found.outcome)
+    agrees = least - 1e-3 <= min(measured) and max(measured) <= most + 1e-3
+    if (least, most) == (low, high):
+        # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
+        agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
     # Without a threshold the ball never comes to rest, and a depth may be too small.
     has_rest = found.outcome.rest > 0
     lies = not has_rest or np.isclose(rest, found.outcome.rest, rtol=0.02)
@@ -280,7 +287,8 @@ PAIRS = (
 )
 RUBBED = Rub(0.3, 1.0)
 WITH_FRICTION = (
-    f"The same at a friction of {RUBBED.friction} with {RUBBED.slide:g} m/s along the table. The "
+    f"The same at a friction of {RUBBED.friction} with {RUBBED.slide:g} m/s along the table, "
+    "for which SAP in Drake, and MuJoCo up to r = 0.6, have the wider range of a design. The "
     "programs for Gazebo and Chrono have no friction."
 )
 

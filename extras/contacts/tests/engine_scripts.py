@@ -59,6 +59,8 @@ ADDED = {
     "lammps": [
         ("linear_nohistory 0 0", f"linear_nohistory 1 {FRICTION}"),
         (" 0 0 0 zplane", f" 1000 {FRICTION} 1 zplane"),
+        (" 0 0 0\npair_coeff", f" 1000 {FRICTION} 1\npair_coeff"),
+        (" 0 0 0 limit_damping", f" 1000 {FRICTION} 1 limit_damping"),
         ("\nfix down", f"\nvelocity all set {SLIDE} 0 0\nfix down"),
     ],
 }

@@ -681,7 +681,7 @@ ENGINES: Mapping[str, Engine] = {
             caution='the discrete_contact_approximation is taken as "sap"; with the default, '
             '"lagged", Drake ignores relaxation_time, and the row is drake; '
             "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
-            "softer by the default of 1",
+            "softer by the default of 1; a body that slides may have up to 0.08 less",
             box=_DRAKE_BOX,
             flat_only=True,
             notes=("The lagged approximation, the row drake, keeps r of bodies that slide",),

@@ -258,6 +258,15 @@ def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     assert data.ball[-1] == pytest.approx(float(data.ball[0]), abs=1e-8)
 
 
+def test_the_contacts_of_figure_12_have_both_of_their_ends():
+    given = CONFIG["time_histories"]["fig12"] | {"samples": 101}
+    data = module("time_histories").fig12(given, "displacement")
+    for one in (data.sel(frequency_ratio=ratio) for ratio in data.frequency_ratio):
+        during = data.table_phase.values[one.contact.values]
+        ends = float(one.phase), float(one.phase + one.contact_duration)
+        assert (during[0], during[-1]) == pytest.approx(ends, abs=1e-12)
+
+
 def test_the_numbers_of_a_reading_are_those_of_its_contact(readings):
     """The equations as they stand, and damping to first order by orbits of the closed form."""
     printed = {claim.name: claim.printed for claim in claims.CLAIMS if claim.printed}

@@ -74,7 +74,7 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers |= {"0.00"}
     # Formulas of parameters: tolerances in per cent, an impact at rest, a doubling by Eq. 8
     # and its error.
-    return numbers | {"0.5", "0.2", "0.1", "0.0022", "0.0227", "3.1", "0.0314", "0.111"}
+    return numbers | {"0.5", "0.2", "0.1", "0.0022", "0.0227", "0.23", "3.1", "0.0314", "0.111"}
 
 
 @pytest.fixture(scope="module")

@@ -395,6 +395,12 @@ def test_numbers_that_are_missing_take_away_their_claims(reference, name):
         assert verdict(claim.name, datasets) == "not computed"
 
 
+def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
+    without = xr.Dataset(attrs={"parameters": "{}"})
+    said = paper.other_parameters("fig14", without, {"frequency_ratio": {"min": 1.0}})
+    assert said == "fig14: frequency_ratio is None, and the claim needs {'min': 1.0}"
+
+
 @pytest.mark.parametrize("name", sorted(paper.PARAMETERS))
 def test_claims_under_other_parameters_are_not_asked(reference, name):
     data = reference[name]

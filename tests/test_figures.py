@@ -362,6 +362,15 @@ def test_the_frequency_ratios_of_the_poincare_map_have_lines_to_their_points():
     starts = np.stack([shown.phase, shown.impact_velocity], axis=1)
     releases = np.stack([shown.release_phase, shown.bounce_velocity], axis=1)
     assert np.array(ends) == pytest.approx(np.concatenate([starts, releases]) / np.pi)
+    # One case needs no name of its colour.
+    assert "spring-damper model" not in words(of_reference("fig13"))
+
+
+def test_the_stiffest_contact_of_the_poincare_map_has_its_own_name_if_no_other_is_beside_it():
+    (data,) = data_of("fig13")
+    figure = laid_out("fig13", data.isel(frequency_ratio=data.frequency_ratio <= 10.001))
+    names = [text.get_text() for text in figure.axes[0].texts if text.get_text()]
+    assert names == 2 * ["$\\varpi=1$", "$\\varpi=2$", "$\\varpi=5$", "$\\varpi=10$"]
 
 
 def test_an_error_that_changes_its_sign_is_zero_between():

@@ -721,9 +721,12 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     -------
     xarray.Dataset
         The ``destination`` of each start, the number of a ``motion``, and of each motion the
-        ``kind``, the ``impacts`` and ``periods``, and the ``share`` of the starts with its standard
-        error. Motions of the same kind, impacts and periods count as one. The attribute
-        ``impacts`` is the number of impacts after which the search for a repetition ended.
+        ``kind``, the ``impacts`` and ``periods``, the ``share`` of the starts with its standard
+        error, and its fastest impact (``end_phase``, ``end_velocity``). Each motion that repeats is
+        one of its own, also if others have as many impacts and periods. Those whose period is not
+        known cannot be told apart: they are one motion of each kind, without an impact. The
+        attribute ``impacts`` is the number of impacts after which the search for a repetition
+        ended.
 
     Raises
     ------
@@ -756,14 +759,10 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     grid, ball, (amplitude, u, tau) = grid_of(
         ball, amplitude=amplitude, speed=fast * middle, phase=TURN * middle - np.pi
     )
-    ends = ends_of(Balls(ball, amplitude, 0 * tau, tau, u, table), impacts)
-    names = ["kind", "impacts", "periods"]
-    keys = np.rec.fromarrays(
-        [ends["kind"].astype(str), ends["impacts"], ends["periods"]], names=names
-    )
-    motions, which, count = np.unique(keys, return_inverse=True, return_counts=True)
-    share = count / which.size
-    values = {name: motions[name] for name in names} | {
+    balls = Balls(ball, amplitude, 0 * tau, tau, u, table)
+    which, motions = told_apart(balls, ends_of(balls, impacts))
+    share = np.bincount(which) / which.size
+    values = {name: np.array(column) for name, column in motions.items()} | {
         "share": share,
         "share_error": np.sqrt(share * (1 - share) / which.size),
         "motion": np.arange(share.size),
@@ -771,6 +770,47 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     found = dataset(grid, {"destination": which}, OF_MOTIONS)
     found = found.assign({name: ("motion", value) for name, value in values.items()})
     return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
+
+
+def told_apart(balls, ends):
+    """The different motions on which balls end.
+
+    Returns
+    -------
+    which : ndarray of int
+        The number of the motion of each ball.
+    motions : dict of lists
+        Of each motion the ``kind``, ``impacts`` and ``periods``, by which they are sorted, and its
+        fastest impact.
+    """
+    kinds = ends["kind"].astype(str)
+    balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])
+    which = np.full(kinds.size, -1)
+    found = []
+    while (which < 0).any():
+        first = int(which.argmin())
+        kind = kinds[first]
+        k, periods = (int(ends[name][first]) for name in ("impacts", "periods"))
+        same = (kinds == kind) & (ends["impacts"] == k) & (ends["periods"] == periods)
+        (same,) = (same & (which < 0)).nonzero()
+        fastest_impact = np.nan, np.nan
+        if k:
+            # A ball on the same motion ends at one of the impacts of this one.
+            phase, u = follow(balls.take(np.array([first])), k)[0][:, 1:3, 0].T
+            amplitude = balls.amplitude[first]
+            near = np.full(same.size, np.inf)
+            for each, speed in zip(phase, u, strict=True):
+                away = balls.phase[same] - each, (balls.speed[same] - speed) / (1 + amplitude)
+                near = np.fmin(near, apart(*away))
+            same = same[near < NEAR_BEFORE]
+            i = int(u.argmax())
+            fastest_impact = phase[i], amplitude * balls.table(phase[i], 1) - u[i]
+        which[same] = len(found)
+        found.append((kind, k, periods, *map(float, fastest_impact)))
+    order = sorted(range(len(found)), key=found.__getitem__)
+    columns = zip(*(found[i] for i in order), strict=True)
+    names = "kind", "impacts", "periods", "end_phase", "end_velocity"
+    return np.argsort(order)[which], dict(zip(names, columns, strict=True))
 
 
 def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000, table=SINE):

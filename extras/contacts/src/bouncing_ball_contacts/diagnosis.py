@@ -441,7 +441,7 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     speed = contact.problem.bounce.impact_speed
     step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
     found = float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
-    if found > 1:
+    if found > 1 + TOLERANCE:
         # A damper that is too strong for explicit steps.
         found = float(drop(law, scheme, step, speed, gravity, _MEAN).mean)
     return found

@@ -252,9 +252,12 @@ def law_remainders(
 ) -> dict:
     """Estimates of what the error law leaves of the six errors, at most.
 
-    They are Sη with η = D max(1, Λ) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli of the
-    terms of the law. The theorem has their order in D; their factor 1 is fitted to random orbits
-    and not proved (docs/error-law.md).
+    They are Sη with η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli
+    of the terms of the law. Those of the period doubling are at its own Λ and Y_D, and S has the
+    factor M² with M = Λ² max |W″| max |W‴|/(Y_D² + CJ), which is 1 on a sine: the shift of the
+    doubling has this divisor, and what it leaves has the square of the shift. The theorem has the
+    order in D; the factor 1 is fitted to random orbits and tables and not proved
+    (docs/error-law.md).
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     amplitude = np.asarray(amplitude, float)
@@ -264,6 +267,11 @@ def law_remainders(
     weight = 1 + np.abs(1 - table.instant(impact.line, amplitude)[2])
     loaded = impact.duration * weight / (impact.restitution * impact.speed)
     small = impact.duration * np.maximum(1, amplitude * table.bounds[2]) + loaded
+    doubled, phase = table.amplitude_at(impact.line, impact.doubling)
+    divisor = impact.doubling**2 - impact.line * doubled * table(phase, 3)
+    steepness = doubled**2 * table.bounds[2] * table.bounds[3] / divisor
+    pushed = (1 + np.abs(1 - impact.doubling)) / (impact.restitution * impact.speed)
+    at_doubling = impact.duration * (np.maximum(1, doubled * table.bounds[2]) + pushed)
     with np.errstate(invalid="ignore", divide="ignore"):
         later = shift * weight / table.instant(impact.line - shift, amplitude)[2]
         risen = impact.line * later + impact.speed * delay
@@ -274,9 +282,11 @@ def law_remainders(
             "phase": (later + delay) / reference["phase"],
             "apparent_restitution": loaded,
             "saddle_node": node,
-            "period_doubling": node + delay / impact.half,
         }
-        return {name: scale * small for name, scale in scales.items()}
+        estimates = {name: scale * small for name, scale in scales.items()}
+    scale = (node + delay / impact.half) * steepness**2
+    estimates["period_doubling"] = scale * at_doubling + 0 * reference["period_doubling"]
+    return estimates
 
 
 def law_thresholds(

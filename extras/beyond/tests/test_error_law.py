@@ -135,7 +135,7 @@ TABLES = [
     ([(1, 1.0, 0.0), (3, 5.44757126e-2, 0.822558511)], 0.584158925, 780.635704),
     ([(1, 1.0, 0.0), (3, 0.05, 0.7)], 0.6, 50.0),
 ]
-"""Harmonics, r and ϖ at which an estimate that knows the sine only was 12 and 1.4 times too small."""
+"""Harmonics, r and ϖ at which an estimate of a sine was 11 and 1.4 times too small."""
 
 
 @pytest.mark.parametrize(("harmonics", "r", "ratio"), TABLES)

@@ -89,7 +89,7 @@ def test_samples_give_the_table_and_those_of_an_acceleration_too():
         ([], "harmonics: must be some"),
         ([(1, 0.0, 0.0)], "harmonics: must be some"),
         ([(1, 1.0, 0.0), (1, 0.5, 0.1)], "each order once"),
-        ([(1.5, 1.0, 0.0)], "incommensurate"),
+        ([(1.5, 1.0, 0.0)], "frequencies in a ratio of whole numbers have a common period"),
         ([(0, 1.0, 0.0)], "a whole number k from 1"),
         ([(1, np.nan, 0.0)], "a whole number k from 1"),
         ([1], "must be"),
@@ -101,6 +101,92 @@ def test_what_is_no_table_is_one_line(harmonics, text):
     assert "\n" not in str(raised.value)
     with pytest.raises(ValueError, match="table = 'sine': must be a Table"):
         bb.orbit(bb.Rigid(0.5), amplitude=1.0, table="sine")
+
+
+SINES = np.sin(2 * np.pi * np.arange(64) / 64)
+
+
+@pytest.mark.parametrize(
+    ("values", "others", "text"),
+    [
+        (np.r_[SINES, 0.0], {}, "harmonics above 16 have 93% of the acceleration"),
+        (SINES + 1e-2 * (-1.0) ** np.arange(64) * SINES, {}, "harmonics above 15 have"),
+        (np.sin(np.arange(200) * 10.4 * 2 * np.pi / 200), {}, "last sample do not join"),
+        (np.sin(np.arange(900) * 10.4 / 140), {"acceleration": True}, "last sample do not join"),
+        (SINES, {"harmonics": 0}, "harmonics: must be whole numbers from 1"),
+        (SINES, {"harmonics": -3}, "harmonics: must be whole numbers from 1"),
+        (SINES, {"harmonics": 2.5}, "harmonics: must be whole numbers from 1"),
+        (SINES, {"acceleration": "yes"}, "acceleration = 'yes': must be True or False"),
+        ("samples.csv", {}, "values: must be a row of finite numbers"),
+        (np.ones(9), {}, "the table would be at rest"),
+    ],
+)
+def test_samples_that_are_not_those_of_one_period_are_refused(values, others, text):
+    with pytest.raises(ValueError, match=text) as raised:
+        Table.of_samples(values, **others)
+    assert "\n" not in str(raised.value)
+
+
+def test_noisy_heights_give_their_table_with_as_many_harmonics_as_are_meant():
+    table = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
+    noise = np.random.default_rng(1).normal(0, 0.002, 200)
+    found = Table.of_samples(table(np.arange(200) * 2 * np.pi / 200) + noise, harmonics=5)
+    node = bb.limits(bb.Rigid(0.6), table=found).saddle_node.amplitude * found.slope
+    # By the closed form Λ max W′ = C, whatever the harmonics.
+    assert node == pytest.approx(np.pi * 0.25, rel=1e-9)
+    # A fit of 200 samples has a tenth of their noise; 2e-3 is that of a third harmonic times 9.
+    assert table.acceleration * found.slope == pytest.approx(table.slope, abs=4e-3)
+
+
+def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
+    table = Table([(1, 1.0, 0.4), (3, 0.05, 0.7)])
+    time = np.sort(np.random.default_rng(2).uniform(0, 0.416, 900))
+    signal = 9.81 + 0.9 * 9.80665 * table(2 * np.pi * 25 * time, 2)
+    found, amplitude = Table.of_record(time, signal, frequency=25.0, harmonics=5)
+    assert amplitude == pytest.approx(0.9 * table.acceleration, rel=1e-9)
+    tau = np.linspace(0, 7, 50)
+    np.testing.assert_allclose(amplitude * found(tau), 0.9 * table(tau), atol=1e-10)
+    two = Table([(12, 0.01, 0.3), (17, 0.006, 1.0)])
+    signal = 9.80665 * two(2 * np.pi * 8 * time, 2)
+    found, amplitude = Table.of_record(time, signal, frequency=8.0, harmonics=[12, 17])
+    assert found.orders == (12, 17)
+    assert amplitude == pytest.approx(two.acceleration, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"time": [0.0, 1.0]}, "time, acceleration: have 2 and 64 samples"),
+        ({"frequency": "25 Hz"}, "frequency = '25 Hz': must be a positive number"),
+        ({"frequency": 0.5}, "samples of 0.492 periods are too few for 3 harmonics"),
+        ({"harmonics": 40}, "are too few for 40 harmonics"),
+        ({"frequency": 64.0}, "do not tell all of the harmonics apart"),
+        ({"acceleration": np.ones(64)}, "acceleration: is constant"),
+    ],
+)
+def test_what_is_no_record_is_one_line(changed, text):
+    given = {"time": np.arange(64) / 64, "acceleration": SINES, "frequency": 1.0, "harmonics": 3}
+    with pytest.raises(ValueError, match=text) as raised:
+        Table.of_record(**given | changed)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("changed", "text"),
+    [
+        ({"phase_3": np.linspace(0, 6, 5)}, "its phase_3 is an array, and must be a number"),
+        ({"phase_3": np.nan}, "a whole number k from 1 and numbers a, p"),
+        ({"harmonic_3": "x"}, "a whole number k from 1 and numbers a, p"),
+        ({"harmonic_1": 0.0, "harmonic_3": 0.0}, "not all of the size 0"),
+    ],
+)
+def test_a_changed_table_is_checked_where_it_is_used(changed, text):
+    table = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)]).at(**changed)
+    ball = bb.Rigid(0.6)
+    for call in (bb.orbit, bb.motion_of, bb.basins):
+        with pytest.raises(ValueError, match=text) as raised:
+            call(ball, amplitude=1.2, table=table)
+        assert "\n" not in str(raised.value)
 
 
 # Motions

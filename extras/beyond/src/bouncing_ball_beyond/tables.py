@@ -19,6 +19,13 @@ SAMPLES = 64
 """Samples in a period of the highest harmonic: between two of them a derivative of W changes by
 1.2e-3 of the size of the second derivative after it, over k²."""
 
+JUMP = 2.0
+"""How many times larger than all other steps between samples the one from the last to the first may
+be: that of a smooth period is among them."""
+ROUGH = 0.1
+"""The share of the greatest harmonics in the acceleration (root of the mean square) above which
+samples do not tell by themselves how many harmonics are meant."""
+
 Values = Any
 """Numbers or arrays, real or complex: complex steps go through all functions."""
 
@@ -42,19 +49,45 @@ def swing(x: Values) -> tuple[Values, Values]:
     return sine, half * sine
 
 
+FRACTIONS = (
+    "; frequencies in a ratio of whole numbers have a common period, of which their k are multiples"
+)
+
+
 def checked_harmonic(each: Any) -> tuple[int, float, float]:
     """(k, a, p) with a whole k and finite a, p; ValueError otherwise."""
+    fraction = False
     try:
         k, a, p = each
+        fraction = bool(k % 1)
         good = int(k) == k >= 1 and bool(np.isfinite([a, p]).all())
     except (TypeError, ValueError):
         good = False
     if not good:
         raise ValueError(
             f"harmonics: {each!r}: must be (k, a, p) with a whole number k from 1 and numbers a, p"
-            " of a sin(kτ + p); incommensurate frequencies are not periodic"
+            " of a sin(kτ + p)" + (FRACTIONS if fraction else "")
         )
     return int(k), float(a), float(p)
+
+
+def finite_row(name: str, values: Values) -> Values:
+    """Values as an array with one axis; ValueError otherwise."""
+    try:
+        row = np.asarray(values, float)
+    except (TypeError, ValueError):
+        row = np.empty(0)
+    if row.ndim != 1 or not row.size or not np.isfinite(row).all():
+        raise ValueError(f"{name}: must be a row of finite numbers")
+    return row
+
+
+def highest(value: Any) -> int:
+    """The number of a harmonic; ValueError otherwise."""
+    number = isinstance(value, int | float | np.integer) and not isinstance(value, bool)
+    if not number or value % 1 or value < 1:
+        raise ValueError("harmonics: must be whole numbers from 1")
+    return int(value)
 
 
 @dataclass(frozen=True, init=False, eq=True)
@@ -65,8 +98,8 @@ class Table:
     ----------
     harmonics : iterable of (k, a, p)
         The order k ≥ 1, the size a and the phase p of each harmonic. The amplitude Λ of a call is
-        the scale: the table is at ΛW(τ), in units of g/Ω². For the sine, Λ is its greatest
-        acceleration over gravity.
+        the scale: the table is at ΛW(τ), in units of g/Ω². Its greatest acceleration over gravity
+        is Λ times ``acceleration``, which is 1 for the sine and for tables made of samples.
 
     Notes
     -----
@@ -108,7 +141,8 @@ class Table:
         values : array_like, shape (samples,)
             Heights, or accelerations, in any unit: what counts is their shape.
         harmonics : int, optional
-            The highest harmonic that is kept, by default all that the samples tell apart.
+            The highest harmonic that is kept, by default all that the samples tell apart. Noise
+            of heights counts k² times in the acceleration: give it for measured ones.
         acceleration : bool
             Whether the values are accelerations, whose harmonics are divided by -k².
 
@@ -117,6 +151,12 @@ class Table:
         Table
             With a greatest |W″| of 1, so that Λ is the greatest acceleration over gravity.
 
+        Raises
+        ------
+        ValueError
+            If the first and the last sample do not join, or, without ``harmonics``, if the upper
+            half of all harmonics has more than a tenth of the acceleration.
+
         Examples
         --------
         >>> tau = 2 * np.pi * np.arange(16) / 16
@@ -124,20 +164,119 @@ class Table:
         >>> [round(float(size), 3) for size in table.sizes]
         [0.562, 0.056]
         """
-        values = np.asarray(values, float)
-        if values.ndim != 1 or len(values) < 3 or not np.isfinite(values).all():
-            raise ValueError("values: must be a row of at least three finite samples of one period")
+        values = finite_row("values", values)
+        if len(values) < 3:
+            raise ValueError("values: must be at least three samples of one period")
+        if not isinstance(acceleration, bool | np.bool):
+            raise ValueError(f"acceleration = {acceleration!r}: must be True or False")
+        last = (len(values) - 1) // 2
+        if harmonics is not None:
+            last = min(highest(harmonics), last)
+        steps = np.abs(np.diff(values))
+        jump = abs(values[0] - values[-1])
+        if jump > JUMP * steps.max():
+            raise ValueError(
+                f"values: the first and the last sample do not join: the step between them is"
+                f" {jump:.3g}, and others are {steps.max():.3g} at most; they must be of exactly"
+                " one period, with its jumps inside (Table.of_record takes any length)"
+            )
         series = np.fft.rfft(values) / len(values)
-        last = min(harmonics or len(values), (len(values) - 1) // 2)
         k = np.arange(1, last + 1)
-        parts = 2 * series[1 : last + 1] * (-1.0 / k**2 if acceleration else 1.0)
-        sizes = np.abs(parts)
-        if not sizes.any():
+        pulls = 2 * series[1 : last + 1] * (1.0 if acceleration else -(k**2))
+        size = np.linalg.norm(pulls)
+        if size <= 1e-12 * np.abs(values).max():
             raise ValueError("values: are all the same: the table would be at rest")
-        kept = sizes * k**2 > 1e-12 * (sizes * k**2).max()
-        waves = zip(k[kept], sizes[kept], np.angle(parts[kept]) + np.pi / 2, strict=True)
+        upper = np.linalg.norm(pulls[k > max(last / 2, 2)]) / size
+        if harmonics is None and upper > ROUGH:
+            raise ValueError(
+                f"values: harmonics above {max(last // 2, 2)} have {upper:.0%} of the acceleration,"
+                " by noise, by a jump, or because the end of the period is there twice; say how"
+                " many are meant, such as harmonics=5"
+            )
+        return cls._of_accelerations(k, pulls)[0]
+
+    @classmethod
+    def of_record(
+        cls,
+        time: Values,
+        acceleration: Values,
+        *,
+        frequency: float,
+        harmonics: Any,
+        gravity: float = 9.80665,
+    ) -> tuple["Table", float]:
+        """The table of a measured acceleration, and its Λ.
+
+        The harmonics of a known frequency are fitted to the record by least squares, so that it
+        needs no whole number of periods, no equal steps and no filter.
+
+        Parameters
+        ----------
+        time : array_like, shape (samples,)
+            In seconds; the phase of the table is 0 at the time 0.
+        acceleration : array_like, shape (samples,)
+            Upwards, in m/s²; a constant part, such as gravity, does not count.
+        frequency : float
+            That of the table in Hz. Of two frequencies it is the greatest of which both are
+            multiples.
+        harmonics : int or list of int
+            The highest harmonic, or the orders of all that are fitted, such as [12, 17].
+        gravity : float
+            In m/s².
+
+        Returns
+        -------
+        table : Table
+            With a greatest |W″| of 1.
+        amplitude : float
+            Λ, the greatest acceleration of the fitted harmonics over gravity.
+
+        Examples
+        --------
+        >>> time = np.arange(0.0, 0.83, 1e-3)
+        >>> signal = 9.81 + 7.0 * np.sin(157.08 * time) + 2.0 * np.sin(471.24 * time)
+        >>> table, amplitude = Table.of_record(time, signal, frequency=157.08 / TURN, harmonics=3)
+        >>> round(amplitude * 9.80665 * table.sizes[0], 4), table.orders
+        (7.0, (1, 2, 3))
+        """
+        time = finite_row("time", time)
+        acceleration = finite_row("acceleration", acceleration)
+        for name, value in (("frequency", frequency), ("gravity", gravity)):
+            if not (isinstance(value, int | float | np.number) and 0 < value < np.inf):
+                raise ValueError(f"{name} = {value!r}: must be a positive number")
+        orders = harmonics
+        if np.ndim(harmonics) == 0:
+            orders = range(1, highest(harmonics) + 1)
+        k = np.array(sorted({highest(each) for each in orders}))
+        if len(time) != len(acceleration):
+            raise ValueError(
+                f"time, acceleration: have {len(time)} and {len(acceleration)} samples"
+            )
+        if len(time) < 2 * len(k) + 2 or np.ptp(time) * frequency < 1 - 1 / len(time):
+            raise ValueError(
+                f"time: {len(time)} samples of {np.ptp(time) * frequency:.3g} periods are too few"
+                f" for {len(k)} harmonics"
+            )
+        angles = TURN * frequency * np.multiply.outer(time, k)
+        columns = np.hstack([np.ones((len(time), 1)), np.cos(angles), np.sin(angles)])
+        fitted, _, rank, _ = np.linalg.lstsq(columns, acceleration, rcond=1e-6)
+        if rank < columns.shape[1]:
+            raise ValueError("time: the samples do not tell all of the harmonics apart")
+        cosines, sines = np.split(fitted[1:] / gravity, 2)
+        if np.abs(fitted[1:]).max() <= 1e-12 * np.abs(acceleration).max():
+            raise ValueError("acceleration: is constant: the table would be at rest")
+        return cls._of_accelerations(k, cosines - 1j * sines)
+
+    @classmethod
+    def _of_accelerations(cls, k: Values, pulls: Values) -> tuple["Table", float]:
+        """The table whose ΛW″ is the real part of Σ p e^{ikτ} and whose |W″| reaches 1, and Λ."""
+        kept = np.abs(pulls) > 1e-12 * np.abs(pulls).max()
+        sizes = np.abs(pulls) / k**2
+        # -Re p e^{ikτ} = |p| sin(kτ + φ) with φ = arg(-p) + π/2.
+        waves = zip(k[kept], sizes[kept], np.angle(-pulls[kept]) + np.pi / 2, strict=True)
         found = cls(waves)
-        return cls((k, a / found.acceleration, p) for k, a, p in found.harmonics)
+        scale = found.acceleration
+        return cls((k, a / scale, p) for k, a, p in found.harmonics), scale
 
     def __repr__(self) -> str:
         harmonics = zip(self.orders, self.sizes, self.phases, strict=True)
@@ -150,7 +289,11 @@ class Table:
         return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
 
     def at(self, **values: Values) -> Any:
-        """The same table with other sizes or phases: numbers or arrays, real or complex."""
+        """The same table with other sizes or phases.
+
+        They may be arrays and complex where the waveform itself is computed; functions that take a
+        table take one with real numbers.
+        """
         new = self.parameters | values
         if len(new) > len(self.parameters):
             known = ", ".join(self.parameters) or "none"
@@ -606,6 +749,13 @@ SINE = Sine()
 
 
 def check_table(table: Table) -> None:
-    """Raise ValueError with one line for what is no table."""
+    """Raise ValueError with one line for what is no table, or not one table."""
     if not isinstance(table, Table):
         raise ValueError(f"table = {table!r:.60}: must be a Table, such as Table([(1, 1.0, 0.0)])")
+    for name, value in table.parameters.items():
+        if np.ndim(value):
+            raise ValueError(
+                f"table: its {name} is an array, and must be a number: give one table at a time"
+            )
+    if table is not SINE:
+        Table(table.harmonics)

@@ -19,8 +19,8 @@ def hertz(p, v, stiffness):
 
 
 # The contact, its potential U, kT and the digits that the appendix has of the mean.
-LINEAR = (SpringDamper(1.0, restitution=1.0), lambda x: x**2 / 2, 1e-4, 7)
-HERTZ = (ForceLaw(hertz, {"stiffness": 1.0}, root=2), lambda x: 2 / 5 * x**2.5, 1e-6, 10)
+LINEAR = (SpringDamper(1.0, restitution=1.0), lambda x: x**2 / 2, 1e-4, 9)
+HERTZ = (ForceLaw(hertz, {"stiffness": 1.0}, root=2), lambda x: 2 / 5 * x**2.5, 1e-6, 9)
 
 
 def integral(function, end):

@@ -218,10 +218,14 @@ def ext_instant(data: xr.Dataset) -> Figure:
     depth = float(data.table[touching].max()) - low
     under = low - 0.12 * depth
     top.annotate("", (0, under), (meeting, under), arrowprops=arrow)
-    top.annotate("$t_c$", (meeting / 2, under), (0, 3), textcoords="offset points", ha="center")
+    top.annotate(
+        r"$\approx t_c$", (meeting / 2, under), (0, 3), textcoords="offset points", ha="center"
+    )
     top.annotate("", (meeting, low), (meeting, level), arrowprops=arrow)
-    middle = low + 0.75 * (level - low)
-    top.annotate(r"$v\,t_c$", (meeting, middle), (5, 0), textcoords="offset points", va="center")
+    middle = low + 0.86 * (level - low)
+    top.annotate(
+        r"$\approx v\,t_c$", (meeting, middle), (5, 0), textcoords="offset points", va="center"
+    )
     top.axvline(0, **GUIDE)
     top.set(ylabel=r"height, in units of $g/\Omega^2$")
     top.set_ylim(low - 0.25 * depth, low + 1.6 * depth)

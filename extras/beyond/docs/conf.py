@@ -82,6 +82,7 @@ PARTS = {
         "extras/contacts/docs/bounces",
         "extras/contacts/docs/measured",
         "extras/contacts/docs/python",
+        "extras/contacts/docs/validation",
     ],
     "Changes": [
         "CONTRIBUTING",

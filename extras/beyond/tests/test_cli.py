@@ -67,6 +67,8 @@ MISTAKES = {
     f"orbit {RIGID} --output orbit.txt": "--output",
     f"orbit {RIGID} --law hooke": "--law",
     f"orbit {RIGID} --law tsuji --set stiffness": "--set",
+    f"orbit {RIGID} --set harmonic_3=0.05": "--set gives the parameters of a --law",
+    f"error-law {RIGID}": "--frequency-ratio: must be given",
     f"follow {RIGID} --to 2 --along hardness": "--along = 'hardness'",
     f"thresholds {RIGID} --tolerance 0": "--tolerance",
     f"shaker --mass 20g {SHAKER.replace('50Hz', '50m')}": "--frequency = '50m'",

@@ -11,10 +11,12 @@ from bouncing_ball_beyond import (
     ParameterPath,
     Rigid,
     SpringDamper,
+    Table,
     cascade,
     follow,
     named_laws,
     orbit,
+    orbit_with_rest,
     plot,
     read_orbits,
     special_curve,
@@ -189,11 +191,28 @@ def boxes_of(figure):
 
 def test_texts_do_not_overlap_and_are_inside_the_picture(rigid):
     doubled = follow(rigid.first("period doubling"), to=1.8)
-    for figure in (plot(rigid), plot(rigid, doubled, quantity="relative_bounce_velocity")):
+    table = Table([(1, 1.0, 0.0), (2, 0.0123, 0.7), (3, 0.05678, -1.1), (5, 0.012, 0.3)])
+    several = follow(orbit(Rigid(0.5), amplitude=1.2, table=table), to=1.4)
+    pictures = [plot(rigid), plot(rigid, doubled, quantity="relative_bounce_velocity")]
+    for figure in (*pictures, plot(several)):
         boxes = boxes_of(figure)
         for i, box in enumerate(boxes):
             assert box.count_overlaps(boxes[:i]) == 0
             assert figure.bbox.count_contains(box.corners()) == 4
+
+
+def test_a_title_has_the_constants_that_are_not_the_default_ones():
+    table = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
+    branch = follow(orbit(Rigid(0.5), amplitude=1.2, table=table), to=1.3)
+    title = plot(branch).axes[0].get_title()
+    assert title == "1 impact in 1 T, r = 0.5, a₃ = 0.05, p₃ = 0.7"
+
+
+def test_an_orbit_with_a_rest_comes_back_as_one():
+    one = orbit_with_rest(Rigid(0.3), amplitude=1.93)
+    back = read_orbits(to_dataset(one))
+    assert type(back) is type(one) and back.rest == one.rest
+    assert repr(one).startswith("RestOrbit") and "lift_off" in repr(one) and "  rest " in repr(one)
 
 
 def test_lines_are_solid_where_orbits_are_stable(rigid):

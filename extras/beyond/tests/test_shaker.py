@@ -200,6 +200,7 @@ def test_between_the_bifurcations_of_both_models():
         ({"mass": "20 m"}, "mass"),
         ({"mass": "20 m", "stiffness": None, "contact_duration": "0.1 ms"}, "mass"),
         ({"restitution": 1.2}, "restitution"),
+        ({"restitution": None}, "restitution = None: must be a positive quantity$"),
         ({"frequency": "0 Hz"}, "frequency"),
         ({"n": 0}, "n = 0"),
         ({"stiffness": "1 N/m"}, "a contact lasts"),
@@ -214,6 +215,18 @@ def test_mistakes_are_one_line(change, named):
     with pytest.raises(ValueError, match=named) as raised:
         on_shaker(**{**TABLE, **CONTACT, **change})
     assert "\n" not in str(raised.value)
+
+
+def test_shares_are_restitution_coefficients():
+    answers = [on_shaker(**{**TABLE, **CONTACT, "restitution": r}) for r in (0.85, "85 %", "0.85")]
+    assert len({str(each) for each in answers}) == 1
+
+
+def test_a_stroke_in_metres_has_no_height_that_is_no_number():
+    given = {"frequency": "25 Hz", "mass": "20 g", "stiffness": "1e6 N/m", "restitution": 0.6}
+    words = str(on_shaker(**given, stroke=0.4))
+    assert "nan" not in words
+    assert "strokes without a unit are in m." in words
 
 
 def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_for(monkeypatch):

@@ -359,6 +359,27 @@ def test_cascades_and_laws_on_a_table():
     assert end == pytest.approx([found.times[0], found.speeds[0]], abs=1e-9)
 
 
+def test_along_a_phase_one_turn_is_the_default():
+    """Harmonics of any sign and phases of any value have a range around them."""
+    ball = bb.Rigid(0.6)
+    for p in (0.0, 0.7):
+        table = Table([(1, 1.0, 0.0), (3, 0.01, p)])
+        one = bb.orbit(ball, amplitude=1.1, table=table)
+        turned = bb.follow(one, along="phase_3")
+        assert turned.end == f"phase_3 = {p + 2 * np.pi:.10g} is reached"
+        doubling = bb.limits(ball, table=table).period_doubling
+        curve = bb.special_curve(doubling, along=("amplitude", "phase_3"), points=200)
+        ends = np.sort(curve.z[[0, -1], -1])
+        np.testing.assert_allclose(ends, [p - np.pi, p + np.pi], atol=1e-9)
+        assert curve.z[0, -2] == pytest.approx(curve.z[-1, -2], rel=1e-9)
+    with pytest.raises(ValueError, match="to = inf: phase_3 must be in"):
+        bb.follow(one, along="phase_3", to=np.inf)
+    negative = Table([(1, 1.0, 0.0), (3, -0.01, 0.0)])
+    doubling = bb.limits(ball, table=negative).period_doubling
+    curve = bb.special_curve(doubling, along=("amplitude", "harmonic_3"), points=3)
+    assert len(curve.z) > 3
+
+
 def test_datasets_carry_the_table(tmp_path):
     table = Table([(1, 1.0, 0.0), (2, 0.1, 0.8)])
     branch = bb.follow(bb.orbit(bb.Rigid(0.7), amplitude=0.8, table=table), along="phase_2", to=1.5)

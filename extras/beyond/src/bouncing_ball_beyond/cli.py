@@ -191,6 +191,8 @@ def with_ball(function: Callable) -> Callable:
     def command(
         restitution, frequency_ratio, damping_ratio, release, law, settings, corrected, **others
     ):
+        if settings and law is None:
+            raise ValueError("settings: --set gives the parameters of a --law, and there is none")
         if law is not None:
             ball = _of_law(law, restitution, settings)
         elif frequency_ratio is None and damping_ratio is None:
@@ -428,6 +430,8 @@ def error_law(ball, **known):
     With --corrected, also those of this model.
     """
     contact, models = _judged(ball)
+    if not contact.lasts:
+        raise ValueError("frequency_ratio: must be given, because the law is that of a contact")
     errors = [bb.law_errors(contact, **known), bb.law_remainders(contact, **known)]
     errors += [bb.exact_errors(contact, simple=simple, **known) for simple in models.values()]
     columns = [{name: f"{error:.4g}" for name, error in each.items()} for each in errors]

@@ -33,7 +33,8 @@ from bouncing_ball_beyond.march import (
     newton,
     tangents,
 )
-from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts, single
 from bouncing_ball_beyond.special_orbits import (
     GENERALIZED,
@@ -354,7 +355,7 @@ def follow(
         The value at which a branch ends; an array has one for each orbit. Behind a saddle-node the
         parameter moves back, at most as far beyond its first value. With a tuple (low, high) the
         branch is followed both ways. By default the parameter rises to the end of its
-        range, or to ten times its value and at least 10.
+        range, or to ten times its value and at least 10; a phase by one turn.
     points : int
         The largest number of orbits on a branch, of each direction.
 
@@ -505,10 +506,11 @@ def _task(orbit: PeriodicOrbit, path: Path, to: Any, until: NDArray) -> Task:
     value = float(z[-1])
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
     if to is None:
-        to = min(high, max(10.0, 10 * value))
+        turn = path.name.startswith("phase_")
+        to = value + TURN if turn else usual_range(path, value, low, high)[1]
     goals = np.atleast_1d(np.asarray(to, float))
     for goal in goals:
-        if not low <= goal <= high:
+        if not (low <= goal <= high and np.isfinite(goal)):
             raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
     if len(goals) == 2 and not goals[0] <= value <= goals[1]:
         raise ValueError(f"to = {to}: {path.name} = {value:.10g} of the orbit must be between them")

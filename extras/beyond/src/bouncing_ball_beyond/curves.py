@@ -34,7 +34,7 @@ from bouncing_ball_beyond.equations import (
 )
 from bouncing_ball_beyond.forms import one_impact_less
 from bouncing_ball_beyond.march import CLOSED, newton, unit
-from bouncing_ball_beyond.paths import Path, path_of
+from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.special_orbits import GENERALIZED
 from bouncing_ball_beyond.starts import flip
 
@@ -98,7 +98,7 @@ def special_curve(
         As for `follow`.
     ranges : mapping of names to (low, high), optional
         Where the curve ends; by default at a tenth and at ten times the value of the start, or at
-        10 if that is more, within the limits of the parameter.
+        10 if that is more, within the limits of the parameter, and after a turn of a phase.
     points : int
         The largest number of orbits in each direction.
 
@@ -197,7 +197,7 @@ def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, range
     ends = []
     for path, value in zip(equations.along, z[equations.size :], strict=True):
         least, greatest = path.limits(special.ball, special.amplitude)
-        usual = max(least, value / 10), min(greatest, max(10.0, 10 * value))
+        usual = usual_range(path, value, least, greatest)
         low, high = wanted.pop(path.name, usual)
         if not max(low, least) <= value <= min(high, greatest):
             raise ValueError(f"{path.name} = {value:.10g} is not in its range, [{low:g}, {high:g}]")

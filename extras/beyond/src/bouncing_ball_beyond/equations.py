@@ -631,6 +631,7 @@ class PeriodicOrbit:
             "impacts": self.impacts,
             "periods": self.periods,
             **self.parameters,
+            **self._further,
             "phase": self.phase,
             "contact_duration": self.contact_duration,
             "impact_velocity": self.impact_velocity,
@@ -642,8 +643,16 @@ class PeriodicOrbit:
         }
         width = max(map(len, rows))
         return "\n".join(
-            ["PeriodicOrbit", *(f"  {name:{width}}  {_short(row)}" for name, row in rows.items())]
+            [
+                type(self).__name__,
+                *(f"  {name:{width}}  {_short(row)}" for name, row in rows.items()),
+            ]
         )
+
+    @property
+    def _further(self) -> dict:
+        """What orbits of a kind of their own have besides."""
+        return {}
 
     @property
     def impacts(self) -> int:

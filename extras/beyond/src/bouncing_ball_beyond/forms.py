@@ -182,7 +182,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     """
     if orbit.kind not in MULTIPLIERS:
         raise ValueError(
-            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
+            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling"
+            " that is not generalized,"
             ' such as branch.first("period doubling")'
         )
     equations = orbit.equations

@@ -218,6 +218,19 @@ def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
     return Frequency() if along == "frequency" else Parameter(along)
 
 
+def usual_range(path: Path, value: float, least: float, greatest: float) -> tuple[float, float]:
+    """Where a curve through a value ends, within the limits of a parameter, if nothing is said.
+
+    A turn around a phase, which repeats itself; a size of a harmonic that is not positive from -10
+    to 10, or to ten times the size; and else from a tenth of a value to ten times, or to 10.
+    """
+    if path.name.startswith("phase_"):
+        return value - np.pi, value + np.pi
+    far = max(10.0, 10 * abs(value))
+    low = value / 10 if value > 0 else -far
+    return max(least, low), min(greatest, far)
+
+
 def _check_analytic(name: str, function: Callable, samples: NDArray) -> None:
     """Raise ValueError unless complex steps give the derivatives, and these have no jump."""
 

@@ -6,6 +6,7 @@ the user, except in axes of his.
 """
 
 from dataclasses import replace
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
 from bouncing_ball_beyond.continuation import FollowedBranch
 from bouncing_ball_beyond.curves import SpecialCurve
+from bouncing_ball_beyond.paths import OF_TABLES
 from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
 
@@ -52,6 +54,11 @@ HEIGHT = 2.8
 DECADES = 2, 8
 """An axis on which more powers of ten lie is logarithmic, unless these are so many that its least
 value is as good as zero."""
+
+TITLE = 50
+"""Letters of a line of a title."""
+EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
+"""A line does not break here."""
 
 MARKED = 4
 """Orbits with more impacts have no marks, which would hide their lines."""
@@ -208,6 +215,20 @@ def _title(branches: list[FollowedBranch]) -> str:
         for name, value in others[0].items()
         if all(each.get(name) == value for each in others)
     }
-    texts = [f"{PARAMETERS.get(name, ('', name))[1]} = {value:.4g}" for name, value in same.items()]
+    # The default phases of harmonics, and the default size of the first one, are not said.
+    texts = [
+        f"{_symbol(name)}{EQUAL}{value:.4g}"
+        for name, value in same.items()
+        if value != (1.0 if name == "harmonic_1" else 0.0 if name.startswith("phase_") else None)
+    ]
     counts = {_name(branch) for branch in branches}
-    return ", ".join([*(counts if len(counts) == 1 else []), *texts])
+    whole = ", ".join([*(counts if len(counts) == 1 else []), *texts])
+    return fill(whole, TITLE).replace(EQUAL, " = ")
+
+
+def _symbol(name: str) -> str:
+    """What a title calls a parameter: a₃ and p₃ are the size and the phase of a sin(3τ + p)."""
+    if not name.startswith(OF_TABLES):
+        return PARAMETERS.get(name, ("", name))[1]
+    order = name.rpartition("_")[2].translate(str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉"))
+    return f"{'a' if name.startswith('harmonic') else 'p'}{order}"

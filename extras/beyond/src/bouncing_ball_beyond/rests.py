@@ -202,6 +202,10 @@ class RestOrbit(PeriodicOrbit):
     equations: RestEquations
 
     @property
+    def _further(self) -> dict:
+        return {"lift_off": self.lift_off, "rest": self.rest}
+
+    @property
     def lift_off(self) -> float:
         """Phase of the table at which the ball leaves it, in (-π, π]."""
         return float(np.pi - (np.pi - self.z[self.equations.size - 1]) % (2 * np.pi))

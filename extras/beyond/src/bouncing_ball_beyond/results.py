@@ -226,7 +226,7 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
 
     Returns
     -------
-    PeriodicOrbit, FollowedBranch, SpecialCurve, or list of PeriodicOrbit
+    PeriodicOrbit, RestOrbit, FollowedBranch, SpecialCurve, or list of PeriodicOrbit
         What the dataset was made of.
 
     Raises
@@ -258,7 +258,7 @@ def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) 
     numbers = range(data.sizes["point"])
     orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in numbers]
     form = data.attrs["form"]
-    if form == "PeriodicOrbit":
+    if form in ("PeriodicOrbit", "RestOrbit"):
         return orbits[0]
     if form not in ("FollowedBranch", "SpecialCurve"):
         return orbits

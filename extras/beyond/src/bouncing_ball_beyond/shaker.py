@@ -52,7 +52,8 @@ def in_si(name: str, value: float | str | None, unit: str) -> float:
             raise ValueError("not positive")
     # Pint raises errors of many kinds for a text that is no quantity.
     except Exception as error:
-        raise ValueError(f"{name} = {value!r}: must be a positive quantity in {unit}") from error
+        of_unit = "" if unit == "dimensionless" else f" in {unit}"
+        raise ValueError(f"{name} = {value!r}: must be a positive quantity{of_unit}") from error
     return float(number)
 
 
@@ -197,7 +198,12 @@ class ShakerAnswer:
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
-        if self.bounces:
+        if self.bounces and np.isnan(self.error):
+            sentences.append(
+                "On the contact its orbit is not found at such an acceleration; strokes without a"
+                " unit are in m."
+            )
+        elif self.bounces:
             sentences.append(f"This motion is {STABLE[doubled]}.")
             lower = "lower" if self.error < 0 else "higher"
             beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
@@ -240,7 +246,7 @@ STABLE = ("stable", "stable in one of the two models only", "unstable, its perio
 def on_shaker(
     *,
     frequency: float | str,
-    restitution: float,
+    restitution: float | str,
     stroke: float | str | None = None,
     acceleration: float | str | None = None,
     mass: float | str | None = None,
@@ -270,8 +276,8 @@ def on_shaker(
         lowest and its highest position, or its greatest acceleration, such as "0.8 g". A number is
         in m, or in m/s²: 0.8 is not 0.8 g.
     mass, radius, density
-        The mass of the ball, or its radius and density. A contact duration needs none of them, and
-        the units of those given are checked nevertheless.
+        The mass of the ball, or its radius and density; numbers are in kg, m and kg/m³. A contact
+        duration needs none of them, and the units of those given are checked nevertheless.
     contact_duration, stiffness, youngs_modulus
         One of them. The first two are those of a contact with a spring and a damper. With Young's
         modulus of the ball, the contact is that of Hertz with the damping of Tsuji, whose r is the
@@ -301,8 +307,10 @@ def on_shaker(
     >>> answer.is_good_enough, round(answer.error, 4)
     (False, -0.0121)
     """
+    given = restitution
+    restitution = in_si("restitution", restitution, "dimensionless")
     if not 0 < restitution < 1:
-        raise ValueError(f"restitution = {restitution!r}: must be between 0 and 1")
+        raise ValueError(f"restitution = {given!r}: must be between 0 and 1")
     rate = in_si("frequency", frequency, "Hz")
     fall = in_si("gravity", gravity, "m/s^2")
     within = in_si("tolerance", tolerance, "dimensionless")

@@ -459,10 +459,10 @@ def simulate(
     -------
     xarray.Dataset
         ``time``, ``impact_phase``, ``impact_velocity``, ``bounce_velocity``, ``contact_duration``
-        and ``flight_time`` of each ``impact``, with the velocities relative to the table, NaN after
-        the last one; and the ``status`` of the ball, "bouncing" or "permanent contact". Bounces
-        that end on the table are summed up in the ``contact_duration`` of one impact, with the rest
-        up to the lift-off.
+        and ``flight_time`` of each ``impact``, and ``relative_impact_velocity`` and
+        ``relative_bounce_velocity`` relative to the table, NaN after the last one; and the
+        ``status`` of the ball, "bouncing" or "permanent contact". Bounces that end on the table are
+        summed up in the ``contact_duration`` of one impact, with the rest up to the lift-off.
 
     Raises
     ------

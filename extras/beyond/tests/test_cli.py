@@ -1,6 +1,7 @@
 """The command line: every command, its files, and mistakes in one line."""
 
 import csv
+import runpy
 import subprocess
 import sys
 
@@ -68,6 +69,7 @@ MISTAKES = {
     f"orbit {RIGID} --law hooke": "--law",
     f"orbit {RIGID} --law tsuji --set stiffness": "--set",
     f"orbit {RIGID} --set harmonic_3=0.05": "--set gives the parameters of a --law",
+    f"orbit {RIGID} --highest-harmonic 5": "--highest-harmonic: is that of the samples",
     f"error-law {RIGID}": "--frequency-ratio: must be given",
     f"follow {RIGID} --to 2 --along hardness": "--along = 'hardness'",
     f"thresholds {RIGID} --tolerance 0": "--tolerance",
@@ -90,6 +92,13 @@ def test_mistakes_are_one_line(line, capsys):
     assert ended.value.code == 2 and output.out == ""
     assert output.err.startswith("bouncing-ball: ") and output.err.count("\n") == 1
     assert MISTAKES[line] in output.err
+
+
+def test_the_package_runs_as_the_command(monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["bouncing_ball_beyond", *f"orbit {RIGID}".split()])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_module("bouncing_ball_beyond", run_name="__main__")
+    assert ended.value.code == 0 and "max_height" in capsys.readouterr().out
 
 
 def printed(capsys, *arguments):
@@ -116,6 +125,12 @@ def test_table_of_recorded_samples(name, tmp_path, capsys):
     assert "must have a first line with height or acceleration" in printed(
         capsys, *line, "--table", str(file)
     )
+    noise = np.random.default_rng(1).normal(0, 0.002, 64)
+    rough = [f"{sample:.17g}" for sample in np.sin(tau) + noise * np.array([1, -1] * 32)]
+    file.write_text("\n".join(["height", *rough]))
+    noisy = [*line, "--table", str(file)]
+    assert "give the highest harmonic that is meant" in printed(capsys, *noisy)
+    assert "stable" in printed(capsys, *noisy, "--highest-harmonic", "3")
     both = [*line, *TWO.split(), "--table", str(file)]
     assert "--harmonic, --table: at most one of them may be given" in printed(capsys, *both)
 

@@ -107,7 +107,7 @@ def output(*suffixes: str) -> Callable:
         "--output",
         callback=check,
         metavar="FILE",
-        help=f"Also write a file: {', '.join(suffixes)}.",
+        help=f"Also write a file: {', '.join(suffixes)}; a .csv of orbits has rows for multipliers.",
     )
 
 
@@ -149,6 +149,7 @@ TABLE = with_options(
         metavar="CSV",
         help="The table by samples of one period, in a column height or acceleration.",
     ),
+    click.option("--highest-harmonic", type=int, metavar="K", help="Of noisy samples, such as 5."),
 )
 
 
@@ -156,18 +157,22 @@ def with_table(function: Callable) -> Callable:
     """A command with the options of a waveform, which gets the table in their place."""
 
     @wraps(function)
-    def command(harmonics, samples, **others):
+    def command(harmonics, samples, highest_harmonic, **others):
         from bouncing_ball_beyond.tables import SINE
 
         if harmonics and samples:
             raise ValueError("harmonics, samples: at most one of them may be given")
+        if highest_harmonic is not None and not samples:
+            raise ValueError("highest_harmonic: is that of the samples of a --table")
         table = bb.Table(harmonics) if harmonics else SINE
-        return function(table=_of_samples(samples) if samples else table, **others)
+        if samples:
+            table = _of_samples(samples, highest_harmonic)
+        return function(table=table, **others)
 
     return TABLE(command)
 
 
-def _of_samples(path: str) -> Any:
+def _of_samples(path: str, highest: int | None) -> Any:
     """The table of a file with a column of heights or of accelerations."""
     with open(path, newline="", encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
@@ -181,7 +186,7 @@ def _of_samples(path: str) -> Any:
             values.append(float(row[name]))
         except (TypeError, ValueError):
             raise ValueError(f"samples {path}, line {line}: {row[name]!r} is no number") from None
-    return bb.Table.of_samples(values, acceleration=name == "acceleration")
+    return bb.Table.of_samples(values, highest, acceleration=name == "acceleration")
 
 
 def with_ball(function: Callable) -> Callable:

@@ -81,7 +81,8 @@ def to_dataset(found: Found) -> xr.Dataset:
     """The dataset of an orbit, of a branch or curve with its special orbits, or of several orbits.
 
     The orbits of a list have the same number of impacts and balls of one kind; what is no orbit in
-    it, such as an `OrbitNotFound`, is left out. ``to_netcdf`` of the dataset writes a file.
+    it, such as an `OrbitNotFound`, is left out. ``to_netcdf`` of the dataset writes a file. Its
+    attributes ``ball`` and ``table`` are those of the first orbit; parameters are variables.
 
     Raises
     ------

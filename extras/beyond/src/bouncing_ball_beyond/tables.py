@@ -190,8 +190,8 @@ class Table:
         if harmonics is None and upper > ROUGH:
             raise ValueError(
                 f"values: harmonics above {max(last // 2, 2)} have {upper:.0%} of the acceleration,"
-                " by noise, by a jump, or because the end of the period is there twice; say how"
-                " many are meant, such as harmonics=5"
+                " by noise, by a jump, or because the end of the period is there twice; give the"
+                " highest harmonic that is meant, such as 5"
             )
         return cls._of_accelerations(k, pulls)[0]
 

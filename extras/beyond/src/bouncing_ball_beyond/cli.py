@@ -107,7 +107,7 @@ def output(*suffixes: str) -> Callable:
         "--output",
         callback=check,
         metavar="FILE",
-        help=f"Also write a file: {', '.join(suffixes)}; a .csv of orbits has rows for multipliers.",
+        help=f"Also write a file: {', '.join(suffixes)}; .csv of orbits has rows for multipliers.",
     )
 
 

@@ -208,6 +208,15 @@ def test_a_title_has_the_constants_that_are_not_the_default_ones():
     assert title == "1 impact in 1 T, r = 0.5, a₃ = 0.05, p₃ = 0.7"
 
 
+def test_an_orbit_alone_before_a_special_one_has_its_own_line():
+    """The branch starts at a stable orbit, and doubles in its first step."""
+    branch = follow(orbit(Rigid(0.5), amplitude=1.52), to=1.8)
+    assert branch.special[0].kind == "period doubling"
+    lines = plot(branch).axes[0].get_lines()
+    looks = {round(float(line.get_xdata()[0]), 2): line.get_linestyle() for line in lines}
+    assert looks[1.52] == "-"
+
+
 def test_an_orbit_with_a_rest_comes_back_as_one():
     one = orbit_with_rest(Rigid(0.3), amplitude=1.93)
     back = read_orbits(to_dataset(one))

@@ -60,6 +60,9 @@ TITLE = 50
 EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 """A line does not break here."""
 
+BESIDE = 1e-3
+"""Multipliers of special orbits are nearer to the unit circle."""
+
 MARKED = 4
 """Orbits with more impacts have no marks, which would hide their lines."""
 
@@ -160,14 +163,21 @@ def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -
     """For each orbit the number of the next one, or of the last one, that is not special.
 
     The multipliers of a special orbit do not tell how those beside it look. The ends of a branch
-    may be special orbits as well.
+    may be special orbits as well: one counts if it is alone on its side of a special orbit, and no
+    multiplier is next to the unit circle.
     """
     places = [each.z for each in special]
-    others = [
-        i for i, each in enumerate(orbits) if not any(np.array_equal(each.z, z) for z in places)
-    ]
-    inner = np.array([i for i in others if 0 < i < len(orbits) - 1] or [0])
-    return inner[np.searchsorted(inner, np.arange(len(orbits))).clip(max=len(inner) - 1)]
+    marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]
+    last = len(orbits) - 1
+    inner = []
+    for i, each in enumerate(orbits):
+        at_end = i in (0, last)
+        alone = at_end and last > 1 and marked[1 if i == 0 else last - 1]
+        alone = alone and np.abs(np.abs(each.multipliers) - 1).min() > BESIDE
+        if not marked[i] and (alone or not at_end):
+            inner.append(i)
+    others = np.array(inner or [0])
+    return others[np.searchsorted(others, np.arange(len(orbits))).clip(max=len(others) - 1)]
 
 
 def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:

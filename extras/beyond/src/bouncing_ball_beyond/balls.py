@@ -109,7 +109,10 @@ class Ball:
 
     def start(self, u: Values) -> Values:
         """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
-        return np.where(np.real(u) < 0, self.kappa * u, 0.0)
+        kappa = self.kappa
+        if np.ndim(kappa) == 0 and kappa == 0:
+            return np.zeros(np.shape(u))
+        return np.where(np.real(u) < 0, kappa * u, 0.0)
 
     def free(self, u: Values) -> Values:
         """T of a free impact: 0 for impacts without a duration."""

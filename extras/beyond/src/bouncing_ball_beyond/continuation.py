@@ -684,8 +684,8 @@ def _between_limits(equations: OrbitEquations) -> list:
         if not left.size:
             return found
         rows = equations.rows(left)
-        z, good = near_instants(rows, amplitude[left], 1)
-        followed[left[good]] = rows.rows(good).admissible(z[good])
+        z, good, linear = near_instants(rows, amplitude[left], 1)
+        followed[left] = good & rows.admissible(z, linear)
         for i, row in enumerate(left):
             if good[i] and (followed[row] or isinstance(found[row], OrbitNotFound)):
                 found[row] = PeriodicOrbit(single(rows, i), z[i])

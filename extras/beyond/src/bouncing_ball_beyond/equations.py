@@ -455,15 +455,18 @@ class OrbitEquations:
         speeds = self.split(z)[0][..., 1]
         return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
 
-    def least_release(self, linear: Linear, z: NDArray) -> NDArray:
+    def least_release(
+        self, linear: Linear | None, z: NDArray, flights: Flights | None = None
+    ) -> NDArray:
         """How well balls leave the table after impacts: the least of all, zero if one does not.
 
         It is the speed with which the release function passes zero, or the relative speed after an
         instant. After an instant below the table it is the height of the summit of the flight.
+        Instants need no derivatives.
         """
-        if self.ball.lasts:
+        if linear is not None and self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)
-        flights = self.ends(z)
+        flights = flights or self.ends(z)
         if np.all(flights.gap >= 0):
             return flights.speed.min(axis=-1)
         depth = turns_back(
@@ -504,12 +507,17 @@ class OrbitEquations:
         both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
         return twice, np.concatenate([both, z[:, self.size :]], axis=1)
 
-    def admissible(self, z: NDArray) -> NDArray:
-        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
+    def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
+        """Whether a ball follows the orbit: nothing else happens in its contacts and flights.
+
+        The derivatives of the legs may be given.
+        """
+        if linear is None and self.ball.lasts:
+            linear = self.linear(z)
         x, ball, _ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
-        release = self.least_release(self.linear(z), z)
+        release = self.least_release(linear, z, ends)
         # A ball without speed leaves the table if this falls faster than the ball: δ″ > 0.
         falls = (ends.amplitude * ends.table(ends.leaves, 2) < -1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
@@ -833,7 +841,7 @@ class PeriodicOrbit:
     @cached_property
     def admissible(self) -> bool:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
-        return bool(self.equations.admissible(self.z[np.newaxis])[0])
+        return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
 
     @property
     def defect(self) -> float:

@@ -296,7 +296,8 @@ def march(
         step = np.where(good, longer, length / 2)
         away = _from_start(equations, first, here, units)
         back = (away < step / 2) & (farthest > 2 * step)
-        back &= _cosine(here, first, units) > STRAIGHT
+        if back.any():
+            back &= _cosine(here, first, units) > STRAIGHT
         farthest = np.maximum(farthest, away)
         for j in np.flatnonzero(good):
             if ending[j] and np.isfinite(inner.tests[j]).all():

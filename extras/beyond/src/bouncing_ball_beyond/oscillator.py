@@ -11,6 +11,7 @@ motions also complex ones. The loops of :mod:`.one_ball` have the same formulas 
 numbers, because numba compiles them.
 """
 
+from math import factorial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +23,12 @@ DELICATE = 0.25
 
 UNDERDAMPED = 0.99
 """Contacts with a larger ζ are found by doublings when a release is searched for."""
+
+TERMS = 20
+"""Terms of Taylor series over times that are at most 1."""
+
+FACTORS = np.array([[1 / factorial(j + n) for j in range(TERMS)] for n in range(4)])
+"""1/(j + n)!: the factor of the derivative j in a function that is integrated n times."""
 
 
 class Motion(NamedTuple):
@@ -66,7 +73,8 @@ def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple
     envelope = 1 - lost
     g = envelope * sine / omega
     wave = envelope * versine
-    return g, envelope - wave - decay * g, lost + wave - decay * g
+    drag = decay * g
+    return g, envelope - wave - drag, lost + wave - drag
 
 
 def _overdamped(s: Values, ratio: Values, zeta: Values, root: Values) -> tuple:
@@ -108,10 +116,12 @@ def closed_motion(
         if k > 1:
             # What pushes the contact is k² times as large, and its rate k³ times.
             x, y = k * k * x, k * k * y
+        # Divided before the times come in: these are a few real numbers.
+        in_phase, behind = detuning / scale, damped / scale
         real = lost - versine
         imaginary = sine - (g if k == 1 else k * g)
-        of_cosine = (real * detuning + imaginary * damped) / scale
-        of_sine = (imaginary * detuning - real * damped) / scale
+        of_cosine = real * in_phase + imaginary * behind
+        of_sine = imaginary * in_phase - real * behind
         position = position + (y * of_cosine + x * of_sine)
         if k == 1:
             speed = speed + (y * (g - of_sine) + x * of_cosine)
@@ -133,6 +143,8 @@ def doubled_motion(
     gravity: Values,
     ratio: Values,
     zeta: Values,
+    *,
+    loads: bool = True,
 ) -> Motion:
     """The same by a Taylor series over s/2^m and m doublings.
 
@@ -140,25 +152,32 @@ def doubled_motion(
     rate, G to a constant force, and S to sin ks and C to cos ks of each harmonic::
 
         g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = kC,    C′ = g - kS
+
+    The derivatives of g give those of G, and those of C, C″ = g′ - k²C, give those of S.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
     size = np.max(np.abs(s) * (max(table.orders) + np.real(ratio) * (1 + 2 * np.real(zeta))))
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
     part = (s + 0 * loss) / 2.0**doublings
-
-    def rates(g: Values, rate: Values, load: Values, *forced: Any) -> Values:
-        waves = zip(table.orders, forced[::2], forced[1::2], strict=True)
-        changes = [each for k, sine, cosine in waves for each in (k * cosine, g - k * sine)]
-        return np.array([rate, -loss * rate - stiffness * g, g, *changes])
-
-    term = np.zeros((3 + 2 * len(table.orders), *np.shape(part)), np.asarray(part).dtype)
-    term[1] = 1.0
-    found = term
-    for j in range(1, 21):
-        term = part / j * rates(*term)
-        found = found + term
-    g, rate, load, *forced = found
+    square = part * part
+    # The derivatives of g′, and of C″, over the powers of what a part is.
+    rates = np.empty((TERMS, *np.shape(part)), np.asarray(part).dtype)
+    rates[0] = 1.0
+    rates[1] = damped = -loss * part
+    pulled = stiffness * square
+    for j in range(2, TERMS):
+        rates[j] = damped * rates[j - 1] - pulled * rates[j - 2]
+    rate, g, load = _series(rates, 0, 1, 2)
+    g, load = part * g, square * load
+    forced = []
+    for k in table.orders:
+        turned = k * k * square
+        bends = rates.copy()
+        for j in range(2, TERMS):
+            bends[j] -= turned * bends[j - 2]
+        of_cosine, of_sine = _series(bends, 2, 3)
+        forced += [k * square * part * of_sine, square * of_cosine]
     for _ in range(doublings):
         held = rate + loss * g
         for i, k in enumerate(table.orders):
@@ -177,11 +196,18 @@ def doubled_motion(
     for (k, x, y), of_sine, of_cosine in responses:
         position = position + k * k * (y * of_cosine + x * of_sine)
         speed = speed + k * k * (y * (g - k * of_sine) + k * x * of_cosine)
-        sin = np.sin(k * s)
-        cos = np.cos(k * s)
-        pushes.append(k * k * (y * cos + x * sin))
-        shoves.append(k**3 * (x * cos - y * sin))
+        if loads:
+            sin = np.sin(k * s)
+            cos = np.cos(k * s)
+            pushes.append(k * k * (y * cos + x * sin))
+            shoves.append(k**3 * (x * cos - y * sin))
     return Motion(position, speed, pushes, shoves)
+
+
+def _series(derivatives: Values, *integrals: int) -> list:
+    """Taylor series of functions that are integrated so often, over the power of the time."""
+    flat = derivatives.reshape(TERMS, -1)
+    return [(FACTORS[n] @ flat).reshape(derivatives.shape[1:]) for n in integrals]
 
 
 def motion(
@@ -195,27 +221,31 @@ def motion(
     zeta: Values,
 ) -> tuple:
     """δ and δ′ a time s after an impact, by the formula that keeps all digits for each number."""
-    square = s * s
-    damped = zeta * zeta
-    delicate = np.abs(square * ratio * ratio * (1 - damped)) < 1
+    time, frequency, damping = np.real(s), np.real(ratio), np.real(zeta)
+    square = time * time
+    damped = damping * damping
+    delicate = square * (frequency * frequency * np.abs(1 - damped)) < 1
     for k in table.orders:
-        apart = ratio - k
-        delicate = delicate | (np.abs(square * (apart * apart + damped)) < 1)
+        apart = frequency - k
+        delicate = delicate | (square * (apart * apart + damped) < 1)
     if not np.any(delicate):
         return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
     if np.all(delicate):
-        return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta)[:2]
-    given = np.broadcast_arrays(s, gap, u, *waves, gravity, ratio, zeta)
-    delicate = np.broadcast_to(delicate, given[0].shape)
-
-    def ordered(values: Values) -> Any:
-        return *values[:3], table, values[3:-3], *values[-3:]
-
+        return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
     with np.errstate(all="ignore"):  # of the closed form where it is not used
-        gap, speed = (np.array(each) for each in closed_motion(*ordered(given), loads=False)[:2])
-    some = doubled_motion(*ordered([each[delicate] for each in given]))
-    gap[delicate], speed[delicate] = some[:2]
-    return gap[()], speed[()]
+        found = closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)
+    position, rate = found.gap, found.speed
+    delicate = np.broadcast_to(delicate, position.shape)
+
+    def some(values: Values) -> Values:
+        return np.broadcast_to(values, position.shape)[delicate] if np.ndim(values) else values
+
+    start = some(s), some(gap), some(u)
+    of_contacts = some(gravity), some(ratio), some(zeta)
+    moved = [some(each) for each in waves]
+    doubled = doubled_motion(*start, table, moved, *of_contacts, loads=False)
+    position[delicate], rate[delicate] = doubled.gap, doubled.speed
+    return position, rate
 
 
 def forcing(

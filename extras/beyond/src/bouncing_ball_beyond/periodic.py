@@ -90,8 +90,8 @@ def orbit(
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     equations = OrbitEquations(row, 1, periods, table=table)
     sign = 1 if side == "stable" else -1
-    z, good = near_instants(equations, amplitudes.astype(float), sign)
-    admissible = good & equations.admissible(z)
+    z, good, linear = near_instants(equations, amplitudes.astype(float), sign)
+    admissible = good & equations.admissible(z, linear)
     found: list = [
         PeriodicOrbit(single(equations, i), z[i]) if good[i] else None for i in range(len(z))
     ]

@@ -174,9 +174,9 @@ class RestEquations(OrbitEquations):
         """All orbits are superstable."""
         return np.ones(len(linear.legs), bool)
 
-    def admissible(self, z: NDArray) -> NDArray:
+    def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
         """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
-        linear = self.linear(z)
+        linear = linear or self.linear(z)
         good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
         return good & (self.rest(z) > 0) & (self.fall(z) > 0) & (self.clearance(z) > 0)
 

@@ -88,8 +88,8 @@ def guess_of_instants(
 
 
 def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
-    """Orbits with one impact near those of the corrected model, as rows, and which of them are
-    found on a side of the saddle-node.
+    """Orbits with one impact near those of the corrected model, as rows, which of them are found on
+    a side of the saddle-node, and the derivatives of their legs.
     """
     on_table = sign, equations.table
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, *on_table)
@@ -97,7 +97,7 @@ def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> t
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
     good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
-    return z, good
+    return z, good, solution.linear
 
 
 def shortest_contacts(

@@ -43,7 +43,8 @@ def swing(x: Values) -> tuple[Values, Values]:
     half = x / 2
     if getattr(x, "dtype", REAL).kind == "c" or isinstance(x, complex):
         sine = np.sin(half)
-        return 2 * sine * np.cos(half), 2 * sine * sine
+        twice = 2 * sine
+        return twice * np.cos(half), twice * sine
     half = np.tan(half)
     sine = 2 * half / (1 + half * half)
     return sine, half * sine

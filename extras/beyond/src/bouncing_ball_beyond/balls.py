@@ -110,7 +110,7 @@ class Ball:
     def start(self, u: Values) -> Values:
         """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
         kappa = self.kappa
-        if np.ndim(kappa) == 0 and kappa == 0:
+        if isinstance(kappa, float) and kappa == 0:
             return np.zeros(np.shape(u))
         return np.where(np.real(u) < 0, kappa * u, 0.0)
 

@@ -670,12 +670,11 @@ def _between_limits(equations: OrbitEquations) -> list:
     table = equations.table
     fold = np.pi * n * (1 - r) / (1 + r)
     rise = 2 * (1 + r * r) / (1 + r) ** 2
-    amplitudes = []
-    for share in SHARES:
-        # Instants at ΛW′ = fold and -ΛW″ = share · rise.
-        phase = table.phase_of_angle(np.arctan2(share * rise, fold))
-        size = np.hypot(table(phase, 1), table(phase, 2))
-        amplitudes.append(np.hypot(fold, share * rise) / size)
+    # Instants at ΛW′ = fold and -ΛW″ = share · rise.
+    push = np.multiply.outer(SHARES, rise)
+    phase = table.phase_of_angle(np.arctan2(push, fold))
+    size = np.hypot(table(phase, 1), table(phase, 2))
+    amplitudes = [*(np.hypot(fold, push) / size)]
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     followed = np.zeros(len(n), bool)
 

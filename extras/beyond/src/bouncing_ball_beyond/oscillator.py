@@ -105,7 +105,7 @@ def closed_motion(
     g, slope, lost = free_responses(s, ratio, zeta)
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
-    position = gap * (1 - lost) - u * g - gravity * lost / stiffness
+    position = gap * (1 - lost) - u * g - gravity / stiffness * lost
     speed = -u * slope - (gravity + gap * stiffness) * g
     pushes, shoves = [], []
     for k, x, y in table.each_wave(waves):

@@ -110,6 +110,7 @@ def test_the_version(typed):
 def test_engines_are_listed_with_what_was_run(typed):
     out = typed("engines")[1]
     assert "MuJoCo 4.0.0" in out
+    assert max(map(len, out.splitlines())) <= 100
 
 
 def test_a_recording_becomes_a_contact_in_one_command(typed, tmp_path):
@@ -227,14 +228,14 @@ MISTAKES = {
     f"{LAMMPS} kn=1e5 gamma_n=1 --points 0": "no whole number",
     f"{LAMMPS} kn=1e5 gamma_n=1 --restitution 2": "not between 0 and 1",
     "fit": "Missing argument",
-    "fit nothing.csv": "no file, and none of",
+    "fit nothing.csv": "the file nothing.csv does not exist",
     "fit croquet --speed fast": "does not begin",
     "fit croquet --speed 0": "not positive",
     "fit croquet --leave-out one": "numbers of lines",
     "fit croquet --time-step 1ms": "--time-step needs an engine",
     "fit croquet --tolerance 0.1": "--tolerance needs an engine",
     "fit croquet --density wood": "--density needs an engine",
-    "fit /": "/ is no file",
+    "fit /": "/ is a folder",
     "fit croquet --penetration 1mm": "--penetration needs an engine",
     "fit bouncy_ball --engine mujoco": "mass is missing",
     "fit croquet --resolution 1ms": "resolution",

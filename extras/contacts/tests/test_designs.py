@@ -9,7 +9,15 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.designs import IMPULSE, WANTED, YOURS, Candidate, Problem
+from bouncing_ball_contacts.designs import (
+    _COUNTS,
+    IMPULSE,
+    WANTED,
+    YOURS,
+    Candidate,
+    Outcome,
+    Problem,
+)
 from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import SemiImplicit, exact, offsets
 
@@ -507,6 +515,29 @@ def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
     for value in found.parameters.values():
         for number in np.atleast_1d(value):
             assert f"{number:.6g}" in found.snippet
+
+
+class NoneKeeps(Problem):
+    """Contacts of long steps are too deep, and the shallow ones of short steps have a farther r."""
+
+    def keeping(self, step_of):
+        return Candidate(1e-3, 0.0, step_of(1e-3))
+
+    def outcome_of(self, contact):
+        milliseconds = 1e3 * contact.step
+        depth = 0.001 if milliseconds < 0.05 else 0.02
+        # Of the shallow ones, those of the longest steps are the nearest.
+        r = 0.5 + milliseconds
+        return Outcome((depth, depth), 0.0, (0.0, 0.0), (r, r, r))
+
+
+def test_if_no_contact_keeps_all_a_shallow_one_comes_before_a_near_one():
+    problem = NoneKeeps(Bounce(mass=1, radius=0.1, restitution=0.8), engine_named("generic"))
+    depths = [problem.outcome_of(problem.keeping(problem.step_of(n))).depth[1] for n in (4, 600)]
+    assert depths[0] > problem.bounce.limit > depths[1]
+    found = problem.wanted()
+    assert found.step < 5e-5
+    assert found.step == max(step for n in _COUNTS if (step := problem.step_of(n)(1e-3)) < 5e-5)
 
 
 def test_a_random_ball_bounces_as_wanted():

@@ -105,6 +105,7 @@ def test_each_ball_has_its_own_r(name, tmp_path, typed):
     found = {ball: fit(each).restitution for ball, each in read(path).items()}
     assert found == {"tennis": pytest.approx(0.73, abs=1e-3), "golf": pytest.approx(0.82, abs=1e-3)}
     assert fit(path, ball="golf").restitution == pytest.approx(0.82, abs=1e-3)
+    assert fit(path, ball="Golf").restitution == fit(path, ball="golf").restitution
     with pytest.raises(Refused, match="has tennis, golf: name one, --ball"):
         fit(path)
     out = typed(f"fit {path}")[1]
@@ -123,6 +124,12 @@ def test_names_of_another_kind_are_asked_for(tmp_path):
     path.write_text(BALLS["in rows"].replace("ball,", "type,"))
     with pytest.raises(Refused, match="column 'type' has golf, tennis: name it 'ball' for one"):
         fit(path)
+
+
+def test_one_column_for_each_ball_is_told_of_the_column_of_balls():
+    columns = {"drop height (cm)": [100, 80], "tennis": [54, 44], "golf": [70, 56]}
+    with pytest.raises(Refused, match="if 'tennis', 'golf' are balls, .* a column 'ball' and one"):
+        fit(columns)
 
 
 # Straight up and down again, as no ball flies.
@@ -222,8 +229,8 @@ def test_every_published_experiment_names_its_source():
         ([1, 2, 3], "list is no recording: give a file, .* columns such"),
         ({"drop": [1, 2], "rebound": [0.5]}, "columns differ in length: 2, 1 cells"),
         ({"time": [[0.45, 1.17], [1.75, 2]]}, "columns have one number in each cell"),
-        ("croqet", "none of the experiments: did you mean croquet"),
-        ("/", "/ is no file, and none of the experiments"),
+        ("croqet", "the file croqet does not exist: did you mean the experiment croquet"),
+        ("/", "the file / is a folder"),
     ],
 )
 def test_other_sources_are_refused(source, said):

@@ -11,6 +11,7 @@ from bouncing_ball_contacts.schemes import (
     ContactJoint,
     Hertz,
     HuntCrossley,
+    Impedance,
     Implicit,
     Linear,
     OfSolver,
@@ -76,6 +77,23 @@ def test_a_solver_without_restitution_has_implicit_steps(scheme):
     implicit = drop(Linear(k, c), Implicit(), 1e-3, 2.0, 9.81, AT)
     assert found.restitution == pytest.approx(implicit.restitution, rel=1e-9)
     assert law.rest(9.81) == pytest.approx(Linear(k, c).rest(9.81), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        Linear(np.asarray(3e4), np.asarray(20.0)),
+        HuntCrossley(np.asarray(3e4), np.asarray(0.3)),
+        Hertz(np.asarray(3e6), np.asarray(0.1)),
+        Impedance(np.asarray(3e4), np.asarray(20.0), points=4, low=0.99, high=0.99),
+        Impedance(np.asarray(3e4), np.asarray(20.0), low=0.1, high=0.95, width=0.01),
+    ],
+    ids=["linear", "Hunt and Crossley", "Hertz", "impedance", "rising impedance"],
+)
+def test_a_body_at_rest_is_carried_by_the_contact(law):
+    depth = law.rest(9.81)
+    push = law.push(np.asarray(depth), np.asarray(0.0), np.asarray(9.81))
+    assert push == pytest.approx(9.81, rel=1e-9)
 
 
 def test_linear_damping_limits_the_speed_of_a_fall():

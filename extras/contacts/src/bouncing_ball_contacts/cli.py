@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, aligned, design
+from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, design
 from bouncing_ball_contacts.diagnosis import diagnose
 from bouncing_ball_contacts.engines import ENGINES, engine_named
 from bouncing_ball_contacts.rebounds import (
@@ -329,24 +329,15 @@ def fit_command(
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and the versions in which they were run."""
-    head = ["engine", "parameters, of both bodies alike", "steps", "two bodies", "run in"]
-    rows = [
-        [
-            row.name,
-            row.meaning,
-            row.scheme.text,
-            ", ".join(dict.fromkeys(row.rules[name].text for name in row.names)),
-            row.ran,
-        ]
-        for row in ENGINES.values()
-    ]
-    click.echo("\n".join(aligned([head, *rows])))
-    head = ["engine", "restitution", "numbers of two bodies", "threshold", "run in"]
-    rows = [
-        [row.name, row.parameter, row.pair.text, show(row.threshold, "m/s"), row.ran]
-        for row in BY_NUMBER.values()
-    ]
-    click.echo("\n" + "\n".join(aligned([head, *rows])))
+    click.echo("With a stiffness; the parameters are of both bodies alike:")
+    for row in ENGINES.values():
+        combined = ", ".join(dict.fromkeys(row.rules[name].text for name in row.names))
+        click.echo(f"{row.name}: {row.meaning}")
+        click.echo(f"    {row.scheme.text}; two bodies: {combined}; run in {row.ran}")
+    click.echo("\nWith a restitution by number, which counts from the threshold on:")
+    for each in BY_NUMBER.values():
+        click.echo(f"{each.name}: {each.parameter}, threshold {show(each.threshold, 'm/s')}")
+        click.echo(f"    two bodies: {each.pair.text}; run in {each.ran}")
 
 
 def run() -> None:

@@ -14,6 +14,7 @@ scan: the engine's own scheme is stepped for many ratios at once, over all insta
 within a step. Implicit steps, gravity and strong damping therefore need no formulas of their own.
 """
 
+import functools
 import html
 import math
 import re
@@ -654,10 +655,14 @@ class Problem:
         it is the most compliant one.
         """
         depths = [count * step / self.duration for count in _FINE_COUNTS]
-        place = bisect_left(
-            depths, True, key=lambda depth: self.is_near(self.outcome_of(self.at(depth, step)))
-        )
-        return self.at(depths[min(place, len(depths) - 1)], step)
+
+        @functools.cache
+        def contact(place: int) -> Candidate:
+            return self.at(depths[place], step)
+
+        places = range(len(depths))
+        place = bisect_left(places, True, key=lambda i: self.is_near(self.outcome_of(contact(i))))
+        return contact(min(place, places[-1]))
 
     def row(self, contact: Candidate) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""

@@ -290,8 +290,8 @@ def fit(
         ),
         (
             does_drag and not drag,
-            "the drag of the air is not removed: of a tennis ball it would be "
-            f"{by_drag:.2g} of r; give the mass and the diameter",
+            "the drag of the air is not removed: with as much as a tennis ball has it would be "
+            f"{by_drag:.2g} of r; give the mass and the diameter of this one",
         ),
         # Contacts of rubber, the longest ones, last for 10 ms.
         (

@@ -319,10 +319,13 @@ WITHOUT_ANSWER = {
     "pybullet, ode or mujoco",
     "godot": "Godot has two engines: take godot-jolt for Jolt Physics; Godot Physics was not run",
     "havok": "Havok was not run, and its source cannot be read",
+    "isaac-gym": "Isaac Gym has a PhysX of its own, and was not run; for PhysX 5 take physx",
     "physx-3": "PhysX 3 was not run; unity and physx have the rule of PhysX 4 and 5",
+    "sapien": "SAPIEN has PhysX, and was not run; for PhysX 5 take physx",
     "simscape": "Simscape was not run, and its source cannot be read",
     "three": "three.js has no physics: take the engine beside it, such as cannon-es or rapier",
     "unreal": "Unreal 5 has Chaos, which was not run, and Unreal 4 has PhysX 3.4",
+    "warp": "Warp has no contacts of its own: take mujoco-warp, or newton",
     "webots": "Webots has an ODE of its own, which was not run; for ODE take ode",
 }
 """Names that people type, and why there is no answer."""

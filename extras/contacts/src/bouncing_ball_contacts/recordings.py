@@ -366,7 +366,14 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}")
+        strange = [repr(each.name) for each in table.columns if each.name and not each.role]
+        balls = ""
+        if "drop height" in roles and len(strange) > 1:
+            balls = (
+                f"; if {', '.join(strange)} are balls, write one below the other, with a column "
+                "'ball' and one 'rebound height'"
+            )
+        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}{balls}")
     columns = []
     for role in needed:
         same = table.of(role)
@@ -469,7 +476,7 @@ def read(
     leave_out : sequence of int
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
     ball : str, optional
-        The name of one, in a column ``ball``.
+        The name of one, in a column ``ball``, in small letters or capital ones.
 
     Returns
     -------
@@ -491,6 +498,8 @@ def read(
                 "'ball' for one result each, or leave it out for one of all"
             )
     names = _names(table, "ball")
+    if ball is not None:
+        ball = next((each for each in names if each.lower() == ball.lower()), ball)
     if ball is not None and ball not in names:
         known = ", ".join(filter(None, dict.fromkeys(names))) or "no column of balls"
         raise Refused(f"{table.name} has {known}: name one, --ball")

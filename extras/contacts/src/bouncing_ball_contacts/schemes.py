@@ -113,14 +113,8 @@ class Law:
         raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
-        """Return the depth at rest in m, up to which the contact does not carry the body."""
-        depth = np.full(np.shape(self.stiffness), 1e-18)
-        # The factors are 2⁶⁴, 2³², …, 2, √2 and so on, down to that of rounding.
-        for power in 2.0 ** np.arange(6, -48, -1):
-            deeper = depth * 2**power
-            push = self.push(deeper, 0 * deeper, np.asarray(gravity))
-            depth = np.where(push < gravity, deeper, depth)
-        return depth
+        """Return the depth at rest in m, where the spring carries the body: k p = g."""
+        return gravity / self.stiffness
 
     def duration(self, speed: float) -> Array:
         """Return the order of the contact time in s.
@@ -179,6 +173,9 @@ class Hertz(Law):
         root = np.sqrt(np.maximum(p, 0.0))
         return self.stiffness * root * p + self.damping * np.sqrt(5 * self.stiffness * root) * w
 
+    def rest(self, gravity: float) -> Array:
+        return (gravity / self.stiffness) ** (2 / 3)
+
     def duration(self, speed: float) -> Array:
         free = 2.943 * (1.25 / self.stiffness) ** 0.4 * speed**-0.2
         return free / np.sqrt(np.maximum(1 - self.damping**2, 0.01))
@@ -220,6 +217,18 @@ class Impedance(Law):
     def push(self, p: Array, w: Array, gravity: Array) -> Array:
         d = self._impedance(p)
         return self._shared(d) * (gravity + d * self.stiffness * p + self.damping * w)
+
+    def rest(self, gravity: float) -> Array:
+        """Return the depth at rest in m of one contact, up to which it does not carry the body."""
+        if self.low == self.high:
+            return gravity * (1 / self._shared(self.high) - 1) / (self.high * self.stiffness)
+        depths = np.geomspace(1e-18, 1e18, 500)
+        # Each time the interval becomes shorter by the number of its depths.
+        for _ in range(5):
+            carried = self.push(depths, np.zeros_like(depths), np.asarray(gravity)) >= gravity
+            first = max(int(np.argmax(carried)), 1)
+            depths = np.geomspace(depths[first - 1], depths[first], 500)
+        return depths[0]
 
     @property
     def deep(self) -> Linear:
@@ -502,7 +511,7 @@ def drop(
         new = scheme.velocity(columns, z, v, free, h, g)
         np.maximum(peak, new - free, out=peak, where=inside)
         rises = new > 0
-        falls_again = (v > 0) & ~rises & (z < 0)
+        ends = (v > 0) & ~rises & (z < 0)
         moves = new
         if of_position is not columns:
             moves = scheme.velocity(of_position, z, v, free, h, g)
@@ -520,8 +529,11 @@ def drop(
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, new / speed, found)
-        rests = (np.abs(new) < _REST * speed) & (np.abs(new - v) < _CREEPING * speed)
-        inside &= ~(leaves | falls_again | rests)
+        ends |= leaves
+        is_slow = np.abs(new) < _REST * speed
+        if is_slow.any():
+            ends |= is_slow & (np.abs(new - v) < _CREEPING * speed)
+        inside &= ~ends
         v = new
         if not inside.any():
             break
@@ -545,23 +557,25 @@ def hop(
     fall = gravity * step
     v, at = np.meshgrid(-speed, at)
     z = -v * step * (1 - at)
-    lowest = z
-    highest = z
+    lowest = np.full_like(z, math.inf)
+    highest = np.full_like(z, -math.inf)
+    settled = 2 * steps // 3
     for k in range(steps):
-        if k == 2 * steps // 3:
-            lowest = z
-            highest = z
+        if k >= settled:
+            rise = np.maximum(v, 0.0) ** 2 / (2 * gravity)
+            highest = np.maximum(highest, z + np.where(z > 0, rise, 0.0))
+            lowest = np.minimum(lowest, z)
         # Down to two steps above the surface a body flies freely.
-        half = v - fall / 2
-        above = np.maximum(z - 2 * step * np.hypot(v, np.sqrt(2 * gravity * np.abs(z))), 0.0)
-        n = np.floor((half + np.sqrt(half**2 + 2 * gravity * above)) / fall)
-        n = np.where((z > 0) & (above > 0), np.maximum(n, 0.0), 0.0)
-        rising = np.maximum(v, 0.0)
-        highest = np.maximum(highest, z + np.where(z > 0, rising**2 / (2 * gravity), 0.0))
-        z = z + n * step * v - gravity * step**2 * n * (n + 1) / 2
-        v = v - n * fall
+        above = z - 2 * step * np.sqrt(v**2 + 2 * gravity * np.abs(z))
+        flies = above > 0
+        if flies.any():
+            half = v - fall / 2
+            rising = np.sqrt(half**2 + 2 * gravity * np.maximum(above, 0.0))
+            n = np.where(flies, np.maximum(np.floor((half + rising) / fall), 0.0), 0.0)
+            z = z + n * step * v - gravity * step**2 * n * (n + 1) / 2
+            v = v - n * fall
         v = scheme.velocity(law, z, v, v - fall, np.asarray(step), np.asarray(gravity))
         z = z + step * v
-        lowest = np.minimum(lowest, z)
+    lowest = np.minimum(lowest, z)
     # A body below the surface that comes up slowly does not hop.
     return float(np.max(np.where(highest > 0, highest - lowest, 0.0)))

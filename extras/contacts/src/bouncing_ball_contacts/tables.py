@@ -167,10 +167,10 @@ def _text_of(source: Any) -> tuple[str, str]:
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
     if not path.exists() or path.is_dir():
-        near = difflib.get_close_matches(str(source), experiments(), 1) or experiments()
-        raise Refused(
-            f"{source} is no file, and none of the experiments: did you mean {' or '.join(near)}?"
-        )
+        is_what = "is a folder" if path.is_dir() else "does not exist"
+        near = difflib.get_close_matches(str(source), experiments(), 1)
+        meant = f": did you mean the experiment {near[0]}?" if near else ""
+        raise Refused(f"the file {source} {is_what}{meant}")
     data = path.read_bytes()
     if b"\0" in data or data.startswith(b"PK"):
         raise Refused(f"{path.name} is no text: save it as csv in UTF-8")

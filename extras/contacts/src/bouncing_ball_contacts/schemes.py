@@ -503,6 +503,7 @@ def drop(
     peak = np.zeros(shape)
     found = np.zeros(shape)
     inside = np.ones(shape, bool)
+    rose = np.broadcast_to(v > 0, shape)
     # A contact that is stable has ended, or has come to rest, within a few contact times.
     for _ in range(200 + int(np.max(12 * duration / h))):
         free = v - fall
@@ -511,14 +512,15 @@ def drop(
         new = scheme.velocity(columns, z, v, free, h, g)
         np.maximum(peak, new - free, out=peak, where=inside)
         rises = new > 0
-        ends = (v > 0) & ~rises & (z < 0)
+        ends = (rose > rises) & (z < 0)
         moves = new
         if of_position is not columns:
             moves = scheme.velocity(of_position, z, v, free, h, g)
         z = z + h * moves
         np.minimum(lowest, z, out=lowest, where=inside)
-        leaves = inside & rises & (z >= 0) & (peak > 0)
+        leaves = inside & rises & (z >= 0)
         if leaves.any():
+            leaves &= peak > 0
             if gravity:
                 # The highest of the steps that follow: n more of them raise the body.
                 upward = np.maximum(new, 0.0)
@@ -529,14 +531,16 @@ def drop(
                 found = np.where(leaves, np.sqrt(rise / height), found)
             else:
                 found = np.where(leaves, new / speed, found)
-        ends |= leaves
+            ends |= leaves
         is_slow = np.abs(new) < _REST * speed
         if is_slow.any():
             ends |= is_slow & (np.abs(new - v) < _CREEPING * speed)
-        inside &= ~ends
         v = new
-        if not inside.any():
-            break
+        rose = rises
+        if ends.any():
+            inside &= ~ends
+            if not inside.any():
+                break
     return Drops(found, 0 - lowest, peak / h)
 
 

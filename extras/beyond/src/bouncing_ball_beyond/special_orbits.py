@@ -137,6 +137,8 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     found = crossings.kind != "period halving"
     singular = np.array([ends_at(name, None) for name in crossings.kind])
     z = ends[0]
+    nearest = ends[0].copy()
+    least = np.full(len(chord), np.inf)
     for _ in range(60):
         step = place[1] - place[0]
         part = weights[0] / (weights[0] - weights[1])
@@ -152,6 +154,9 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         found &= solution.found
         z = np.where(found[:, np.newaxis], solution.z, guess)
         value = _tests_of(crossings.kind, equations, solution, turns)
+        nearer = np.abs(value) < least
+        nearest[nearer] = z[nearer]
+        least[nearer] = np.abs(value)[nearer]
         side = (value * values[1] > 0).astype(int)
         ratio = 1 - value / values[side, each]
         again = np.where(ratio > 0, ratio, 0.5)
@@ -165,6 +170,9 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         latest = side
         if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
             break
+    # Equations are singular at the ends of curves: rounding may lead away from there again.
+    z[singular] = nearest[singular]
+    value[singular] = least[singular]
     largest = np.abs(crossings.values).max(axis=0)
     return z, found & (np.abs(value) < 1e-6 * np.maximum(largest, 1e-3))
 

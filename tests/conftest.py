@@ -103,8 +103,8 @@ class Checkout:
 
     def plan(self, *arguments: str) -> str:
         """What a dry run prints."""
-        options = ["--dry-run", "--cores", "1", "--quiet", "host", "--"]
-        status, printed = self.run(*options, *arguments)
+        command = ["--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments]
+        status, printed = self.run(*command)
         assert status == 0, printed
         return printed
 

@@ -3,6 +3,7 @@ compared as one does with the real one. Its files of code are read when it runs.
 """
 
 import runpy
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -130,9 +131,10 @@ class Project:
         for product in self.products[1:]:
             product.make(data, self.results)
 
-    def accept(self, *names: str) -> list[str]:
+    def accept(self, *names: str, further: Sequence[Product] = ()) -> list[str]:
         folders = self.results, self.top
-        return accept(*folders, self.products, self.config, names, self.CODE, self.top)
+        products = [*self.products, *further]
+        return accept(*folders, products, self.config, names, self.CODE, self.top)
 
     def lines(self, *names: str, reference: Path | None = None) -> list[str]:
         folders = self.results, reference or self.top

@@ -8,7 +8,6 @@ import pytest
 from tests.repository import commit, git
 
 from bouncing_ball import datasets
-from bouncing_ball.accept import accept
 from bouncing_ball.artifacts import Product, text
 
 
@@ -102,10 +101,8 @@ def test_only_what_follows_from_an_accepted_figure_is_made_anew(project):
     verdicts = text(
         "figures/verdicts.md", ("claims",), lambda data: " ".join(data["claims"].verdict.values)
     )
-    folders = project.results, project.top
-    given = [*project.products, verdicts], project.config, ["fig14"], project.CODE, project.top
     files = ["figures/claims.nc", "figures/fig14.nc", "figures/verdicts.md", "paper.md"]
-    assert accept(*folders, *given) == files
+    assert project.accept("fig14", further=[verdicts]) == files
     assert (project.top / "figures/fig02.md").read_text().startswith("height\n")
 
 
@@ -132,12 +129,10 @@ def test_a_picture_is_drawn_anew_by_the_matplotlib_of_today(project):
     (project.top / "figures/fig14.svg").write_text("<svg>drawn otherwise</svg>")
     other_matplotlib(project.top)
     commit(project.top, "another matplotlib")
-    folders = project.results, project.top
-    given = [*project.products, picture], project.config, ["fig14"], project.CODE, project.top
-    assert accept(*folders, *given) == ["figures/fig14.nc", "figures/fig14.svg"]
+    assert project.accept("fig14", further=[picture]) == ["figures/fig14.nc", "figures/fig14.svg"]
     other_matplotlib(project.results)
     with pytest.raises(ValueError, match="another matplotlib drew fig14"):
-        accept(*folders, *given)
+        project.accept("fig14", further=[picture])
 
 
 def test_nothing_is_accepted_that_does_not_follow_from_committed_code(project):

@@ -31,7 +31,14 @@ def test_the_motion_in_contact_is_that_of_an_integration(ratio, zeta, weight, du
     phase = 0.7
     u = -2.4
     expected = independent.integrate_contact(
-        ratio, zeta, "displacement", amplitude, phase, u, weight, duration
+        ratio,
+        zeta,
+        release="displacement",
+        amplitude=amplitude,
+        phase=phase,
+        u=u,
+        weight=weight,
+        duration=duration,
     )
     contact = Contact(ratio, zeta, weight=weight)
     x = amplitude * np.cos(phase)

@@ -243,7 +243,8 @@ def enough_from(
     quantity, orbit = np.nonzero(crossed)
 
     def excess(logarithm, quantity, orbit, below):
-        low, high = logarithms[below], logarithms[below + 1]
+        low = logarithms[below]
+        high = logarithms[below + 1]
         part = (logarithm - low) / (high - low)
         guess = (1 - part) * orbits[:, orbit, below] + part * orbits[:, orbit, below + 1]
         contact = replace(

@@ -409,7 +409,8 @@ def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
         values = excess(middle + half * POINTS[:, np.newaxis], places)
         beyond = ~(values[1:-1] <= 0)
         after = np.where(beyond.any(axis=0), POINTS.size - 1 - beyond[::-1].argmax(axis=0), 1)
-        above, below = values[after - 1, columns], values[after, columns]
+        above = values[after - 1, columns]
+        below = values[after, columns]
         ends = POINTS[after - 1], POINTS[after]
         polynomial = np.linalg.solve(chebyshev.chebvander(POINTS, POINTS.size - 1), values)
         slopes = chebyshev.chebder(polynomial)

@@ -63,6 +63,9 @@ class Ball:
     sinks: ClassVar[bool] = False
     """Whether impacts are instants below the level of the table, which stand for contacts."""
 
+    integrated: ClassVar[bool] = False
+    """Whether contacts are integrated, and end analytically in their start."""
+
     @property
     def simple(self) -> bool:
         """Whether its impacts are those of a restitution coefficient that is a number."""

@@ -200,6 +200,11 @@ class ForceLaw(Ball):
         return None
 
     @property
+    def integrated(self):
+        """Whether the force has no kinks."""
+        return not self.kinks
+
+    @property
     def kappa(self):
         """κ of a release where p + κp′ = 0; 0 for other releases."""
         return self.lag(**self.values) if self.lag else 0.0

@@ -22,6 +22,7 @@ from scipy.special import stdtrit
 from bouncing_ball_beyond import oscillator
 from bouncing_ball_beyond.balls import H, check_ball, checked, whole_number
 from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.impact_map import impact_map
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.periodic import OrbitNotFound, solved
 from bouncing_ball_beyond.rests import orbit_with_rest
@@ -58,6 +59,9 @@ RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
 """The map with which a deviation starts again after a lift-off; its numbers do not matter."""
 FAR_BELOW = 1e6
 """More than the logarithm of the growth in any number of impacts that are followed at a time."""
+WORTH_A_MAP = 20_000
+"""Impacts of one ball from which on their contacts are computed by an :class:`.ImpactMap`, which
+takes as long as some thousand contacts."""
 BLOCK = 1 << 14
 """Balls that are followed at a time."""
 ERRORS = 5.0
@@ -111,6 +115,11 @@ def tangent_maps(balls, record, lifts):
     _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
     if ball.has_closed_form(table):
         slopes = slopes_of_oscillator(balls, tau, u, duration, w)
+    elif balls.map:
+        slopes, known = balls.map.slopes(tau, u)
+        others = ~known & np.isfinite(u)
+        given = replace(balls, amplitude=balls.map.amplitude), tau[others], u[others], T[others]
+        slopes[..., others] = slopes_of_contact(*given)
     else:
         slopes = slopes_of_contact(balls, tau, u, T)
     if not ball.lasts:
@@ -130,10 +139,10 @@ def tangent_maps(balls, record, lifts):
 
 
 def slopes_of_contact(balls, tau, u, T):
-    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, impacts, balls)."""
+    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, *tau.shape)."""
     ball = balls.ball
     unknowns = 3 if ball.lasts else 2
-    steps = 1j * H * np.eye(3)[:, :unknowns, np.newaxis, np.newaxis]
+    steps = 1j * H * np.eye(3)[:, :unknowns].reshape(3, unknowns, *np.ones(tau.ndim, int))
     given = tau + steps[0], u + steps[1], T + steps[2], balls.amplitude
     impact = ball.contact(*given, table=balls.table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
@@ -199,10 +208,23 @@ def ends_of(balls, impacts):
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
     found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
     section = max(SECTION, -(-impacts // SECTIONS))
+    if is_worth_a_map(balls, impacts):
+        amplitude = float(balls.amplitude[0])
+        top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
+        balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
     for first in range(0, balls.phase.size, BLOCK):
         lane = np.arange(first, min(first + BLOCK, balls.phase.size))
         _follow_to_end(found, balls.take(lane), lane, impacts, section)
     return found
+
+
+def is_worth_a_map(balls, impacts):
+    """Whether balls are one ball of an integrated contact on one table, with many impacts."""
+    ball = balls.ball
+    one = balls.phase.size and np.ptp(balls.amplitude) == 0
+    if ball.has_closed_form(balls.table) or any(map(np.ndim, ball.parameters.values())):
+        return False
+    return ball.integrated and one and balls.phase.size * impacts >= WORTH_A_MAP
 
 
 def _store(found, which, **values):

@@ -24,6 +24,7 @@ from bouncing_ball_beyond.balls import (
     safe_steps,
     whole_number,
 )
+from bouncing_ball_beyond.impact_map import ImpactMap
 from bouncing_ball_beyond.one_ball import COLUMNS, ROUNDING, STEPS, TURN
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
@@ -58,7 +59,8 @@ class Balls:
 
     ``turns`` and ``phase`` are the whole turns of the table and its phase there, so that the phase
     of a late impact has all digits, and ``speed`` is u. Parameters of the ball are numbers, or
-    arrays over the row. All are on one table.
+    arrays over the row. All are on one table. ``map`` has the contacts of one ball that is followed
+    over many impacts.
     """
 
     ball: Ball
@@ -67,6 +69,7 @@ class Balls:
     phase: np.ndarray
     speed: np.ndarray
     table: Table = SINE
+    map: ImpactMap | None = None
 
     def take(self, which):
         """Some of the balls, by a mask or their indices."""
@@ -143,8 +146,11 @@ def instants(ball, table, landed, gap, w, waves, amplitude):
 
 def leave(balls):
     """How balls leave the table after their impacts."""
-    given = balls.phase, balls.speed, balls.amplitude, balls.table
-    own_time, duration, gap, w = balls.ball.leaves(*given)
+    if balls.map:
+        own_time, duration, gap, w = balls.map.leaves(balls.phase, balls.speed)
+    else:
+        given = balls.phase, balls.speed, balls.amplitude, balls.table
+        own_time, duration, gap, w = balls.ball.leaves(*given)
     if not balls.ball.lasts:
         return rest(balls, gap, w)
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
@@ -283,6 +289,32 @@ def follow_each(balls, impacts):
     return record, going, replace(balls, turns=turns, phase=phase, speed=speed).take(going)
 
 
+def follow_by_map(balls, impacts):
+    """:func:`follow` for balls with a map of their contacts.
+
+    A ball whose contact has to be integrated waits for others, so that many are integrated at once.
+    """
+    record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
+    turns, phase, speed = balls.turns.copy(), balls.phase.copy(), balls.speed.copy()
+    done = np.zeros(balls.phase.size, int)
+    bounces = np.ones(balls.phase.size, bool)
+    while (bounces & (done < impacts)).any():
+        (ready,) = (bounces & (done < impacts)).nonzero()
+        quick = balls.map.knows(speed[ready])
+        here = ready[quick] if 2 * np.count_nonzero(quick) >= ready.size else ready[~quick]
+        rows = replace(balls.take(here), turns=turns[here], phase=phase[here], speed=speed[here])
+        each, going, after = step(rows)
+        record[done[here], :, here] = each.T
+        done[here] += 1
+        bounces[here] = False
+        here = here[going]
+        bounces[here] = True
+        turns[here], phase[here], speed[here] = after.turns, after.phase, after.speed
+    (left,) = bounces.nonzero()
+    after = replace(balls, turns=turns, phase=phase, speed=speed).take(left)
+    return record, left, after
+
+
 def follow(balls, impacts):
     """A number of impacts of each ball.
 
@@ -297,6 +329,8 @@ def follow(balls, impacts):
     """
     if balls.phase.size < FEW and balls.ball.looped(balls.table):
         return follow_each(balls, impacts)
+    if balls.map:
+        return follow_by_map(balls, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     left = np.arange(balls.phase.size)
     for impact in record:

@@ -1,0 +1,88 @@
+"""The map of contacts against their integration."""
+
+import numpy as np
+import pytest
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond import motions
+from bouncing_ball_beyond.impact_map import impact_map
+from bouncing_ball_beyond.simulation import Balls
+from bouncing_ball_beyond.tables import SINE, Table
+
+BALLS = {
+    "Tsuji": (bb.tsuji(restitution=0.8, duration=0.03, speed=4.0), SINE),
+    "Kuwabara and Kono": (bb.kuwabara_kono(restitution=0.7, duration=0.1, speed=4.0), SINE),
+    "a damper that never pulls": (
+        bb.linear(restitution=0.5, duration=0.03, speed=4.0, release="force"),
+        SINE,
+    ),
+    "two frequencies": (
+        bb.hunt_crossley(restitution=0.5, duration=0.03, speed=4.0),
+        Table([(1, 1.0, 0.0), (3, 0.05, -1.1)]),
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=BALLS)
+def case(request):
+    """A map, and points on each piece of it, with more at speeds above and below."""
+    ball, table = BALLS[request.param]
+    found = impact_map(ball, 1.2, table, 8.0)
+    rng = np.random.default_rng(5)
+    octave = rng.uniform(-0.5, len(found.pieces) + 0.5, 200)
+    return found, rng.uniform(-np.pi, np.pi, 200), 8.0 * 2**-octave
+
+
+def test_contacts_are_those_of_the_integration(case):
+    found, tau, u = case
+    assert len(found.pieces) >= 3
+    own_time, duration, gap, speed = np.array(found.leaves(tau, u))
+    expected = found.ball.leaves(tau, u, 1.2, found.table)
+    # Rounding of integrations, which is some hundred times that of numbers.
+    assert np.allclose(own_time, expected[0], rtol=2e-13)
+    assert np.allclose(duration, expected[1], rtol=2e-13)
+    assert np.all(np.abs(gap - expected[2]) <= 1e-12 * duration * u)
+    assert np.all(np.abs(speed - expected[3]) <= 1e-12 * u)
+
+
+def test_slopes_are_those_of_the_integration(case):
+    found, tau, u = case
+    slopes, known = found.slopes(tau, u)
+    assert np.array_equal(known, found.knows(u)) and np.isnan(slopes[..., ~known]).all()
+    balls = Balls(found.ball, 1.2, 0 * tau, tau, u, found.table)
+    own_time = found.leaves(tau, u)[0]
+    given = tau[known], u[known], own_time[known]
+    expected = motions.slopes_of_contact(balls, *given)
+    # Differentiation of a polynomial of degree n multiplies rounding by up to n².
+    allowed = 15**2 * 1e-13 * np.maximum(np.abs(expected).max(axis=2, keepdims=True), 1.0)
+    assert np.all(np.abs(slopes[..., known] - expected) <= allowed)
+
+
+def test_slow_impacts_and_soft_contacts_are_integrated():
+    soft = impact_map(bb.tsuji(restitution=0.5, duration=3.0, speed=4.0), 1.2, SINE, 4.0)
+    assert soft.pieces == ()
+    assert not soft.knows(np.array([1.0])).any()
+
+
+def test_basins_are_those_of_the_integration(monkeypatch):
+    ball, table = BALLS["Tsuji"]
+    given = {"amplitude": 0.9, "starts": 6, "impacts": 300, "relative_velocity_max": 9.0}
+    monkeypatch.setattr(motions, "WORTH_A_MAP", 1)
+    by_map = bb.basins(ball, **given, table=table)
+    monkeypatch.setattr(motions, "WORTH_A_MAP", np.inf)
+    expected = bb.basins(ball, **given, table=table)
+    ends = ["end_phase", "end_velocity"]
+    assert by_map.drop_vars(ends).identical(expected.drop_vars(ends))
+    # The motions repeat to within NEAR.
+    assert np.allclose(by_map.end_velocity, expected.end_velocity, atol=1e-6, equal_nan=True)
+
+
+def test_balls_with_kinks_or_in_many_parameters_have_no_map():
+    tau = np.zeros(100)
+    kinked = bb.adams_impact_linear(stiffness=1e4, damping=10.0, depth=0.01)
+    several = bb.tsuji(stiffness=np.full(100, 1e4), damping=np.full(100, 0.1))
+    one = BALLS["Tsuji"][0]
+    rows = [Balls(ball, tau + 1.2, tau, tau, tau + 1.0) for ball in (kinked, several, one)]
+    assert [motions.is_worth_a_map(each, 2000) for each in rows] == [False, False, True]
+    assert not motions.is_worth_a_map(Balls(one, tau + np.arange(100), tau, tau, tau), 2000)
+    assert not motions.is_worth_a_map(rows[-1], 100)

@@ -12,6 +12,7 @@ import re
 import sys
 import tempfile
 from difflib import get_close_matches
+from functools import cache
 from pathlib import Path
 
 import yaml
@@ -45,7 +46,8 @@ def waits(path):
 def composed(file):
     """The YAML node of a configuration file, and the line on it if it has none.
 
-    The loader in Python is used, because its messages name the character or the alias.
+    The loader in Python reads what libyaml cannot, because its messages name the character or the
+    alias.
     """
     allowed = "allowed: a file; --configfile takes all names up to the next option"
     if waits(file):
@@ -57,7 +59,10 @@ def composed(file):
     text = content.decode("utf-8", errors="replace")
     try:
         content.decode("utf-8")
-        node = yaml.compose(text, yaml.SafeLoader)
+        try:
+            node = yaml.compose(text, LOADER)
+        except yaml.YAMLError:
+            node = yaml.compose(text, yaml.SafeLoader)
         if isinstance(node, yaml.MappingNode):
             # Tags and keys that YAML knows and a configuration cannot have.
             yaml.SafeLoader("").construct_document(node)
@@ -199,6 +204,7 @@ def repeated(node, keys=(), above=(), seen=None):
             yield from repeated(value, (*keys, key.value), (*above, node), seen)
 
 
+@cache
 def wrong(file):
     """A line for each mistake of a file by itself, without the schema."""
     node, line = composed(file)

@@ -51,11 +51,20 @@ def relative(path):
     return local(os.path.relpath(path))
 
 
+def statements(file):
+    """All statements of a Python file, without walking through their expressions."""
+    found = [ast.parse(file.read_bytes())]
+    for node in found:
+        for block in ("body", "orelse", "finalbody", "handlers", "cases"):
+            found += getattr(node, block, [])
+    return found
+
+
 @cache
 def imports(file):
     """The modules of SOURCES that a Python file imports itself, also within its functions."""
     names = set()
-    for node in ast.walk(ast.parse(file.read_bytes())):
+    for node in statements(file):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):

@@ -44,7 +44,8 @@ from pathlib import Path
 import pytest
 
 files = ["tests/test_pages.py", "tests/test_figures.py"]
-chosen = ["-q", "-p", "no:cacheprovider", "-k", "fig17 or elsewhere or every_figure"]
+chosen = ["-q", "--noconftest", "-p", "no:cacheprovider"]
+chosen += ["-k", "fig17 or elsewhere or every_figure"]
 assert pytest.main([*files, *chosen]) == 0
 for name in ("fig17", "elsewhere"):
     for path in Path("results/figures").glob(f"{name}.*"):

@@ -18,6 +18,7 @@ from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
     PERIODS,
+    WHOLE,
     ContactMotion,
     follow,
     load_of,
@@ -40,6 +41,9 @@ FIRST_PANEL = 0.4
 FACTOR, DEGREE = 8.0, 23
 """The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
 ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴."""
+
+FEW_WHOLE = 10
+"""So many contacts are followed in one panel each, which is faster only for few of them."""
 
 FEW = 8
 """So many intervals of a check may have a kink; if there are more, a force is not analytic."""
@@ -305,6 +309,29 @@ class ForceLaw(Ball):
             return None
         return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 
+    def free_push(self, u):
+        """F of free impacts of one ball over their lengths and speeds, about that at speeds u.
+
+        Its nodes are those of a whole contact in one panel, shape (nodes, rows).
+        """
+        number = np.floor(np.log(u) / np.log(FACTOR))
+        for k in set(number) - self._pushes.keys():
+            self._pushes[k] = self._free_push(FACTOR ** (k + 0.5))
+        return np.stack([self._pushes[k] for k in number], axis=-1)
+
+    def _free_push(self, u):
+        """The same for one free impact."""
+        given = {**self.values, "u": u}
+        T = float(self.free(np.array([u]))[0])
+        p, v = (-x for x in self.contact(0.0, u, T * WHOLE.nodes, 0.0, 0.0)[1:3])
+        lever = self.root * p ** (1 - 1 / self.root)
+        return -lever * self.force_at(p, v, 0.0, given) * T / u
+
+    @cached_property
+    def _pushes(self):
+        """What :meth:`free_push` has found, by the numbers of the ranges."""
+        return {}
+
     @cached_property
     def _ranges(self):
         """What :meth:`_range` has found, by the numbers of the ranges."""
@@ -388,6 +415,7 @@ class ForceLaw(Ball):
         u = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
         given["u"] = u
         period = np.full(rows.size, 2 * np.pi)
+        push = None
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
@@ -397,9 +425,11 @@ class ForceLaw(Ball):
             # So many panels are about the least that impacts need.
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
+            if self.root > 1 and 0 < rows.size <= FEW_WHOLE and not self.kinks and np.all(u > 0):
+                push = self._origin.free_push(u) * u / given["T"]
         limits = given.get("T"), rows.steps.get("T", none)
         q = np.atleast_2d(np.real(start))[0]
-        ends = follow(motion, q, u, by, first, period, *limits, longest)
+        ends = follow(motion, q, u, by, first, period, *limits, longest, push)
         s, q, v, t = rows.joined(*ends)
         values["table"] = table
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))

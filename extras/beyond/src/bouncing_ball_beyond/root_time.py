@@ -31,9 +31,6 @@ from scipy.optimize import elementwise
 
 from bouncing_ball_beyond.balls import H
 
-ORDER = 20
-"""Gauss nodes of a panel."""
-
 ROUGH = 1e-7
 """The largest last Legendre coefficients of v over its greatest value. The square is rounding."""
 
@@ -81,18 +78,30 @@ LISTED = ("tau", "u", "T")
 """What is an array for each contact, also where it is the same number for all."""
 
 
-def _gauss(n):
-    """Nodes on [0, 1], weights, integrals up to the nodes, and Legendre coefficients, of values."""
-    x, weights = legendre.leggauss(n)
-    coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
-    integrals = legendre.legval(x, legendre.legint(coefficients, lbnd=-1)).T
-    return (x + 1) / 2, weights / 2, integrals / 2, coefficients
+class Gauss(NamedTuple):
+    """Gauss nodes on [0, 1] and their weights.
+
+    ``integrals`` and ``coefficients`` are the matrices from values at the nodes to the integrals up
+    to the nodes and to the Legendre coefficients, and ``twice`` is the square of the former.
+    """
+
+    nodes: NDArray
+    weights: NDArray
+    integrals: NDArray
+    twice: NDArray
+    coefficients: NDArray
+
+    @classmethod
+    def of_order(cls, n):
+        """Those of n nodes."""
+        x, weights = legendre.leggauss(n)
+        coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
+        integrals = legendre.legval(x, legendre.legint(coefficients, lbnd=-1)).T / 2
+        return cls((x + 1) / 2, weights / 2, integrals, integrals @ integrals, coefficients)
 
 
-_NODES, _WEIGHTS, _INTEGRALS, _COEFFICIENTS = _gauss(ORDER)
-_TWICE = _INTEGRALS @ _INTEGRALS
-_LAST = _COEFFICIENTS[-2:]
-_MIDDLE = _COEFFICIENTS[ORDER // 2 : ORDER // 2 + 2]
+PANEL, WHOLE = Gauss.of_order(20), Gauss.of_order(64)
+"""The nodes of a panel, and those of a whole contact in one panel."""
 
 
 class Rows(NamedTuple):
@@ -164,6 +173,8 @@ class ContactMotion(NamedTuple):
         parameters, and what the force needs.
     steps : mapping
         Imaginary parts of what is given, arrays of the shape (directions, rows).
+    gauss : Gauss
+        The nodes of panels.
     """
 
     root: int
@@ -172,6 +183,7 @@ class ContactMotion(NamedTuple):
     kinks: tuple
     given: Mapping
     steps: Mapping
+    gauss: Gauss = PANEL
 
     def of(self, rows):
         """The motion of some of the contacts."""
@@ -239,10 +251,11 @@ class Panel(NamedTuple):
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
-    def pushed(self, share):
+    def pushed(self, share, gauss):
         """F at the nodes of the first part of each panel, by the polynomial that it is."""
-        coefficients = _COEFFICIENTS @ self.push
-        return legendre.legval(2 * share * _NODES[:, np.newaxis] - 1, coefficients, tensor=False)
+        coefficients = gauss.coefficients @ self.push
+        places = 2 * share * gauss.nodes[:, np.newaxis] - 1
+        return legendre.legval(places, coefficients, tensor=False)
 
     def replace_some(self, at, new):
         """Write other panels into these."""
@@ -263,10 +276,11 @@ class Linearised(NamedTuple):
     by_t: np.ndarray
     bend: np.ndarray
     h: np.ndarray
+    gauss: Gauss
 
     def integrated(self, values):
         """Integrals up to the nodes, of values at the nodes, shape (nodes, directions, rows)."""
-        flat = _INTEGRALS @ values.reshape(ORDER, -1)
+        flat = self.gauss.integrals @ values.reshape(len(values), -1)
         return self.h * flat.reshape(values.shape)
 
     def time(self, q):
@@ -281,9 +295,10 @@ class Linearised(NamedTuple):
         """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
         by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
         h = self.h[:, np.newaxis, np.newaxis]
-        twice = h * h * _TWICE
-        time = h * (_INTEGRALS @ (bend * twice))
-        matrix = np.eye(ORDER) - by_v * (h * _INTEGRALS) - by_q * twice - by_t * time
+        once = h * self.gauss.integrals
+        twice = h * h * self.gauss.twice
+        time = once @ (bend * twice)
+        matrix = np.eye(len(known)) - by_v * once - by_q * twice - by_t * time
         return np.linalg.solve(matrix, np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
 
     def swept(self, known):
@@ -318,12 +333,13 @@ def linearised(motion, nodes, h):
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
     by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
-    return Linearised(*(each[:, np.newaxis] for each in (by_q, by_v, by_t, bend)), h)
+    at_nodes = (each[:, np.newaxis] for each in (by_q, by_v, by_t, bend))
+    return Linearised(*at_nodes, h, motion.gauss)
 
 
-def _end_of(start, h, slopes):
+def _end_of(start, h, slopes, weights):
     """q, v and t at the ends of panels, from their derivatives with respect to s at the nodes."""
-    return tuple(y + h * (_WEIGHTS @ slope) for y, slope in zip(start, slopes, strict=True))
+    return tuple(y + h * (weights @ slope) for y, slope in zip(start, slopes, strict=True))
 
 
 def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=False):
@@ -336,15 +352,16 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
     sweep a step of Newton's method also moves the end of a panel towards its event.
     """
     q0, v0, t0 = start
-    v = v0 + h * (_INTEGRALS @ np.broadcast_to(push, (ORDER, v0.size)))
+    _, weights, integrals, *_ = motion.gauss
+    v = v0 + h * (integrals @ np.broadcast_to(push, (weights.size, v0.size)))
     blind = EARLY if np.ndim(push) == 0 and not newton else 0
     moved = 0.0
     early, change = np.zeros((2, v0.size))
     near = True
     for sweep in range(SWEEPS):
-        q = q0 + h * (_INTEGRALS @ v)
+        q = q0 + h * (integrals @ v)
         lever = motion.lever(q)
-        t = t0 + h * (_INTEGRALS @ lever)
+        t = t0 + h * (integrals @ lever)
         a = load_of(t, motion.given)
         force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
@@ -352,7 +369,7 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
             force = push + linearised(motion, (q, v, t), h).solved(missing)[:, 0]
         push = force
         before = v
-        v = v0 + h * (_INTEGRALS @ push)
+        v = v0 + h * (integrals @ push)
         if sweep < blind:
             continue
         earlier = change
@@ -360,7 +377,7 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
         if sweep == EARLY and not newton:
             early = change
         if event:
-            end = _end_of(start, h, (v, push, lever))
+            end = _end_of(start, h, (v, push, lever), weights)
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
             near = np.abs(moved) <= within
@@ -370,11 +387,11 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
             break
         if event:
             h = h + moved
-            v = v0 + h * (_INTEGRALS @ push)
-    q = q0 + h * (_INTEGRALS @ v)
+            v = v0 + h * (integrals @ push)
+    q = q0 + h * (integrals @ v)
     lever = motion.lever(q)
-    t = t0 + h * (_INTEGRALS @ lever)
-    end = _end_of(start, h, (v, push, lever))
+    t = t0 + h * (integrals @ lever)
+    end = _end_of(start, h, (v, push, lever), weights)
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
     return Panel((q, v, t), end, push, h + moved, early, np.where(near, left, np.inf))
@@ -387,7 +404,7 @@ def carried(motion, nodes, by, h, *, newton):
     """
     linear = linearised(motion, nodes, h)
     q0, v0, t0 = by
-    alone = q0 + h * _NODES[:, np.newaxis, np.newaxis] * v0
+    alone = q0 + h * motion.gauss.nodes[:, np.newaxis, np.newaxis] * v0
     # Of what is given, τ alone is felt as the time is.
     known = linear.felt(alone, v0, t0 + motion.steps.get("tau", 0.0) + linear.time(alone))
     if motion.steps.keys() - {"tau", "T"}:
@@ -403,17 +420,21 @@ def carried(motion, nodes, by, h, *, newton):
     push[:, moves] = (linear.solved if few else linear.swept)(known[:, moves])
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
-    return by + np.array([h * np.tensordot(_WEIGHTS, each, 1) for each in (rate, push, pace)])
+    weights = motion.gauss.weights
+    return by + np.array([h * np.tensordot(weights, each, 1) for each in (rate, push, pace)])
 
 
-def _resolved(panel, size):
+def _resolved(panel, size, gauss):
     """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale."""
     v = panel.nodes[1]
-    last = np.abs(_LAST @ v).max(0) / size
-    falls = last <= FALLING * np.abs(_MIDDLE @ v).max(0) / size
+    order = len(v)
+    last, middle = (
+        np.abs(gauss.coefficients[k : k + 2] @ v).max(0) / size for k in (order - 2, order // 2)
+    )
+    falls = last <= FALLING * middle
     smooth = (last <= ROUGH) & falls | (last <= SMOOTH)
     good = smooth & (panel.change <= SETTLED * size)
-    by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / ORDER)
+    by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / order)
     by_sweeps = (WANTED * size / np.maximum(panel.early, TINY)) ** (1 / (2 * EARLY + 2))
     factor = 0.9 * np.minimum(by_tail, by_sweeps)
     factor = np.where(np.isfinite(factor), np.clip(factor, 0.25, LONGER), 0.25)
@@ -429,7 +450,7 @@ def _first_event(motion, events, side, start, panel):
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     which = np.full(start[0].size, -1)
     place = np.full(start[0].size, np.inf)
-    x = np.concatenate([[0.0], _NODES, [1.0]])
+    x = np.concatenate([[0.0], motion.gauss.nodes, [1.0]])
     for k, event in enumerate(events):
         values = event(*states, motion.given)
         if k < len(motion.kinks):
@@ -464,13 +485,13 @@ def _maxima(motion, event, before, states):
     node, row = np.nonzero(near)
     if not row.size:
         return row, np.zeros(0)
-    polynomials = [_COEFFICIENTS @ y[1:-1, row] for y in states]
+    polynomials = [motion.gauss.coefficients @ y[1:-1, row] for y in states]
 
     def depth(place, k):
         state = (legendre.legval(2 * place - 1, y[:, k], tensor=False) for y in polynomials)
         return before[row[k]] * event(*state, motion.of(row[k]).given)
 
-    x = np.concatenate([[0.0], _NODES, [1.0]])
+    x = np.concatenate([[0.0], motion.gauss.nodes, [1.0]])
     bracket = x[node], x[node + 1], x[node + 2]
     found = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
     # Inside a panel the motion is only as right as the last coefficients are small.
@@ -500,9 +521,9 @@ def _pace(motion, state):
     return np.array([np.ones_like(state[0]), *rates(motion, state)])[:, np.newaxis]
 
 
-def _next_panel(motion, events, side, start, length, newton):
+def _next_panel(motion, events, side, start, length, newton, push=0.0):
     """The next panels, which end at their first events, and these, -1 if none. Writes ``side``."""
-    panel = solve_panel(motion, start, length, newton=newton)
+    panel = solve_panel(motion, start, length, push=push, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
     rows = np.arange(which.size)
     found = which
@@ -513,7 +534,7 @@ def _next_panel(motion, events, side, start, length, newton):
             begin = [y[at] for y in start]
             short = place[found == k]
             within = NEAR * length[at]
-            push = panel.of(at).pushed(short / panel.length[at])
+            push = panel.of(at).pushed(short / panel.length[at], motion.gauss)
             given = motion.of(at), begin, short, events[k], within
             panel.replace_some(at, solve_panel(*given, push=push, newton=newton))
         which[rows[found >= 0]] = found[found >= 0]
@@ -562,8 +583,11 @@ class _Contacts:
     ended: NDArray
     lost: NDArray
 
-    def advance(self, here, lies):
-        """Move some contacts to the ends of their next panels, or make these shorter."""
+    def advance(self, here, lies, push=0.0):
+        """Move some contacts to the ends of their next panels, or make these shorter.
+
+        ``push`` is a guess of F on whole contacts.
+        """
         motion = self.motion.of(here)
         s, *start = self.now[:, here]
         length = self.length[here]
@@ -574,12 +598,13 @@ class _Contacts:
             length = left / pieces
             last = pieces == 1
         side = self.side[:, here]
-        newton = lies or (motion.root == 1 and here.size <= FEW_CONTACTS)
-        panel, which = _next_panel(motion, self.events, side, start, length, newton)
+        few = motion.root == 1 and here.size <= FEW_CONTACTS
+        newton = lies or few or motion.gauss is WHOLE
+        panel, which = _next_panel(motion, self.events, side, start, length, newton, push)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         least = CALM if lies else 1.0
-        good, factor = _resolved(panel, np.fmax(least * self.size[1, here], greatest))
+        good, factor = _resolved(panel, np.fmax(least * self.size[1, here], greatest), motion.gauss)
         # The end of a shorter panel shows whether there is an event.
         place = _first_maximum(motion, self.events, side, start, panel)
         doubtful = good & (place < 1)
@@ -626,7 +651,7 @@ class _Contacts:
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=PERIODS):
+def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=PERIODS, push=None):
     """Contacts from their starts to the first releases, or to root times.
 
     A contact is permanent if its motion repeats after a period, or if it lasts too long.
@@ -643,6 +668,9 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=P
         Root times at which contacts are left, and their derivatives.
     longest : int or array, shape (rows,)
         A contact that lasts for so many periods is taken for a permanent one.
+    push : array, shape (nodes, rows), optional
+        A guess of F at the nodes of :data:`WHOLE`, up to the root times. Contacts that Newton's
+        method finds from it, in one panel, are followed no further.
 
     Returns
     -------
@@ -671,6 +699,12 @@ def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=P
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )
+    if push is not None:
+        contacts.motion = motion._replace(gauss=WHOLE)
+        contacts.length = until.copy()
+        contacts.advance(np.arange(rows), lies=False, push=push)
+        contacts.motion = motion
+        contacts.length = length.copy()
     for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:

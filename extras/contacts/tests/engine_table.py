@@ -1,15 +1,17 @@
 """Designs beside what their engines do: ``python tests/engine_table.py [ENGINE]...``.
 
-It prints two tables, without friction and with it, and names engines that are not installed; those
-of all engines are written into docs/validation.md. The exit status is 1 if a design differs.
+It prints two tables, without friction and with it, and writes them into docs/validation.md, where
+rows of other engines and of those that are not installed stay as they are. The exit status is 1 if
+a design differs.
 """
 
 import math
+import re
 import sys
 
 import engine_runs
 import numpy as np
-from engine_page import write
+from engine_page import said, write
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
@@ -212,8 +214,14 @@ HEAD = [
 ]
 
 
+def label(name, shape, wanted, more):
+    """Return the first two cells of a row: the engine, and what is given."""
+    given = ", ".join(map(str, wanted.values()))
+    return [f"{name}, {shape}", given + "".join(f", {key}" for key in more)]
+
+
 def cells(name, shape, wanted, time_step, more, friction):
-    """Return the cells of a row of the table, and whether the engine agrees."""
+    """Return the further cells of a row of the table, and whether the engine agrees."""
     found = design(Bounce(**wanted, friction=friction), name, time_step, **more)
     outcome = found.row.outcome
     problem = Problem(found.bounce, engine_named(name), found.one_body)
@@ -225,9 +233,7 @@ def cells(name, shape, wanted, time_step, more, friction):
     wider = problem.promised(here) if slide else (low, high)
     measured = engine_runs.measure(found, shape, slide)
     at_least, at_most = measured.restitution
-    given = ", ".join(str(value) for value in wanted.values())
-    texts = [f"{name}, {shape}", given + "".join(f", {key}" for key in more)]
-    texts += [
+    texts = [
         f"{found.row.step * 1e3:.4g} ms",
         f"{outcome.restitution[0]:.4f} to {outcome.restitution[2]:.4f}",
         f"{low:.4f} to {high:.4f}",
@@ -254,40 +260,52 @@ def cells(name, shape, wanted, time_step, more, friction):
     return texts, agrees
 
 
-def table(cases, friction):
-    """Return the lines of a table, how many of its designs agree, and how many were run."""
+def table(cases, friction, engines, earlier):
+    """Return the lines of a table, and how many of its designs differ.
+
+    The rows of other ``engines`` are those of an ``earlier`` table, by their first cells.
+    """
     lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
     agreed = 0
-    missing = {}
-    for case in cases:
+    run = 0
+    kept = set()
+    for name, shape, wanted, time_step, more in cases:
+        start = "| " + " | ".join(label(name, shape, wanted, more)) + " | "
         try:
-            texts, agrees = cells(*case, friction)
-        except ImportError as error:
-            missing.setdefault(case[0], []).append(error.name)
+            if engines and name not in engines:
+                raise ImportError(name=name)
+            texts, agrees = cells(name, shape, wanted, time_step, more, friction)
+        except ImportError:
+            lines += [line for line in earlier if line.startswith(start)]
+            kept.add(name)
             continue
+        run += 1
         agreed += agrees
         mark = "" if agrees else " (differs)"
-        lines.append("| " + " | ".join(texts) + mark + " |")
+        lines.append(start + " | ".join(texts) + mark + " |")
         print(lines[-1], flush=True)
-    run = len(cases) - sum(map(len, missing.values()))
-    said = f"{agreed} of {run} designs agree with their engines."
-    if missing:
-        counts = ", ".join(f"{name} ({len(each)})" for name, each in missing.items())
-        said += f" Not run, because they are not installed: {counts}."
-    print(said)
-    return [said, "", *lines], agreed, run
+    print(f"{agreed} of {run} designs agree; not run: {', '.join(sorted(kept)) or 'none'}.")
+    rows = lines[2:]
+    differ = sum("(differs)" in row for row in rows)
+    summary = f"{len(rows) - differ} of {len(rows)} designs agree with their engines."
+    absent = len(cases) - len(rows)
+    if absent:
+        names = sorted({case[0] for case in cases if not any(f"| {case[0]}," in r for r in rows)})
+        summary += f" Not run: {absent}, of {', '.join(names)}."
+    return [summary, "", *lines], run - agreed
 
 
 def main():
-    wanted = sys.argv[1:]
-    cases = [case for case in CASES if not wanted or case[0] in wanted]
-    lines, agreed, run = table(cases, 0.0)
-    rubbed = [case for case in cases if case[0] not in SMOOTH]
-    with_friction, also_agreed, also_run = table(rubbed, FRICTION)
-    if not wanted:
-        page = ["## Designs", "", DESIGNS, "", *lines, "", RUBBED, "", *with_friction]
-        write("designs", page)
-    sys.exit(1 if agreed + also_agreed < run + also_run else 0)
+    engines = sys.argv[1:]
+    # The rows of both tables on the page: the second one has the same designs with friction.
+    (rubbed,) = said(f"^{re.escape(RUBBED)}$") or [None]
+    rows = said("^(?:The same at a friction.*|\\| .*)$")
+    where = rows.index(rubbed) if rubbed else len(rows)
+    lines, wrong = table(CASES, 0.0, engines, rows[:where])
+    cases = [case for case in CASES if case[0] not in SMOOTH]
+    with_friction, also_wrong = table(cases, FRICTION, engines, rows[where:])
+    write("designs", ["## Designs", "", DESIGNS, "", *lines, "", RUBBED, "", *with_friction])
+    sys.exit(1 if wrong + also_wrong else 0)
 
 
 if __name__ == "__main__":

@@ -27,6 +27,9 @@ REGISTRY = pint.UnitRegistry()
         ("2.5 kN/mm", "N/m", 2.5e6),
         ("−3", "s", -3.0),
         ("3 mN/m", "N/m", 3e-3),
+        ("7.8 g/cm3", "kg/m^3", 7800.0),
+        ("1100 kg/m3", "kg/m^3", 1100.0),
+        ("1.62 m/s2", "m/s^2", 1.62),
         (REGISTRY.Quantity(5, "cm"), "m", 0.05),
     ],
 )

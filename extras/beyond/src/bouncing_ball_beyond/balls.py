@@ -63,12 +63,14 @@ class Ball:
     sinks: ClassVar[bool] = False
     """Whether impacts are instants below the level of the table, which stand for contacts."""
 
-    integrated: ClassVar[bool] = False
-    """Whether contacts are integrated, and end analytically in their start."""
-
     @property
     def simple(self) -> bool:
         """Whether its impacts are those of a restitution coefficient that is a number."""
+        return False
+
+    @property
+    def integrated(self) -> bool:
+        """Whether contacts are integrated, and end analytically in their start."""
         return False
 
     @property

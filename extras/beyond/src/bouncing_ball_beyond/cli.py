@@ -87,7 +87,7 @@ def main(arguments: list[str] | None = None) -> None:
 def with_options(*options: Callable) -> Callable:
     """A decorator for several options, in their order."""
 
-    def decorate(function):
+    def decorate(function: Callable) -> Callable:
         for option in reversed(options):
             function = option(function)
         return function
@@ -157,7 +157,7 @@ def with_table(function: Callable) -> Callable:
     """A command with the options of a waveform, which gets the table in their place."""
 
     @wraps(function)
-    def command(harmonics, samples, highest_harmonic, **others):
+    def command(harmonics: Any, samples: Any, highest_harmonic: int | None, **others: Any) -> None:
         from bouncing_ball_beyond.tables import SINE
 
         if harmonics and samples:
@@ -194,8 +194,15 @@ def with_ball(function: Callable) -> Callable:
 
     @wraps(function)
     def command(
-        restitution, frequency_ratio, damping_ratio, release, law, settings, corrected, **others
-    ):
+        restitution: Any,
+        frequency_ratio: Any,
+        damping_ratio: Any,
+        release: str,
+        law: str | None,
+        settings: Any,
+        corrected: bool,
+        **others: Any,
+    ) -> None:
         if settings and law is None:
             raise ValueError("settings: --set gives the parameters of a --law, and there is none")
         if law is not None:
@@ -231,7 +238,18 @@ def with_branch(function: Callable) -> Callable:
     """A command that gets a branch, in place of the options of a ball, an orbit and a parameter."""
 
     @wraps(function)
-    def command(ball, table, amplitude, n, phase, velocity, along, to, doublings, **others):
+    def command(
+        ball: Any,
+        table: Any,
+        amplitude: float,
+        n: int,
+        phase: float | None,
+        velocity: float | None,
+        along: Any,
+        to: Any,
+        doublings: Any,
+        **others: Any,
+    ) -> None:
         motion = given(phase, velocity)
         known = {"amplitude": amplitude, "table": table}
         if motion:
@@ -291,7 +309,7 @@ def in_columns(head: list[str], columns: list[dict[str, str]]) -> str:
     help="Side of the saddle-node.",
 )
 @DATA
-def orbit(ball, output, **known):
+def orbit(ball: Any, output: str | None, **known: Any) -> None:
     """The n-T orbit, with one impact in n periods of the table."""
     found = bb.orbit(ball, **known)
     click.echo(found)
@@ -302,7 +320,7 @@ def orbit(ball, output, **known):
 @with_ball
 @N
 @DATA
-def limits(ball, table, n, output):
+def limits(ball: Any, table: Any, n: int, output: str | None) -> None:
     """The saddle-node and the period doubling of n-T orbits."""
     found = list(bb.limits(ball, n=n, table=table))
     for special in found:
@@ -313,7 +331,7 @@ def limits(ball, table, n, output):
 @commands.command()
 @with_branch
 @DRAWN
-def follow(branch, output):
+def follow(branch: Any, output: str | None) -> None:
     """A branch of orbits along a parameter, with its special orbits."""
     click.echo(branch)
     write(branch, output)
@@ -327,7 +345,7 @@ def follow(branch, output):
     "--range", "ranges", type=(str, float, float), multiple=True, help="NAME LOW HIGH of the curve."
 )
 @DRAWN
-def follow_special(branch, kind, across, ranges, output):
+def follow_special(branch: Any, kind: str, across: str, ranges: Any, output: str | None) -> None:
     """The curve in two parameters of the first special orbit of a kind on a branch."""
     found = bb.special_curve(
         branch.first(kind),
@@ -343,7 +361,7 @@ def follow_special(branch, kind, across, ranges, output):
 @AMPLITUDE
 @START
 @click.option("--impacts", type=int, default=2000, show_default=True, help="Followed at most.")
-def motion(ball, phase, velocity, **known):
+def motion(ball: Any, phase: float | None, velocity: float | None, **known: Any) -> None:
     """The motion on which a ball ends."""
     found = bb.motion_of(ball, **known, **given(phase, velocity))
     for name, value in found.items():
@@ -355,20 +373,22 @@ def motion(ball, phase, velocity, **known):
 @click.option("--amplitude", type=(float, float), required=True, help="First and last Λ.")
 @click.option("--points", type=int, default=300, show_default=True, help="Number of amplitudes.")
 @DRAWN
-def diagram(ball, table, amplitude, points, output):
+def diagram(ball: Any, table: Any, amplitude: Any, points: int, output: str | None) -> None:
     """The motions on which balls end, over the amplitude, each with its share of the starts."""
     import numpy as np
 
-    found = bb.orbit_diagram(ball, amplitude=np.linspace(*amplitude, points), table=table)
+    low, high = amplitude
+    found = bb.orbit_diagram(ball, amplitude=np.linspace(low, high, points), table=table)
     motions = found[["kind", "periods", "impacts"]].to_dataframe()
     click.echo(motions.groupby("amplitude").value_counts(normalize=True).to_string())
     if output is not None and output.endswith(PICTURES):
         from matplotlib.figure import Figure
 
-        axes = Figure(layout="tight").subplots()
+        figure = Figure(layout="tight")
+        axes = figure.subplots()
         dots = {"s": 1, "c": "black", "edgecolors": "none"}
         found.plot.scatter(x="amplitude", y="impact_phase", ax=axes, **dots)
-        axes.figure.savefig(output)
+        figure.savefig(output)
     else:
         write(found, output)
 
@@ -379,7 +399,9 @@ def diagram(ball, table, amplitude, points, output):
 @START
 @click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
 @DATA
-def impacts_after(ball, phase, velocity, output, **known):
+def impacts_after(
+    ball: Any, phase: float | None, velocity: float | None, output: str | None, **known: Any
+) -> None:
     """The impacts that follow a given one."""
     found = bb.simulate(ball, **known, **given(phase, velocity))
     click.echo(found.to_dataframe().to_string())
@@ -391,7 +413,7 @@ def impacts_after(ball, phase, velocity, output, **known):
 @AMPLITUDE
 @N
 @click.option("--tolerance", type=float, default=0.01, show_default=True, help="Largest error.")
-def needed_ratios(ball, **known):
+def needed_ratios(ball: Any, **known: Any) -> None:
     """From which stiffness on simple models are good enough.
 
     The answer is ϖ for a contact with a spring and a damper, also if only r is given. For another
@@ -429,7 +451,7 @@ def _judged(ball: Any) -> tuple[Any, dict[str, Any]]:
 @with_ball
 @AMPLITUDE
 @N
-def error_law(ball, **known):
+def error_law(ball: Any, **known: Any) -> None:
     """Errors of the restitution model on a contact, by the error law and exactly.
 
     With --corrected, also those of this model.
@@ -461,6 +483,6 @@ def error_law(ball, **known):
 @N
 @click.option("--tolerance", default="1 %", show_default=True, help="Of the greatest height.")
 @with_table
-def shaker(**quantities):
+def shaker(**quantities: Any) -> None:
     """Whether a restitution coefficient is good enough for a ball on a shaker, with units."""
     click.echo(bb.on_shaker(**quantities))

@@ -607,7 +607,7 @@ class Limits(NamedTuple):
         return "Limits: {}; {}".format(*places)
 
 
-def limits(ball: Ball, *, n=1, table: Table = SINE):
+def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     """The saddle-node and the period doubling of the n-T orbits of a ball.
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
@@ -651,7 +651,7 @@ def limits(ball: Ball, *, n=1, table: Table = SINE):
     return found if shape else found[0]
 
 
-def _limit(special, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
+def _limit(special: Sequence, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
     """The first special orbit of a kind, or the reason why there is none: how the branch ends."""
     of_kind = (each for each in special if each.kind == kind)
     return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))

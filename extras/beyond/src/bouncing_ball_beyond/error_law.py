@@ -19,7 +19,7 @@ The proof is in appendix.md, and docs/error-law.md says how good the law is.
 """
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -32,7 +32,7 @@ from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import guess_of_instants, rows_of
 from bouncing_ball_beyond.special_orbits import special_near
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.tables import SINE, Table, Values
 
 QUANTITIES = (
     "max_height",
@@ -346,14 +346,16 @@ def law_thresholds(
     return found
 
 
-def _first_stretch(impact, amplitude, tolerance, name, table) -> NDArray:
+def _first_stretch(
+    impact: Any, amplitude: Values, tolerance: float, name: str, table: Table
+) -> NDArray:
     """The stretch γ at which an error on any table first leaves the tolerance, by 200 samples."""
     with np.errstate(invalid="ignore", divide="ignore"):
         end = (impact.line + np.copysign(amplitude * table.slope, impact.shift)) / impact.shift
     end = np.fmin(end * (1 - 1e-9), 4 * np.pi / impact.duration)
     shares = np.linspace(0, 1, 201)[1:].reshape(-1, *(1 for _ in np.shape(end)))
 
-    def excess(stretch):
+    def excess(stretch: Values) -> Values:
         errors = law_errors(impact.stretched(stretch), amplitude=amplitude, table=table)
         return np.abs(errors[name]) - tolerance
 
@@ -370,13 +372,13 @@ def _first_stretch(impact, amplitude, tolerance, name, table) -> NDArray:
     return high
 
 
-def _longest(impact, amplitude, tolerance, name, turn) -> NDArray:
+def _longest(impact: Any, amplitude: Values, tolerance: float, name: str, turn: Values) -> NDArray:
     """The stretch γ up to which a concave error is within the tolerance.
 
     ``turn`` is the value of C - s at which the error is largest.
     """
 
-    def error(stretch, amplitude, *fields):
+    def error(stretch: Values, amplitude: Values, *fields: NDArray) -> Values:
         return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude)[name]
 
     shift = impact.shift
@@ -684,7 +686,7 @@ def error_thresholds(
     found = {}
     for names in filter(None, [together, *([name] for name in alone)]):
 
-        def excess(logarithms, places, names=names):
+        def excess(logarithms: Values, places: Values, names: Any = names) -> Values:
             # The ratios of all rows, because a path may depend on the place in an array.
             ratio = np.full((len(logarithms), len(names), *shape), float(high))
             rows = ratio.reshape(len(logarithms), -1)

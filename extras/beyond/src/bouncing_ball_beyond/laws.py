@@ -8,10 +8,11 @@ where the force vanishes, so that it never pulls at the ball. The laws that have
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev, legendre
+from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief, broadcast_named
 from bouncing_ball_beyond.one_ball import SLOWEST
@@ -24,7 +25,7 @@ from bouncing_ball_beyond.root_time import (
     load_of,
     values_by_row,
 )
-from bouncing_ball_beyond.tables import SINE
+from bouncing_ball_beyond.tables import SINE, Table, Values
 
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
 """Names that parameters must not have."""
@@ -114,7 +115,7 @@ class ForceLaw(Ball):
 
     lasts: ClassVar[bool] = True
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
         if self.root != 1 and (self.root < 1 or self.root % 2):
@@ -132,12 +133,12 @@ class ForceLaw(Ball):
             raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
         check_force(self)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         values = ", ".join(f"{name}={value}" for name, value in self.values.items())
         return f"{self.force.__name__.lstrip('_')}({values})"
 
     @property
-    def known_units(self):
+    def known_units(self) -> Mapping:
         """The units of all parameters; ValueError in one line if some are not given."""
         for name in self.values:
             if name not in self.units:
@@ -148,11 +149,11 @@ class ForceLaw(Ball):
         return self.units
 
     @property
-    def parameters(self):
+    def parameters(self) -> dict[str, Values]:
         """Names and values of the parameters of the force."""
         return dict(self.values)
 
-    def at(self, **values):
+    def at(self, **values: Any) -> Any:
         """The same law with other values of parameters, which are not checked."""
         unknown = values.keys() - self.values.keys()
         if unknown:
@@ -168,14 +169,14 @@ class ForceLaw(Ball):
         return new
 
     @cached_property
-    def _origin(self):
+    def _origin(self) -> Any:
         """The law of one ball from which `at` has made this one, or one of its own balls."""
         arrays = {name: np.ravel(x)[0] for name, x in self.values.items() if np.ndim(x)}
         return replace(self, values={**self.values, **arrays}) if arrays else self
 
     @cached_property
     @np.errstate(all="ignore")
-    def _scales(self):
+    def _scales(self) -> NDArray | None:
         """Units of length and time in which the force is that of the origin; None if none are.
 
         If possible they change together, which leaves speeds as they are.
@@ -204,17 +205,17 @@ class ForceLaw(Ball):
         return None
 
     @property
-    def integrated(self):
+    def integrated(self) -> bool:
         """Whether the force has no kinks."""
         return not self.kinks
 
     @property
-    def kappa(self):
+    def kappa(self) -> Values:
         """κ of a release where p + κp′ = 0; 0 for other releases."""
         return self.lag(**self.values) if self.lag else 0.0
 
     @property
-    def frequency_powers(self):
+    def frequency_powers(self) -> dict[str, Any]:
         """Powers of Ω to which parameters are proportional for one contact, by their units.
 
         Lengths are measured in g/Ω² and times in 1/Ω.
@@ -222,7 +223,7 @@ class ForceLaw(Ball):
         powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
 
-    def at_ratio(self, n=1):
+    def at_ratio(self, n: Values = 1) -> Callable:
         """The function from a number in the place of ϖ to the law with another stiffness."""
         # The error law needs this module.
         from bouncing_ball_beyond.error_law import free_impact
@@ -235,30 +236,48 @@ class ForceLaw(Ball):
             **{name: self.values[name] * (share / ratio) ** powers[name] for name in powers}
         )
 
-    def in_si(self, mass, length, time):
+    def in_si(self, mass: Values, length: Values, time: Values) -> dict[str, Values]:
         """The parameters in SI units: ``mass`` in kg, the units of length in m and of time in s."""
         return {
             name: self.values[name] * mass**of_mass * length**of_length * time**of_time
             for name, (of_mass, of_length, of_time) in self.known_units.items()
         }
 
-    def contact(self, tau, u, T, amplitude, gravity=1.0, table=SINE):
+    def contact(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        table: Table = SINE,
+    ) -> Impact:
         """The state of the contact at the root time T, with its release function."""
         return self._followed(tau, u, amplitude, gravity, T, table=table)[1]
 
-    def first_release(self, tau, u, amplitude, gravity=1.0, periods=PERIODS, table=SINE):
+    def first_release(
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        periods: Values = PERIODS,
+        table: Table = SINE,
+    ) -> Values:
         """T of the first releases; NaN for balls that stay in contact for so many periods."""
         return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)[0]
 
-    def first_impact(self, tau, u, amplitude, gravity=1.0, table=SINE):
+    def first_impact(
+        self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
+    ) -> tuple[Values, Impact]:
         """T of the first releases, and the impacts."""
         return self._followed(tau, u, amplitude, gravity, table=table)
 
-    def free(self, u):
+    def free(self, u: Values) -> Values:
         """T of free impacts, without a table and gravity."""
         return self._followed(0.0, u, 0.0, 0.0)[0]
 
-    def signature(self, u):
+    def signature(self, u: Values) -> Signature:
         """r, D, t_c and σ of free impacts.
 
         Those of balls whose laws differ by the units of length and time alone are those of one law.
@@ -274,7 +293,7 @@ class ForceLaw(Ball):
             found = found + 1j * known[4:] * (u.imag / u.real)
         return Signature(found[0], *(time * each for each in found[1:]))
 
-    def known_signature(self, u):
+    def known_signature(self, u: Values) -> NDArray:
         """The signature of one ball and u d/du of it at real speeds, shape (8, ...).
 
         A law without kinks interpolates them in ln u by polynomials, on ranges of a factor of
@@ -289,19 +308,20 @@ class ForceLaw(Ball):
             at = number == k
             if k not in self._ranges:
                 self._ranges[k] = self._range(k)
-            if self._ranges[k] is None:
+            coefficients = self._ranges[k]
+            if coefficients is None:
                 found[:, at] = self._computed(u[at])
             else:
                 x = 2 * (np.log(u[at]) / np.log(FACTOR) - k) - 1
-                found[:, at] = chebyshev.chebval(x, self._ranges[k])
+                found[:, at] = chebyshev.chebval(x, coefficients)
         return found
 
-    def _computed(self, u):
+    def _computed(self, u: Values) -> NDArray:
         """As :meth:`known_signature`, by free impacts at each speed."""
         values = np.array(self.computed_signature(u * (1 + 1j * H)))
         return np.concatenate([values.real, values.imag / H])
 
-    def _range(self, number):
+    def _range(self, number: float) -> NDArray | None:
         """Coefficients of :meth:`known_signature` in a range; None if impacts do not end."""
         points = chebyshev.chebpts1(DEGREE + 1)
         speeds = FACTOR ** (number + (points + 1) / 2)
@@ -309,7 +329,7 @@ class ForceLaw(Ball):
             return None
         return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 
-    def free_push(self, u):
+    def free_push(self, u: Values) -> NDArray:
         """F of free impacts of one ball over their lengths and speeds, about that at speeds u.
 
         Its nodes are those of a whole contact in one panel, shape (nodes, rows).
@@ -319,7 +339,7 @@ class ForceLaw(Ball):
             self._pushes[k] = self._free_push(FACTOR ** (k + 0.5))
         return np.stack([self._pushes[k] for k in number], axis=-1)
 
-    def _free_push(self, u):
+    def _free_push(self, u: Values) -> NDArray:
         """The same for one free impact."""
         given = {**self.values, "u": u}
         T = float(self.free(np.array([u]))[0])
@@ -328,17 +348,17 @@ class ForceLaw(Ball):
         return -lever * self.force_at(p, v, 0.0, given) * T / u
 
     @cached_property
-    def _pushes(self):
+    def _pushes(self) -> dict[float, NDArray]:
         """What :meth:`free_push` has found, by the numbers of the ranges."""
         return {}
 
     @cached_property
-    def _ranges(self):
+    def _ranges(self) -> dict[float, NDArray | None]:
         """What :meth:`_range` has found, by the numbers of the ranges."""
         return {}
 
     @np.errstate(invalid="ignore")
-    def computed_signature(self, u):
+    def computed_signature(self, u: Values) -> Signature:
         """As :meth:`signature`, by free impacts at each speed and parameter.
 
         The impulse J = u + w + aD of an impact of the speed u under a constant load a gives
@@ -359,7 +379,7 @@ class ForceLaw(Ball):
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
-    def depth(self, u):
+    def depth(self, u: Values) -> Values:
         """About the depth P at which the force would stop a ball: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
@@ -372,16 +392,16 @@ class ForceLaw(Ball):
             low = np.where(soft, low + width, low)
         return np.exp(low)
 
-    def force_at(self, p, v, a, given):
+    def force_at(self, p: Values, v: Values, a: Values, given: Mapping) -> Values:
         """f under the load a, with the parameters and the speed u at the start from ``given``."""
         more = {"load": a, "start_speed": given["u"]}
         return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
 
-    def own(self, given):
+    def own(self, given: Mapping) -> dict[str, Values]:
         """The parameters of the law among what is given."""
         return {name: given[name] for name in self.values}
 
-    def _release(self, q, v, t, given):
+    def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
         """The release function: -q, or (-κp′)^{1/m} - q, or -f."""
         if self.release == "displacement":
             return -q
@@ -390,7 +410,16 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(self, tau, u, amplitude, gravity, T=None, longest=PERIODS, table=SINE):
+    def _followed(
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values,
+        T: Values = None,
+        longest: Values = PERIODS,
+        table: Table = SINE,
+    ) -> tuple[Values, Impact]:
         """The root time and the state at the root time T or at the first release."""
         values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         values |= table.parameters
@@ -435,7 +464,7 @@ class ForceLaw(Ball):
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
 
 
-def check_force(law):
+def check_force(law: ForceLaw) -> None:
     """Raise ValueError, in one line, unless a force is as :class:`ForceLaw` describes it.
 
     Along lines of constant rates and of constant depths, the change of the force between neighbours
@@ -450,7 +479,7 @@ def check_force(law):
         _check_one(law.at(**given), given)
 
 
-def _check_one(law, given):
+def _check_one(law: ForceLaw, given: dict) -> None:
     """Check the force of one ball, whose parameters are given."""
     depth = _depth_of_one(law)
     depths = depth * np.geomspace(1e-3, 30.0, 321)
@@ -464,7 +493,7 @@ def _check_one(law, given):
         _check_root(law, given, depth)
 
 
-def _depth_of_one(law):
+def _depth_of_one(law: ForceLaw) -> float:
     """The depth at which a ball of the speed 1 is stopped; ValueError if there is none."""
     p = np.array([0.5, 1.0]) + 1j * H
     try:
@@ -484,15 +513,17 @@ def _depth_of_one(law):
     return depth
 
 
-def _check_line(law, given, name, x, place):
+def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Callable) -> None:
     """Compare the changes of the force between points x of lines with integrals of its slopes."""
     nodes, weights = legendre.leggauss(4)
     width = np.diff(x)
     inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
-    slopes = law.force_at(*place(inner.ravel() + 1j * H), 1.0, given).imag / H
+    p, v = place(inner.ravel() + 1j * H)
+    slopes = law.force_at(p, v, 1.0, given).imag / H
     expected = slopes.reshape(-1, *inner.shape) @ weights / 2 * width
     points = place(x)
-    values = law.force_at(*points, 1.0, given)
+    p, v = points
+    values = law.force_at(p, v, 1.0, given)
     change = np.diff(values)
     # The quadrature of p^{1/4} between neighbours is wrong by 1e-11 of it.
     wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * np.abs(values[:, 1:])
@@ -515,7 +546,7 @@ def _check_line(law, given, name, x, place):
     )
 
 
-def _check_root(law, given, depth):
+def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:
     """Whether the force is an analytic function of q = p^{1/m} at q = 0.
 
     Then its Legendre coefficients on a short range of q fall geometrically.
@@ -523,7 +554,7 @@ def _check_root(law, given, depth):
     x, _ = legendre.leggauss(24)
     to_coefficients = np.linalg.inv(legendre.legvander(x, 23))
 
-    def last(root):
+    def last(root: int) -> float:
         """The last coefficients, over those in the middle or over rounding."""
         q = (x + 1) / 2 * (0.01 * depth) ** (1 / root)
         sizes = np.abs(to_coefficients @ law.force_at(q**root, 0.5 + 0 * q, 1.0, given))

@@ -15,16 +15,19 @@ separate exponentially, and undecided otherwise.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from bouncing_ball_beyond import oscillator
-from bouncing_ball_beyond.balls import H, check_ball, checked, whole_number
+from bouncing_ball_beyond.balls import Ball, H, check_ball, checked, whole_number
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.impact_map import impact_map
 from bouncing_ball_beyond.one_ball import TURN
-from bouncing_ball_beyond.periodic import OrbitNotFound, solved
+from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, solved
 from bouncing_ball_beyond.rests import orbit_with_rest
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
@@ -36,7 +39,7 @@ from bouncing_ball_beyond.simulation import (
     follow,
     grid_of,
 )
-from bouncing_ball_beyond.tables import SINE, check_table
+from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 NEAR = 1e-7
 """The distance, an angle and a speed over 1 + Λ, within which a ball has returned: far above
@@ -93,7 +96,7 @@ RESUMES = "a contact resumes below the level of the table, where its law does no
 TRANSIENT = "it looks chaotic, but a ball beside it comes to rest or repeats: it may be a transient"
 
 
-def tangent_maps(balls, record, lifts):
+def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
     """Derivatives of each next (τ, u) by (τ, u) of an impact.
 
     Parameters
@@ -118,8 +121,8 @@ def tangent_maps(balls, record, lifts):
     elif balls.map:
         slopes, known = balls.map.slopes(tau, u)
         others = ~known & np.isfinite(u)
-        given = replace(balls, amplitude=balls.map.amplitude), tau[others], u[others], T[others]
-        slopes[..., others] = slopes_of_contact(*given)
+        one = replace(balls, amplitude=balls.amplitude[:1])
+        slopes[..., others] = slopes_of_contact(one, tau[others], u[others], T[others])
     else:
         slopes = slopes_of_contact(balls, tau, u, T)
     if not ball.lasts:
@@ -138,7 +141,7 @@ def tangent_maps(balls, record, lifts):
     return np.where(lifts, 0.0, maps)
 
 
-def slopes_of_contact(balls, tau, u, T):
+def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArray:
     """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, *tau.shape)."""
     ball = balls.ball
     unknowns = 3 if ball.lasts else 2
@@ -149,13 +152,16 @@ def slopes_of_contact(balls, tau, u, T):
     if not ball.lasts:
         return slopes
     # T follows from the zero of the release function.
-    release = impact.release.imag / H
+    released: Any = impact.release
+    release = released.imag / H
     return slopes[:, :2] - slopes[:, 2:] * (release[:2] / release[2])
 
 
-def slopes_of_oscillator(balls, tau, u, duration, w):
+def slopes_of_oscillator(
+    balls: Balls, tau: Values, u: Values, duration: NDArray, w: Values
+) -> NDArray:
     """The same for a spring and a damper, by the responses of which its motion is a sum."""
-    ball = balls.ball
+    ball: Any = balls.ball
     ratio = ball.frequency_ratio
     zeta = ball.zeta
     kappa = ball.kappa
@@ -175,7 +181,7 @@ def slopes_of_oscillator(balls, tau, u, duration, w):
     return np.array([later, gap + w * later, rate + second * later])
 
 
-def lift_offs(balls, record):
+def lift_offs(balls: Balls, record: NDArray) -> NDArray:
     """Where balls leave by the lift-off after a rest, shape (impacts, balls)."""
     _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
     if balls.ball.lasts:
@@ -185,7 +191,7 @@ def lift_offs(balls, record):
     return rests & (push < 1 + LIFT_OFF)
 
 
-def product(maps):
+def product(maps: NDArray) -> NDArray:
     """The products of maps of the shape (2, 2, impacts, balls), the last one on the left."""
     while (n := maps.shape[2]) > 1:
         pairs = np.einsum("ijnb,jknb->iknb", maps[:, :, 1::2], maps[:, :, : n - 1 : 2])
@@ -193,7 +199,7 @@ def product(maps):
     return maps[:, :, 0]
 
 
-def ends_of(balls, impacts):
+def ends_of(balls: Balls, impacts: int) -> dict:
     """The motions on which balls end that are followed for a number of impacts, or some more.
 
     Returns
@@ -218,28 +224,29 @@ def ends_of(balls, impacts):
     return found
 
 
-def is_worth_a_map(balls, impacts):
+def is_worth_a_map(balls: Balls, impacts: int) -> bool:
     """Whether balls are one ball of an integrated contact on one table, with many impacts."""
     ball = balls.ball
-    one = balls.phase.size and np.ptp(balls.amplitude) == 0
+    if balls.phase.size * impacts < WORTH_A_MAP or not ball.integrated:
+        return False
     if ball.has_closed_form(balls.table) or any(map(np.ndim, ball.parameters.values())):
         return False
-    return ball.integrated and one and balls.phase.size * impacts >= WORTH_A_MAP
+    return bool(np.ptp(balls.amplitude) == 0)
 
 
-def _store(found, which, **values):
+def _store(found: dict, which: Any, **values: Any) -> None:
     """Store values of the balls with these indices."""
     for name, value in values.items():
         found[name][which] = value
 
 
-def _take(track, which):
+def _take(track: dict, which: Any) -> dict:
     """Some of the balls that are followed."""
     return {name: each[..., which] for name, each in track.items()}
 
 
 @np.errstate(all="ignore")
-def _follow_to_end(found, balls, lane, impacts, section):
+def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
     """Follow balls until the motion of each is known, and store it. Deviations of long motions
     overflow, and vanish at a lift-off.
 
@@ -287,7 +294,7 @@ def _follow_to_end(found, balls, lane, impacts, section):
     _store_others(found, balls, track, seen)
 
 
-def running_products(maps):
+def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
     """The products of all maps up to each impact, as matrices of the size 1 and the logarithms of
     their sizes, by doublings of the number of factors.
     """
@@ -303,7 +310,9 @@ def running_products(maps):
     return products, logarithms
 
 
-def stretch(track, record, after, maps, lifts, section):
+def stretch(
+    track: dict, record: NDArray, after: Balls, maps: NDArray, lifts: NDArray, section: int
+) -> NDArray:
     """Carry the deviations of balls over some more impacts; return the greatest climb between the
     last two lift-offs.
     """
@@ -330,13 +339,13 @@ def stretch(track, record, after, maps, lifts, section):
     return lap
 
 
-def times(record, after):
+def times(record: NDArray, after: Balls) -> NDArray:
     """The times of all impacts of a record and of the one after it."""
     turns = np.vstack([record[:, 0], after.turns])
     return TURN * turns + np.vstack([record[:, 1], after.phase])
 
 
-def recurrence(balls, record, after, maps):
+def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> dict:
     """The first recurrence of each ball, seen from the impact after those recorded.
 
     Returns
@@ -356,7 +365,7 @@ def recurrence(balls, record, after, maps):
     lag = np.zeros(m, int)
     radius = np.zeros(m)
     areas = np.zeros(m)
-    for k in near.any(axis=1).nonzero()[0] + 1:
+    for k in np.flatnonzero(near.any(axis=1)) + 1:
         # Several turns have the same fixed point: the shortest one counts.
         (some,) = (near[k - 1] & (distance > NEAR_BEFORE)).nonzero()
         last = phase[:, some], speed[:, some]
@@ -387,23 +396,23 @@ def recurrence(balls, record, after, maps):
     }
 
 
-def apart(angle, speed):
+def apart(angle: NDArray, speed: Values) -> NDArray:
     """The distance of states by differences of their phases, and of their speeds over 1 + Λ."""
     return np.maximum(np.abs(angle - TURN * np.round(angle / TURN)), np.abs(speed))
 
 
-def largest_multiplier(trace, determinant):
+def largest_multiplier(trace: NDArray, determinant: NDArray) -> NDArray:
     """The greatest modulus of the two multipliers."""
     root = np.sqrt(trace * trace / 4 - determinant + 0j)
     return np.maximum(np.abs(trace / 2 + root), np.abs(trace / 2 - root))
 
 
-def contraction(maps):
+def contraction(maps: NDArray) -> NDArray:
     """The logarithms of the moduli of determinants."""
     return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
 
 
-def _store_resting(found, lane, record, going, seen):
+def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, seen: int) -> None:
     """Store the balls that stay on the table."""
     resting = np.delete(np.arange(lane.size), going)
     count = np.isfinite(record[:, 0, resting]).sum(axis=0)
@@ -418,12 +427,14 @@ def _store_resting(found, lane, record, going, seen):
     )
 
 
-def _store_end(found, lane, after, which, **values):
+def _store_end(found: dict, lane: NDArray, after: Balls, which: Any, **values: Any) -> None:
     """Store the motions of balls that go on bouncing."""
     _store(found, lane, end_phase=after.phase[which], end_speed=after.speed[which], **values)
 
 
-def _store_periodic(found, lane, record, after, again, seen):
+def _store_periodic(
+    found: dict, lane: NDArray, record: NDArray, after: Balls, again: dict, seen: int
+) -> None:
     """Store the balls that repeat; contacts stick that last longer than two free impacts."""
     (some,) = again["repeats"].nonzero()
     again = _take(again, some)
@@ -448,7 +459,9 @@ def _store_periodic(found, lane, record, after, again, seen):
     )
 
 
-def _store_locked(found, track, record, after, lifts, lap, seen):
+def _store_locked(
+    found: dict, track: dict, record: NDArray, after: Balls, lifts: NDArray, lap: NDArray, seen: int
+) -> NDArray:
     """Store the balls that stick for the second time, and remember the others that stick."""
     row = np.arange(lap.size)
     n = len(lifts)
@@ -486,7 +499,7 @@ def _store_locked(found, track, record, after, lifts, lap, seen):
     return locked
 
 
-def _store_others(found, balls, track, seen):
+def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
     """Store the balls that have neither repeated nor come to rest: chaotic ones, if their
     neighbours separate exponentially.
     """
@@ -515,7 +528,7 @@ def _store_others(found, balls, track, seen):
         )
 
 
-def exponent(growth, time, areas):
+def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, float, float]:
     """The growth per unit of time over sections of a motion, its standard error between sections,
     and an error of which twice is an interval of 95 %.
 
@@ -538,7 +551,7 @@ def exponent(growth, time, areas):
     if growth.size < 2:
         return rate, np.inf, np.nan
     residual = growth[first:] - rate * time[first:]
-    errors = []
+    errors: list[NDArray] = []
     while residual.size >= (4 if errors else 2):
         n = residual.size
         error = np.sqrt(n / (n - 1) * np.sum(residual**2)) / time[first:].sum()
@@ -573,15 +586,15 @@ OF_MOTIONS = DESCRIPTIONS | {
 
 
 def motion_of(
-    ball,
+    ball: Ball,
     *,
-    amplitude,
-    phase=0.0,
-    velocity=None,
-    relative_velocity=None,
-    impacts=2000,
-    table=SINE,
-):
+    amplitude: Values,
+    phase: Values = 0.0,
+    velocity: Values = None,
+    relative_velocity: Values = None,
+    impacts: int = 2000,
+    table: Table = SINE,
+) -> xr.Dataset:
     """The motion on which a ball ends, after a first impact as in :func:`.simulate`.
 
     Parameters
@@ -619,7 +632,7 @@ def motion_of(
     return dataset_of(grid, balls.amplitude, table, ends_of(balls, impacts))
 
 
-def dataset_of(grid, amplitude, table, ends):
+def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) -> xr.Dataset:
     """The dataset of motions over a grid."""
     found = ends.copy()
     found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
@@ -629,7 +642,7 @@ def dataset_of(grid, amplitude, table, ends):
     return dataset(grid, found, OF_MOTIONS)
 
 
-def in_words(kind, followed, reason):
+def in_words(kind: str, followed: int, reason: str) -> str:
     """A motion in words.
 
     Examples
@@ -646,15 +659,15 @@ def in_words(kind, followed, reason):
 
 
 def lyapunov(
-    ball,
+    ball: Ball,
     *,
-    amplitude,
-    phase=0.0,
-    velocity=None,
-    relative_velocity=None,
-    impacts=2000,
-    table=SINE,
-):
+    amplitude: Values,
+    phase: Values = 0.0,
+    velocity: Values = None,
+    relative_velocity: Values = None,
+    impacts: int = 2000,
+    table: Table = SINE,
+) -> xr.Dataset:
     """The Lyapunov exponents of the motion on which a ball ends, as in :func:`motion_of`.
 
     Where the motion looks chaotic, 32 balls that start beside its end are followed for as many
@@ -703,7 +716,7 @@ def lyapunov(
     return dataset_of(grid, balls.amplitude, table, ends)
 
 
-def fastest(ball, amplitude, table=SINE):
+def fastest(ball: Ball, amplitude: Values, table: Table = SINE) -> Values:
     """A speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r), for 1 - r ≥ 0.05.
 
     V is the greatest speed of the table, Λ for a sine. An impact changes the absolute speed v of a
@@ -720,7 +733,15 @@ def fastest(ball, amplitude, table=SINE):
     return (1 + r) * np.maximum(amplitude * table.bounds[1], 1.0) / np.maximum(1 - r, 0.05)
 
 
-def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2000, table=SINE):
+def basins(
+    ball: Ball,
+    *,
+    amplitude: Values,
+    starts: int = 200,
+    relative_velocity_max: float | None = None,
+    impacts: int = 2000,
+    table: Table = SINE,
+) -> xr.Dataset:
     """The motions on which balls end that start from a grid of first impacts, and their shares.
 
     Parameters
@@ -794,7 +815,7 @@ def basins(ball, *, amplitude, starts=200, relative_velocity_max=None, impacts=2
     return described(found.assign_attrs(impacts=impacts), OF_MOTIONS)
 
 
-def told_apart(balls, ends):
+def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
     """The different motions on which balls end.
 
     Returns
@@ -808,7 +829,7 @@ def told_apart(balls, ends):
     kinds = ends["kind"].astype(str)
     balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])
     which = np.full(kinds.size, -1)
-    found = []
+    found: list[tuple] = []
     while (which < 0).any():
         first = int(which.argmin())
         kind = kinds[first]
@@ -835,7 +856,15 @@ def told_apart(balls, ends):
     return np.argsort(order)[which], dict(zip(names, columns, strict=True))
 
 
-def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000, table=SINE):
+def orbit_diagram(
+    ball: Ball,
+    *,
+    amplitude: Values,
+    starts: int = 6,
+    samples: int = 64,
+    impacts: int = 2000,
+    table: Table = SINE,
+) -> xr.Dataset:
     """The motions on which balls end along Λ or a parameter of the ball, from several starts.
 
     Parameters
@@ -891,24 +920,24 @@ def orbit_diagram(ball, *, amplitude, starts=6, samples=64, impacts=2000, table=
     state = ends["end_phase"], ends["end_speed"]
     balls = Balls(ball.rows(value), amplitude[value], 0.0 * value, *state, table)
     (moving,) = np.isfinite(balls.phase).nonzero()
-    recorded = np.full((2, value.size, samples), np.nan)
-    recorded[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)
-    recorded = dict(zip(("impact_phase", "impact_speed"), recorded, strict=True))
+    impact = np.full((2, value.size, samples), np.nan)
+    impact[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)
+    variables = dict(zip(("impact_phase", "impact_speed"), impact, strict=True))
     grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
-    recorded = dataset(grid, recorded, OF_MOTIONS, impact=np.arange(samples))
+    recorded = dataset(grid, variables, OF_MOTIONS, impact=np.arange(samples))
     return dataset_of(grid, balls.amplitude, table, ends).merge(recorded)
 
 
 def orbit_of_motion(
-    ball,
+    ball: Ball,
     *,
-    amplitude,
-    phase=0.0,
-    velocity=None,
-    relative_velocity=None,
-    impacts=2000,
-    table=SINE,
-):
+    amplitude: Values,
+    phase: Values = 0.0,
+    velocity: Values = None,
+    relative_velocity: Values = None,
+    impacts: int = 2000,
+    table: Table = SINE,
+) -> PeriodicOrbit:
     """The periodic orbit on which a ball ends, confirmed by Newton's method.
 
     A locked motion with instantaneous impacts is an orbit with a rest, a :class:`.RestOrbit`.

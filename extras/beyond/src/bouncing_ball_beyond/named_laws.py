@@ -21,13 +21,16 @@ Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p
 0 at the surface to 1 at the depth d.
 """
 
+from collections.abc import Callable
 from inspect import signature
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from bouncing_ball_beyond.balls import checked
 from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.tables import Values
 
 HERTZ = (1, -0.5, -2)
 SPRING = (1, 0, -2)
@@ -35,7 +38,7 @@ DAMPER = (1, 0, -1)
 NUMBER = (0, 0, 0)
 """Powers of mass, length and time in N/m^{3/2}, N/m, N s/m and 1."""
 
-RANGES = {
+RANGES: dict[str, Any] = {
     "frequency_ratio": {"low": 0, "high": np.inf, "low_allowed": False},
     "stiffness": {"low": 0, "high": np.inf, "low_allowed": False},
     "depth": {"low": 0, "high": np.inf, "low_allowed": False},
@@ -56,7 +59,9 @@ MOST_DAMPED = 1e4
 """The largest damping that is tried for a restitution coefficient, in the unit of each law."""
 
 
-def law_of_impact(law_of, restitution, duration, speed):
+def law_of_impact(
+    law_of: Callable, restitution: Values, duration: Values, speed: Values
+) -> ForceLaw:
     """The law whose free impact at a speed has a restitution coefficient and a duration.
 
     Parameters
@@ -92,10 +97,10 @@ def law_of_impact(law_of, restitution, duration, speed):
     return law_of(damping.reshape(r.shape)[()], length[()], v[()])
 
 
-def _damping_and_duration(law_of, restitution):
+def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float, float]:
     """The g with which impacts have a restitution coefficient, and D of the one with P = v = 1."""
 
-    def impact(damping):
+    def impact(damping: Values) -> tuple[float, float]:
         """w and D; w = 0 if the ball stays."""
         _, end = law_of(damping, 1.0, 1.0).first_impact(0.0, 1.0, 0.0, 0.0)
         return float(np.nan_to_num(end.speed)), float(end.duration)
@@ -118,7 +123,9 @@ def _damping_and_duration(law_of, restitution):
     return damping, duration
 
 
-def _given(values, impact, of_scales, **kind):
+def _given(
+    values: dict[str, Values], impact: dict[str, Values], of_scales: Callable, **kind: Any
+) -> ForceLaw:
     """The law of a kind with the given values of its parameters, or that of an impact.
 
     ``impact`` has restitution, duration and speed, and ``of_scales(g, P, v)`` the values of the
@@ -139,14 +146,14 @@ def _given(values, impact, of_scales, **kind):
 
 
 def linear(
-    frequency_ratio=None,
-    damping_ratio=None,
+    frequency_ratio: Values = None,
+    damping_ratio: Values = None,
     *,
-    release="displacement",
-    restitution=None,
-    duration=None,
-    speed=None,
-):
+    release: str = "displacement",
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = ϖ²p + 2ζϖp′: a spring and a damper, as :class:`.SpringDamper`, but integrated.
 
     Parameters
@@ -165,7 +172,7 @@ def linear(
     >>> round(float(ball.signature(3.0).restitution), 4)
     0.8626
     """
-    kinds = {
+    kinds: dict[str, Any] = {
         "displacement": {"force": _spring_damper},
         "force": {"force": _spring_damper, "release": "force", "lag": _lag_of_ratios},
         "approach": {"force": _damped_on_approach, "kinks": (_turning_point,)},
@@ -181,29 +188,36 @@ def linear(
     )
 
 
-def _of_ratios(g, P, v):
+def _of_ratios(g: Values, P: Values, v: Values) -> dict[str, Values]:
     return {"frequency_ratio": v / P, "damping_ratio": g}
 
 
-def _spring_damper(p, v, frequency_ratio, damping_ratio):
+def _spring_damper(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
     return frequency_ratio * (frequency_ratio * p + 2 * damping_ratio * v)
 
 
-def _damped_on_approach(p, v, frequency_ratio, damping_ratio):
+def _damped_on_approach(
+    p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values
+) -> Values:
     return _spring_damper(p, np.where(np.real(v) > 0, v, 0.0), frequency_ratio, damping_ratio)
 
 
-def _turning_point(p, v, frequency_ratio, damping_ratio):
+def _turning_point(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
     return v
 
 
-def _lag_of_ratios(frequency_ratio, damping_ratio):
+def _lag_of_ratios(frequency_ratio: Values, damping_ratio: Values) -> Values:
     return 2 * damping_ratio / frequency_ratio
 
 
 def elasto_backlash(
-    frequency_ratio=None, damping_ratio=None, *, restitution=None, duration=None, speed=None
-):
+    frequency_ratio: Values = None,
+    damping_ratio: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = ϖ²p + 2ζϖp′ with a damping force of at most ϖ²p: ElastoBacklash2 of the Modelica library.
 
     During compression the damper at most doubles the force, which thus grows from zero. The force
@@ -228,17 +242,24 @@ def elasto_backlash(
     )
 
 
-def _equal_forces(p, v, frequency_ratio, damping_ratio):
+def _equal_forces(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
     return p - _lag_of_ratios(frequency_ratio, damping_ratio) * v
 
 
-def _limited_damper(p, v, frequency_ratio, damping_ratio):
+def _limited_damper(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
     damped = _lag_of_ratios(frequency_ratio, damping_ratio) * v
     limited = np.where(np.real(damped) < np.real(p), damped, p)
     return frequency_ratio * frequency_ratio * (p + limited)
 
 
-def hunt_crossley(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
+def hunt_crossley(
+    stiffness: Values = None,
+    damping: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K p^{3/2} (1 + C p′): Hertz' contact with a damping proportional to its force.
 
     The physical force k x^{3/2} (1 + λẋ) has K = k√g/(mΩ³) and C = λg/Ω. For slow impacts
@@ -266,13 +287,18 @@ def hunt_crossley(stiffness=None, damping=None, *, restitution=None, duration=No
     )
 
 
-def _hunt_crossley(p, v, stiffness, damping):
+def _hunt_crossley(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     return stiffness * p * np.sqrt(p) * (1 + damping * v)
 
 
 def hunt_crossley_linear(
-    stiffness=None, damping=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    damping: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K p (1 + C p′): a linear spring with Hunt and Crossley's damping, as in Drake.
 
     The parameters are those of :func:`hunt_crossley`, and r is the same function of C v.
@@ -286,11 +312,18 @@ def hunt_crossley_linear(
     )
 
 
-def _linear_hunt_crossley(p, v, stiffness, damping):
+def _linear_hunt_crossley(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     return stiffness * p * (1 + damping * v)
 
 
-def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
+def tsuji(
+    stiffness: Values = None,
+    damping: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K p^{3/2} + C √K p^{1/4} p′: Hertz' contact with the same restitution at all speeds.
 
     With y = p^{5/4} and ds = p^{1/4} dt a free impact is linear, y″ + C √K y′ + (5/4) K y = 0, so
@@ -325,12 +358,19 @@ def tsuji(stiffness=None, damping=None, *, restitution=None, duration=None, spee
     )
 
 
-def _tsuji(p, v, stiffness, damping):
+def _tsuji(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     root = np.sqrt(p)
     return stiffness * p * root + damping * np.sqrt(stiffness) * np.sqrt(root) * v
 
 
-def kuwabara_kono(stiffness=None, damping=None, *, restitution=None, duration=None, speed=None):
+def kuwabara_kono(
+    stiffness: Values = None,
+    damping: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K (p^{3/2} + C √p p′): a viscoelastic sphere that does not adhere.
 
     The contact ends where the force vanishes, p + C p′ = 0; the surface is still deformed there.
@@ -363,17 +403,22 @@ def kuwabara_kono(stiffness=None, damping=None, *, restitution=None, duration=No
     )
 
 
-def _kuwabara_kono(p, v, stiffness, damping):
+def _kuwabara_kono(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     return stiffness * np.sqrt(p) * (p + damping * v)
 
 
-def _lag_of_damping(stiffness, damping):
+def _lag_of_damping(stiffness: Values, damping: Values) -> Values:
     return damping
 
 
 def lankarani_nikravesh(
-    stiffness=None, nominal_restitution=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    nominal_restitution: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K p^{3/2} (1 + c p′/v₀), c = 3(1 - e²)/4, with the speed v₀ at the start of the contact.
 
     A contact is one of Hunt and Crossley with C = c/v₀, so that r is the same at every speed. It is
@@ -406,14 +451,21 @@ def lankarani_nikravesh(
     )
 
 
-def _lankarani_nikravesh(p, v, stiffness, nominal_restitution, start_speed):
+def _lankarani_nikravesh(
+    p: Values, v: Values, stiffness: Values, nominal_restitution: Values, start_speed: Values
+) -> Values:
     factor = 0.75 * (1 - nominal_restitution * nominal_restitution)
     return _hunt_crossley(p, v, stiffness, factor / start_speed)
 
 
 def flores(
-    stiffness=None, nominal_restitution=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    nominal_restitution: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e), with the speed v₀ at the start of a contact.
 
     As :func:`lankarani_nikravesh`, with another c: r is 0.470 for e = 0.5.
@@ -444,14 +496,22 @@ def flores(
     )
 
 
-def _flores(p, v, stiffness, nominal_restitution, start_speed):
+def _flores(
+    p: Values, v: Values, stiffness: Values, nominal_restitution: Values, start_speed: Values
+) -> Values:
     factor = 8 * (1 - nominal_restitution) / (5 * nominal_restitution)
     return _hunt_crossley(p, v, stiffness, factor / start_speed)
 
 
 def adams_impact(
-    stiffness=None, damping=None, depth=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    damping: Values = None,
+    depth: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = max(0, K p^{3/2} + C s p′): the function IMPACT of Adams.
 
     The damper grows by the cubic step s from the surface to the depth d. A damper that would pull
@@ -480,8 +540,14 @@ def adams_impact(
 
 
 def adams_impact_linear(
-    stiffness=None, damping=None, depth=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    damping: Values = None,
+    depth: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = max(0, K p + C s p′): the function IMPACT of Adams with the exponent 1.
 
     The parameters are those of :func:`adams_impact`. If an impact is given, d is a tenth of v/√K.
@@ -496,27 +562,29 @@ def adams_impact_linear(
     )
 
 
-def _step(p, depth):
+def _step(p: Values, depth: Values) -> Values:
     """s(p)."""
     x = p / depth
     return np.where(np.real(x) < 1, x * x * (3 - 2 * x), 1.0)
 
 
-def _adams(p, v, stiffness, damping, depth):
+def _adams(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     force = stiffness * p * np.sqrt(p) + damping * _step(p, depth) * v
     return np.where(np.real(force) > 0, force, 0.0)
 
 
-def _linear_adams(p, v, stiffness, damping, depth):
+def _linear_adams(
+    p: Values, v: Values, stiffness: Values, damping: Values, depth: Values
+) -> Values:
     force = stiffness * p + damping * _step(p, depth) * v
     return np.where(np.real(force) > 0, force, 0.0)
 
 
-def _full_depth(p, v, stiffness, damping, depth):
+def _full_depth(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     return p - depth
 
 
-def _pulls(p, v, stiffness, damping, depth):
+def _pulls(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     """The force over p^{3/2}, where it is not limited."""
     inside = np.sqrt(p) * (3 - 2 * p / depth) / (depth * depth)
     deep = np.maximum(p, depth)
@@ -524,7 +592,9 @@ def _pulls(p, v, stiffness, damping, depth):
     return stiffness + damping * step * v
 
 
-def _linear_pulls(p, v, stiffness, damping, depth):
+def _linear_pulls(
+    p: Values, v: Values, stiffness: Values, damping: Values, depth: Values
+) -> Values:
     """The force over p, where it is not limited."""
     inside = p * (3 - 2 * p / depth) / (depth * depth)
     step = np.where(np.real(p) < np.real(depth), inside, 1 / np.maximum(p, depth))
@@ -532,8 +602,14 @@ def _linear_pulls(p, v, stiffness, damping, depth):
 
 
 def simscape_contact(
-    stiffness=None, damping=None, depth=None, *, restitution=None, duration=None, speed=None
-):
+    stiffness: Values = None,
+    damping: Values = None,
+    depth: Values = None,
+    *,
+    restitution: Values = None,
+    duration: Values = None,
+    speed: Values = None,
+) -> ForceLaw:
     """f = s (K p + C p′): the Spatial Contact Force of Simscape Multibody.
 
     Spring and damper grow by the cubic step s from the surface to the depth d, the width of the
@@ -560,11 +636,11 @@ def simscape_contact(
     )
 
 
-def _simscape(p, v, stiffness, damping, depth):
+def _simscape(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     return _step(p, depth) * (stiffness * p + damping * v)
 
 
-def _lag_of_force(stiffness, damping, depth):
+def _lag_of_force(stiffness: Values, damping: Values, depth: Values) -> Values:
     return damping / stiffness
 
 
@@ -587,7 +663,7 @@ LAWS = {
 """The named laws by their names."""
 
 
-def named_law(name, **values):
+def named_law(name: str, **values: Any) -> ForceLaw:
     """The law of a name in :data:`LAWS`, with values of its arguments.
 
     Raises

@@ -17,6 +17,8 @@ followed side by side in :mod:`bouncing_ball_beyond.simulation`, by the same for
 
 import math
 
+from numpy.typing import NDArray
+
 TURN = 2 * math.pi
 REACH = 4.0
 """The reach H of the second bound, in steps of the first one."""
@@ -46,7 +48,7 @@ starts, the closing speed u, T, the duration D, δ and δ′ as it ends, and the
 follows. T and δ′ are NaN, and D is infinite, for a ball that stays on the table."""
 
 
-def root_of_parabola(f, slope, bend):
+def root_of_parabola(f: float, slope: float, bend: float) -> float:
     """The first h > 0 at which f + f′h - B h²/2 vanishes, for f ≥ 0; infinity if there is none."""
     square = slope * slope + 2 * bend * f
     if square < 0:
@@ -58,7 +60,9 @@ def root_of_parabola(f, slope, bend):
     return math.inf
 
 
-def safe_step(t, f, slope, second, bend, jerk):
+def safe_step(
+    t: float, f: float, slope: float, second: float, bend: float, jerk: float
+) -> tuple[float, bool]:
     """A step from the time t that passes no zero of f, and whether it ends there; K and J are
     ``bend`` and ``jerk``.
 
@@ -72,7 +76,7 @@ def safe_step(t, f, slope, second, bend, jerk):
     return step, step <= ROUNDING * t
 
 
-def flight(t, gap, w, x, y):
+def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
     """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and
     Λ sin τ = y.
 
@@ -86,7 +90,9 @@ def flight(t, gap, w, x, y):
     return position, rate, (y - 1) + (x * sine - y * versine)
 
 
-def rise(gap, w, x, y, amplitude, kappa):
+def rise(
+    gap: float, w: float, x: float, y: float, amplitude: float, kappa: float
+) -> tuple[bool, float]:
     """The time at which a ball that was released below the level of the table is above it, or at
     which its contact resumes: whether it does, and this time.
 
@@ -111,7 +117,7 @@ def rise(gap, w, x, y, amplitude, kappa):
     return True, math.nan
 
 
-def emergence(start, gap, w, x, y, amplitude):
+def emergence(start: float, gap: float, w: float, x: float, y: float, amplitude: float) -> float:
     """The time, not before ``start``, at which a ball rises through the level of the table or is
     above it; infinity if it falls back before.
     """
@@ -128,7 +134,7 @@ def emergence(start, gap, w, x, y, amplitude):
             return t
 
 
-def earliest(w, x, y, amplitude):
+def earliest(w: float, x: float, y: float, amplitude: float) -> float:
     """A time before which a ball that leaves at the level of the table has certainly not landed.
 
     It is the time of flight against the greatest gravity, 1 + Λ. Where the table falls away, with Y
@@ -140,7 +146,9 @@ def earliest(w, x, y, amplitude):
     return max(start, (2 * x + math.sqrt(4 * x * x + 12 * amplitude * (y - 1))) / amplitude)
 
 
-def landing(start, gap, w, x, y, amplitude):
+def landing(
+    start: float, gap: float, w: float, x: float, y: float, amplitude: float
+) -> tuple[float, float]:
     """The time of the first landing after the time ``start``, before which there is certainly none,
     and the closing speed.
 
@@ -163,7 +171,9 @@ def landing(start, gap, w, x, y, amplitude):
     return math.nan, math.nan
 
 
-def contact(s, gap, u, x, y, gravity, ratio, zeta):
+def contact(
+    s: float, gap: float, u: float, x: float, y: float, gravity: float, ratio: float, zeta: float
+) -> tuple:
     """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
     and the height of the table and its velocity (Eqs. 12 and 13).
 
@@ -201,7 +211,7 @@ def contact(s, gap, u, x, y, gravity, ratio, zeta):
     return position, rate, y * cosine + x * sine, x * cosine - y * sine
 
 
-def bounds(motion, amplitude, ratio, zeta, kappa):
+def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: float) -> tuple:
     r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
     what :func:`contact` returns.
 
@@ -233,7 +243,16 @@ def bounds(motion, amplitude, ratio, zeta, kappa):
     return f, slope, second, third, bend + forced, jerk, lasts
 
 
-def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
+def release(
+    gap: float,
+    u: float,
+    x: float,
+    y: float,
+    amplitude: float,
+    ratio: float,
+    zeta: float,
+    kappa: float,
+) -> tuple:
     """The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero, and δ′
     there; infinity if it lasts.
     """
@@ -252,7 +271,7 @@ def release(gap, u, x, y, amplitude, ratio, zeta, kappa):
     return math.inf, math.nan
 
 
-def settling(w, r, x, y, amplitude):
+def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
     """The time in which the bounces after an impact end on the table, -1 if they are not summed up.
 
     With the gravity g = 1 - Y on the table and its rate of change g′ = -X, the infinitely many
@@ -273,7 +292,7 @@ def settling(w, r, x, y, amplitude):
     return whole * (1 + x * whole / (3 * gravity))
 
 
-def until_lift_off(phase, amplitude):
+def until_lift_off(phase: float, amplitude: float) -> float:
     """How long a ball that rests on the table stays there: until Λ sin τ rises to 1, or for ever
     (Eq. 9).
     """
@@ -284,7 +303,9 @@ def until_lift_off(phase, amplitude):
     return 0.0 if wait > TURN - CHATTER**2 else wait
 
 
-def rest(gap, w, restitution, phase, amplitude, left):
+def rest(
+    gap: float, w: float, restitution: float, phase: float, amplitude: float, left: float
+) -> tuple[float, float]:
     """How long a ball rests on the table after an instantaneous impact with the gap δ and the speed
     w, and the phase at which it leaves; a negative time if it does not rest.
 
@@ -307,13 +328,13 @@ def rest(gap, w, restitution, phase, amplitude, left):
     return settled + until_lift_off(end, amplitude), lift_off
 
 
-def reduced(phase):
+def reduced(phase: float) -> tuple[float, float]:
     """The number of turns of the table in a phase, and what is left of it, from -π to π."""
     turns = float(math.floor(phase / TURN + 0.5))
     return turns, phase - turns * TURN
 
 
-def fly(gap, w, x, y, amplitude, kappa):
+def fly(gap: float, w: float, x: float, y: float, amplitude: float, kappa: float) -> tuple:
     """The time of the flight up to the next impact, and its closing speed, which is negative where
     the contact resumes.
     """
@@ -325,7 +346,17 @@ def fly(gap, w, x, y, amplitude, kappa):
     return landing(start, gap, w, x, y, amplitude)
 
 
-def impacts(turns, phase, u, amplitude, restitution, ratio, zeta, kappa, out):
+def impacts(
+    turns: float,
+    phase: float,
+    u: float,
+    amplitude: float,
+    restitution: float,
+    ratio: float,
+    zeta: float,
+    kappa: float,
+    out: NDArray,
+) -> tuple:
     """Impacts of a ball into the rows of ``out``.
 
     They are instants with a restitution coefficient if ϖ is 0, and otherwise contacts with a spring
@@ -396,7 +427,7 @@ LOOPS = (
 )
 
 
-def compile_loops():
+def compile_loops() -> None:
     """Compile the functions above by numba, which finds them by their names, if it is installed."""
     try:
         from numba import njit

@@ -213,7 +213,7 @@ def decoded(values: dict[str, Any]) -> Any:
     return kind(**{name: tuple(x) if isinstance(x, list) else x for name, x in values.items()})
 
 
-def read_orbits(source, *, ball: Ball | None = None, along: Path | None = None) -> Found:
+def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = None) -> Found:
     """The orbits of a dataset or of its file.
 
     Parameters

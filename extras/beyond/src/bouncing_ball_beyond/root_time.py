@@ -20,9 +20,9 @@ An array of contacts has the shape (rows,), and one of values at nodes (nodes, r
 are (directions, rows).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -30,6 +30,7 @@ from numpy.typing import NDArray
 from scipy.optimize import elementwise
 
 from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.tables import Table, Values
 
 ROUGH = 1e-7
 """The largest last Legendre coefficients of v over its greatest value. The square is rounding."""
@@ -92,7 +93,7 @@ class Gauss(NamedTuple):
     coefficients: NDArray
 
     @classmethod
-    def of_order(cls, n):
+    def of_order(cls, n: int) -> "Gauss":
         """Those of n nodes."""
         x, weights = legendre.leggauss(n)
         coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
@@ -119,11 +120,11 @@ class Rows(NamedTuple):
     stepped: NDArray
 
     @property
-    def directions(self):
+    def directions(self) -> int:
         """The number of directions with a step."""
-        return np.count_nonzero(self.stepped)
+        return int(np.count_nonzero(self.stepped))
 
-    def joined(self, real, imaginary):
+    def joined(self, real: NDArray, imaginary: NDArray) -> NDArray:
         """Results (k, rows) and derivatives (k, directions, rows) in the shape of the values."""
         if not self.stepped.size:
             return real.reshape(len(real), *self.shape)
@@ -132,7 +133,7 @@ class Rows(NamedTuple):
         return values.reshape(len(values), *self.shape)
 
 
-def values_by_row(values):
+def values_by_row(values: Mapping) -> Rows:
     """:class:`Rows` of numbers and arrays that broadcast."""
     arrays = {name: np.asarray(value) for name, value in values.items()}
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
@@ -150,7 +151,7 @@ def values_by_row(values):
         if np.any(x.imag):
             steps[name] = np.broadcast_to(x.imag, shape).reshape(directions, size)
             given[name] = np.broadcast_to(given[name], size)
-    stepped = sum((step.any(axis=1) for step in steps.values()), np.zeros(directions, bool))
+    stepped: Any = sum((step.any(axis=1) for step in steps.values()), np.zeros(directions, bool))
     steps = {name: step[stepped] for name, step in steps.items()}
     return Rows(shape, given, steps, size, stepped)
 
@@ -185,18 +186,18 @@ class ContactMotion(NamedTuple):
     steps: Mapping
     gauss: Gauss = PANEL
 
-    def of(self, rows):
+    def of(self, rows: NDArray) -> "ContactMotion":
         """The motion of some of the contacts."""
         given = {name: x[rows] if np.ndim(x) else x for name, x in self.given.items()}
         return self._replace(
             given=given, steps={name: x[:, rows] for name, x in self.steps.items()}
         )
 
-    def stepped(self):
+    def stepped(self) -> dict:
         """What is given, complex of the shape (directions, rows) where it has a step."""
         return {**self.given} | {name: self.given[name] + 1j * x for name, x in self.steps.items()}
 
-    def lever(self, q):
+    def lever(self, q: NDArray) -> NDArray:
         """λ = m q^{m-1}."""
         if self.root == 1:
             return np.ones_like(q)
@@ -206,18 +207,18 @@ class ContactMotion(NamedTuple):
         return self.root * power
 
 
-def load_of(t, given):
+def load_of(t: NDArray, given: Mapping) -> Values:
     """a = g + Λ W″(τ + t)."""
     return given["gravity"] + given["amplitude"] * waveform(given)(given["tau"] + t, 2)
 
 
-def waveform(given):
+def waveform(given: Mapping) -> Table:
     """The table with the values of its parameters that are given."""
     table = given["table"]
     return table.at(**{name: given[name] for name in table.parameters})
 
 
-def rates(motion, state):
+def rates(motion: ContactMotion, state: Sequence | NDArray) -> tuple:
     """dq/ds, dv/ds and dt/ds."""
     q, v, t = state
     lever = motion.lever(q)
@@ -225,7 +226,9 @@ def rates(motion, state):
     return v, lever * (a - motion.force(q * lever / motion.root, v, a, motion.given)), lever
 
 
-def event_rate(motion, event, state):
+def event_rate(
+    motion: ContactMotion, event: Callable, state: Sequence | NDArray
+) -> tuple[NDArray, NDArray]:
     """A function of an event and its derivative with respect to s along the motion."""
     beside = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
     value = event(*beside, motion.given)
@@ -246,18 +249,18 @@ class Panel(NamedTuple):
     early: np.ndarray
     change: np.ndarray
 
-    def of(self, rows):
+    def of(self, rows: NDArray) -> "Panel":
         """The panels of some rows."""
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
-    def pushed(self, share, gauss):
+    def pushed(self, share: NDArray, gauss: Gauss) -> NDArray:
         """F at the nodes of the first part of each panel, by the polynomial that it is."""
         coefficients = gauss.coefficients @ self.push
         places = 2 * share * gauss.nodes[:, np.newaxis] - 1
         return legendre.legval(places, coefficients, tensor=False)
 
-    def replace_some(self, at, new):
+    def replace_some(self, at: NDArray, new: "Panel") -> None:
         """Write other panels into these."""
         old = (*self.nodes, *self.end, *self[2:])
         for whole, part in zip(old, (*new.nodes, *new.end, *new[2:]), strict=True):
@@ -278,20 +281,20 @@ class Linearised(NamedTuple):
     h: np.ndarray
     gauss: Gauss
 
-    def integrated(self, values):
+    def integrated(self, values: NDArray) -> NDArray:
         """Integrals up to the nodes, of values at the nodes, shape (nodes, directions, rows)."""
         flat = self.gauss.integrals @ values.reshape(len(values), -1)
         return self.h * flat.reshape(values.shape)
 
-    def time(self, q):
+    def time(self, q: NDArray) -> NDArray:
         """δt from δq at the nodes."""
         return self.integrated(self.bend * q)
 
-    def felt(self, q, v, t):
+    def felt(self, q: NDArray, v: NDArray, t: NDArray) -> NDArray:
         """What changes of the state change of F."""
         return self.by_q * q + self.by_v * v + self.by_t * t
 
-    def solved(self, known):
+    def solved(self, known: NDArray) -> NDArray:
         """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
         by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
         h = self.h[:, np.newaxis, np.newaxis]
@@ -301,7 +304,7 @@ class Linearised(NamedTuple):
         matrix = np.eye(len(known)) - by_v * once - by_q * twice - by_t * time
         return np.linalg.solve(matrix, np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
 
-    def swept(self, known):
+    def swept(self, known: NDArray) -> NDArray:
         """As :meth:`solved`, by sweeps; they converge as those of the motion have done."""
         push = known
         rate = self.integrated(push)
@@ -319,7 +322,7 @@ class Linearised(NamedTuple):
         return self.solved(known)
 
 
-def linearised(motion, nodes, h):
+def linearised(motion: ContactMotion, nodes: tuple, h: NDArray) -> Linearised:
     """:class:`Linearised` about a motion, by complex steps of the force."""
     q, v, t = nodes
     given = motion.given
@@ -333,16 +336,25 @@ def linearised(motion, nodes, h):
     by_q = bend * (a - along.real) - lever * lever * along.imag / H
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
     by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
-    at_nodes = (each[:, np.newaxis] for each in (by_q, by_v, by_t, bend))
-    return Linearised(*at_nodes, h, motion.gauss)
+    by_q, by_v, by_t, bend = (each[:, np.newaxis] for each in (by_q, by_v, by_t, bend))
+    return Linearised(by_q, by_v, by_t, bend, h, motion.gauss)
 
 
-def _end_of(start, h, slopes, weights):
+def _end_of(start: Sequence, h: NDArray, slopes: tuple, weights: NDArray) -> tuple:
     """q, v and t at the ends of panels, from their derivatives with respect to s at the nodes."""
     return tuple(y + h * (weights @ slope) for y, slope in zip(start, slopes, strict=True))
 
 
-def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=False):
+def solve_panel(
+    motion: ContactMotion,
+    start: Sequence,
+    h: NDArray,
+    event: Callable | None = None,
+    within: Values = 0.0,
+    *,
+    push: Values = 0.0,
+    newton: bool = False,
+) -> Panel:
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
     An event is found if the last step to it is at most ``within``. ``push`` is a guess of F.
@@ -397,7 +409,9 @@ def solve_panel(motion, start, h, event=None, within=0.0, *, push=0.0, newton=Fa
     return Panel((q, v, t), end, push, h + moved, early, np.where(near, left, np.inf))
 
 
-def carried(motion, nodes, by, h, *, newton):
+def carried(
+    motion: ContactMotion, nodes: tuple, by: NDArray, h: NDArray, *, newton: bool
+) -> NDArray:
     """Derivatives of (q, v, t) at the ends of panels, from those at the starts.
 
     Both have the shape (3, directions, rows).
@@ -424,7 +438,7 @@ def carried(motion, nodes, by, h, *, newton):
     return by + np.array([h * np.tensordot(weights, each, 1) for each in (rate, push, pace)])
 
 
-def _resolved(panel, size, gauss):
+def _resolved(panel: Panel, size: NDArray, gauss: Gauss) -> tuple[NDArray, NDArray]:
     """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale."""
     v = panel.nodes[1]
     order = len(v)
@@ -441,7 +455,9 @@ def _resolved(panel, size, gauss):
     return good, np.where(good, factor, np.minimum(factor, 0.5))
 
 
-def _first_event(motion, events, side, start, panel):
+def _first_event(
+    motion: ContactMotion, events: tuple, side: NDArray, start: Sequence, panel: Panel
+) -> tuple[NDArray, NDArray]:
     """The first event of each panel, -1 if there is none, and about its place on [0, 1].
 
     ``side`` has the signs of the functions before their events. It is written where it is not known
@@ -470,7 +486,9 @@ def _first_event(motion, events, side, start, panel):
     return which, place
 
 
-def _maxima(motion, event, before, states):
+def _maxima(
+    motion: ContactMotion, event: Callable, before: NDArray, states: list
+) -> tuple[NDArray, NDArray]:
     """Maxima between nodes at which a function may reach zero: contacts, and places on [0, 1].
 
     ``before`` has the signs of the function before its event, and ``states`` are (q, v, t) at the
@@ -487,7 +505,7 @@ def _maxima(motion, event, before, states):
         return row, np.zeros(0)
     polynomials = [motion.gauss.coefficients @ y[1:-1, row] for y in states]
 
-    def depth(place, k):
+    def depth(place: NDArray, k: NDArray) -> NDArray:
         state = (legendre.legval(2 * place - 1, y[:, k], tensor=False) for y in polynomials)
         return before[row[k]] * event(*state, motion.of(row[k]).given)
 
@@ -499,7 +517,9 @@ def _maxima(motion, event, before, states):
     return row[reached], found.x[reached]
 
 
-def _first_maximum(motion, events, side, start, panel):
+def _first_maximum(
+    motion: ContactMotion, events: tuple, side: NDArray, start: Sequence, panel: Panel
+) -> NDArray:
     """The place on [0, 1] of the first of the :func:`_maxima` of all events; infinity if none."""
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     first = np.full(start[0].size, np.inf)
@@ -509,19 +529,29 @@ def _first_maximum(motion, events, side, start, panel):
     return first
 
 
-def _shift(motion, event, state, by):
+def _shift(
+    motion: ContactMotion, event: Callable, state: Sequence | NDArray, by: NDArray
+) -> NDArray:
     """Derivatives of s at an event, from those of (q, v, t), (3, directions, rows)."""
     _, slope = event_rate(motion, event, state)
     beside = (y + 1j * each for y, each in zip(state, by, strict=True))
     return -event(*beside, motion.stepped()).imag / slope
 
 
-def _pace(motion, state):
+def _pace(motion: ContactMotion, state: Sequence | NDArray) -> NDArray:
     """Derivatives of (s, q, v, t) with respect to s, beside directions."""
     return np.array([np.ones_like(state[0]), *rates(motion, state)])[:, np.newaxis]
 
 
-def _next_panel(motion, events, side, start, length, newton, push=0.0):
+def _next_panel(
+    motion: ContactMotion,
+    events: tuple,
+    side: NDArray,
+    start: Sequence,
+    length: NDArray,
+    newton: bool,
+    push: Values = 0.0,
+) -> tuple[Panel, NDArray]:
     """The next panels, which end at their first events, and these, -1 if none. Writes ``side``."""
     panel = solve_panel(motion, start, length, push=push, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
@@ -560,7 +590,7 @@ def _next_panel(motion, events, side, start, length, newton, push=0.0):
     return panel, which
 
 
-def _turn(q, v, t, given):
+def _turn(q: NDArray, v: NDArray, t: NDArray, given: Mapping) -> Values:
     """The event that ends each period of the table."""
     return t - given["turn"]
 
@@ -583,7 +613,7 @@ class _Contacts:
     ended: NDArray
     lost: NDArray
 
-    def advance(self, here, lies, push=0.0):
+    def advance(self, here: NDArray, lies: bool, push: Values = 0.0) -> None:
         """Move some contacts to the ends of their next panels, or make these shorter.
 
         ``push`` is a guess of F on whole contacts.
@@ -624,7 +654,7 @@ class _Contacts:
             self.differentiate(kept, which, panel.of(good), newton=newton)
         self.end_events(kept[which >= 0], which[which >= 0])
 
-    def differentiate(self, here, which, panel, *, newton):
+    def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
         """Move the derivatives to the ends of panels, some of which are at events."""
         given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
         self.by[1:, :, here] = carried(*given, newton=newton)
@@ -634,7 +664,7 @@ class _Contacts:
             shift = _shift(motion, self.events[k], self.now[1:, at], self.by[1:, :, at])
             self.by[:, :, at] += _pace(motion, self.now[1:, at]) * shift
 
-    def end_events(self, here, which):
+    def end_events(self, here: NDArray, which: NDArray) -> None:
         """Change the sides of kinks, end contacts at their releases, and compare periods."""
         release = len(self.motion.kinks)
         self.side[which, here] *= -1
@@ -651,7 +681,18 @@ class _Contacts:
 
 
 @np.errstate(all="ignore")
-def follow(motion, q, v, by, length, period, until=None, by_until=0.0, longest=PERIODS, push=None):
+def follow(
+    motion: ContactMotion,
+    q: NDArray,
+    v: NDArray,
+    by: NDArray,
+    length: NDArray,
+    period: NDArray,
+    until: Any = None,
+    by_until: Values = 0.0,
+    longest: Values = PERIODS,
+    push: Values = None,
+) -> tuple[NDArray, NDArray]:
     """Contacts from their starts to the first releases, or to root times.
 
     A contact is permanent if its motion repeats after a period, or if it lasts too long.

@@ -7,7 +7,7 @@ Units are read by pint. A plain number is in SI units.
 
 import re
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pint
@@ -22,7 +22,7 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import tsuji
 from bouncing_ball_beyond.paths import Frequency
-from bouncing_ball_beyond.tables import SINE, Table, check_table
+from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
 UNITS: pint.UnitRegistry = pint.UnitRegistry()
@@ -343,7 +343,7 @@ def on_shaker(
         # With any duration, because the damping depends on r alone.
         hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
 
-        def contacts(times):
+        def contacts(times: Values) -> Any:
             return hertz.at(stiffness=force * times**2.5)
 
     else:
@@ -355,7 +355,7 @@ def on_shaker(
             lasts = rate * in_si("contact_duration", contact_duration, "s")
             ratio = float(spring.free(1.0)) / lasts
 
-        def contacts(times):
+        def contacts(times: Values) -> Any:
             return spring.at(frequency_ratio=ratio * times)
 
     return _answer(contacts, amplitude, n, within, rate, fall, table)
@@ -375,7 +375,7 @@ def _one_of(**quantities: float | str | None) -> str:
     return given[0]
 
 
-def _mass(mass, radius, density) -> float:
+def _mass(mass: Any, radius: Any, density: Any) -> float:
     if mass is not None:
         return in_si("mass", mass, "kg")
     if radius is None or density is None:
@@ -390,7 +390,9 @@ def _compliance(modulus: float | str | None, ratio: float, body: str) -> float:
     return (1 - ratio**2) / in_si(f"{body}youngs_modulus", modulus, "Pa")
 
 
-def _answer(contacts, amplitude, n, tolerance, rate, fall, table) -> ShakerAnswer:
+def _answer(
+    contacts: Any, amplitude: Values, n: Values, tolerance: Any, rate: Any, fall: Any, table: Table
+) -> ShakerAnswer:
     """The answer for the ball contacts(1) at Λ, with Ω in rad/s and gravity in m/s²."""
     ball = contacts(1.0)
     impact = free_impact(ball, n)
@@ -448,7 +450,7 @@ def _answer(contacts, amplitude, n, tolerance, rate, fall, table) -> ShakerAnswe
     )
 
 
-def _times(ball, amplitude, n, name, exact, table) -> float:
+def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
     """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke.
 
     Λ is proportional to the square of the frequency. That of a bifurcation hardly changes with it,

@@ -6,11 +6,13 @@ ball whose bounces end on the table, or that does not rise above it, rests there
 falls faster than a ball, -w″ > 1, or for ever if it never does (Eq. 9).
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import (
@@ -26,7 +28,7 @@ from bouncing_ball_beyond.balls import (
 )
 from bouncing_ball_beyond.impact_map import ImpactMap
 from bouncing_ball_beyond.one_ball import COLUMNS, ROUNDING, STEPS, TURN
-from bouncing_ball_beyond.tables import SINE, Table, check_table
+from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 one_ball.compile_loops()
 
@@ -71,7 +73,7 @@ class Balls:
     table: Table = SINE
     map: ImpactMap | None = None
 
-    def take(self, which):
+    def take(self, which: Any) -> "Balls":
         """Some of the balls, by a mask or their indices."""
         arrays = ("amplitude", "turns", "phase", "speed")
         rows = {name: getattr(self, name)[which] for name in arrays}
@@ -79,7 +81,15 @@ class Balls:
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def landings(table, start, gap, w, waves, height, amplitude):
+def landings(
+    table: Table,
+    start: Values,
+    gap: Values,
+    w: Values,
+    waves: list,
+    height: Values,
+    amplitude: Values,
+) -> tuple[NDArray, NDArray]:
     """:func:`.one_ball.landing` for arrays of one shape, with the table at a height at first."""
     _, _, bend, jerk, *_ = table.bounds
     given = start, gap, w, *waves
@@ -110,11 +120,19 @@ def landings(table, start, gap, w, waves, height, amplitude):
             left = left[going]
             rows = rows.take(going, axis=1)
     for i in left if table.compiled else ():
-        time[i], speed[i] = one_ball.landing(*(each[i] for each in given), amplitude[i])
+        time[i], speed[i] = one_ball.landing(*(each[i] for each in (*given, amplitude)))
     return time, speed
 
 
-def instants(ball, table, landed, gap, w, waves, amplitude):
+def instants(
+    ball: Ball,
+    table: Table,
+    landed: NDArray,
+    gap: Values,
+    w: Values,
+    waves: list,
+    amplitude: Values,
+) -> tuple[NDArray, NDArray]:
     r"""The times after landings at which the gap is that at which impacts of the ball start, and
     the speeds.
 
@@ -144,7 +162,7 @@ def instants(ball, table, landed, gap, w, waves, amplitude):
     return t, speed
 
 
-def leave(balls):
+def leave(balls: Balls) -> Leaving:
     """How balls leave the table after their impacts."""
     if balls.map:
         own_time, duration, gap, w = balls.map.leaves(balls.phase, balls.speed)
@@ -157,7 +175,7 @@ def leave(balls):
     return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
 
 
-def rest(balls, gap, w):
+def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
     """How balls leave after instantaneous impacts, some of them after :func:`.one_ball.rest`."""
     table = balls.table
     amplitude = balls.amplitude
@@ -183,7 +201,7 @@ def rest(balls, gap, w):
     return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
 
 
-def may_sink(gap, w, strongest, left):
+def may_sink(gap: Values, w: Values, strongest: NDArray, left: NDArray) -> NDArray:
     """Which balls may not rise after the time ``left``, or not through the level of the table.
 
     The others do against the strongest relative gravity, the greatest 1 + w″.
@@ -191,14 +209,14 @@ def may_sink(gap, w, strongest, left):
     return (gap < 0) & ((w <= strongest * left) | (w * w + 2 * strongest * gap <= 0))
 
 
-def reduced(phase):
+def reduced(phase: Values) -> tuple[NDArray, NDArray]:
     """:func:`.one_ball.reduced` for arrays."""
     turns = np.floor(phase / TURN + 0.5)
     return turns, phase - turns * TURN
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def fly(balls, leaving):
+def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     """The time of the flights of balls up to their next impacts, and their closing speeds.
 
     Where a contact resumes, the speed is negative. The time is NaN where it does so for a law whose
@@ -234,11 +252,11 @@ def fly(balls, leaving):
             start[i] = table.emergence(left[i], *given)
     time, speed = np.full((2, *w.shape), np.nan)
     (lands,) = (~resumes & (start < np.inf)).nonzero()
-    given = [each[lands] for each in waves]
+    pulls = [each[lands] for each in waves]
     if table.compiled:
-        given[1] = y[lands]
-    given = start[lands], gap[lands], w[lands], given, height[lands], amplitude[lands]
-    time[lands], speed[lands] = landings(table, *given)
+        pulls[1] = y[lands]
+    states = start[lands], gap[lands], w[lands]
+    time[lands], speed[lands] = landings(table, *states, pulls, height[lands], amplitude[lands])
     if ball.sinks:
         return instants(ball, table, time, gap, w, waves, amplitude)
     time[resumes] = start[resumes]
@@ -247,7 +265,7 @@ def fly(balls, leaving):
     return time, speed
 
 
-def step(balls):
+def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
     """One impact of each ball, and the flight after it.
 
     Returns
@@ -274,22 +292,25 @@ def step(balls):
     return record, going[lands], after if lands.all() else after.take(lands)
 
 
-def follow_each(balls, impacts):
+def follow_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     """:func:`follow` for balls that have a scalar loop, one after the other."""
-    given = balls.ball.looped(balls.table)
+    given: Any = balls.ball.looped(balls.table)
     state = balls.turns, balls.phase, balls.speed, balls.amplitude, *given, balls.ball.kappa
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     ends = np.empty((4, balls.phase.size))
     for j, numbers in enumerate(zip(*np.broadcast_arrays(*state), strict=True)):
         out = np.full(record.shape[:2], np.nan)
-        ends[:, j] = one_ball.impacts(*map(float, numbers), out)
+        arguments: list[Any] = [*map(float, numbers), out]
+        ends[:, j] = one_ball.impacts(*arguments)
         record[:, :, j] = out
     stays, turns, phase, speed = ends
     (going,) = (stays == 0).nonzero()
     return record, going, replace(balls, turns=turns, phase=phase, speed=speed).take(going)
 
 
-def follow_by_map(balls, impacts):
+def follow_by_map(
+    balls: Balls, contacts: ImpactMap, impacts: int
+) -> tuple[NDArray, NDArray, Balls]:
     """:func:`follow` for balls with a map of their contacts.
 
     A ball whose contact has to be integrated waits for others, so that many are integrated at once.
@@ -300,7 +321,7 @@ def follow_by_map(balls, impacts):
     bounces = np.ones(balls.phase.size, bool)
     while (bounces & (done < impacts)).any():
         (ready,) = (bounces & (done < impacts)).nonzero()
-        quick = balls.map.knows(speed[ready])
+        quick = contacts.knows(speed[ready])
         here = ready[quick] if 2 * np.count_nonzero(quick) >= ready.size else ready[~quick]
         rows = replace(balls.take(here), turns=turns[here], phase=phase[here], speed=speed[here])
         each, going, after = step(rows)
@@ -315,7 +336,7 @@ def follow_by_map(balls, impacts):
     return record, left, after
 
 
-def follow(balls, impacts):
+def follow(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     """A number of impacts of each ball.
 
     Returns
@@ -330,7 +351,7 @@ def follow(balls, impacts):
     if balls.phase.size < FEW and balls.ball.looped(balls.table):
         return follow_each(balls, impacts)
     if balls.map:
-        return follow_by_map(balls, impacts)
+        return follow_by_map(balls, balls.map, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     left = np.arange(balls.phase.size)
     for impact in record:
@@ -341,7 +362,7 @@ def follow(balls, impacts):
     return record, left, balls
 
 
-def axis(name, value, dim=None):
+def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
     """An argument as a labelled array: a list is an axis with the name of the argument."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
@@ -354,7 +375,7 @@ def axis(name, value, dim=None):
     return xr.DataArray(value, {name: (dims, value)} if dims else {}, dims)
 
 
-def grid_of(ball, **values):
+def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray]]:
     """The grid that arguments and array parameters of a ball span.
 
     Parameters of a ball vary together: along an axis with the name of the parameter, or "ball" if
@@ -382,7 +403,14 @@ def grid_of(ball, **values):
     return grid, ball, flat[: len(values)]
 
 
-def first_impacts(ball, amplitude, phase, velocity, relative_velocity, table=SINE):
+def first_impacts(
+    ball: Ball,
+    amplitude: Values,
+    phase: Values,
+    velocity: Values,
+    relative_velocity: Values,
+    table: Table = SINE,
+) -> tuple[xr.DataArray, Balls]:
     """The grid of first impacts and the balls before them; the arguments are those of
     :func:`simulate`.
     """
@@ -432,7 +460,9 @@ DESCRIPTIONS = {
 """Long name, symbol and unit of variables of datasets. All times are Ωt and all lengths Ω²y/g."""
 
 
-def dataset(grid, variables, descriptions, **coordinates):
+def dataset(
+    grid: xr.DataArray, variables: dict, descriptions: Mapping, **coordinates: Any
+) -> xr.Dataset:
     """Values over the points of a grid as a labelled dataset.
 
     Parameters
@@ -450,7 +480,7 @@ def dataset(grid, variables, descriptions, **coordinates):
     return described(found, descriptions)
 
 
-def described(found, descriptions):
+def described(found: xr.Dataset, descriptions: Mapping) -> xr.Dataset:
     """A dataset whose variables have a long name, a symbol and a unit."""
     for name in found.variables:
         if name in descriptions:
@@ -460,15 +490,15 @@ def described(found, descriptions):
 
 
 def simulate(
-    ball,
+    ball: Ball,
     *,
-    amplitude,
-    phase=0.0,
-    velocity=None,
-    relative_velocity=None,
-    impacts=100,
-    table=SINE,
-):
+    amplitude: Values,
+    phase: Values = 0.0,
+    velocity: Values = None,
+    relative_velocity: Values = None,
+    impacts: int = 100,
+    table: Table = SINE,
+) -> xr.Dataset:
     """The impacts of a ball that begins with a given first impact.
 
     Parameters
@@ -531,16 +561,16 @@ def simulate(
 
 
 def history(
-    ball,
+    ball: Ball,
     *,
-    amplitude,
-    phase=0.0,
-    velocity=None,
-    relative_velocity=None,
-    periods=10.0,
-    samples=200,
-    table=SINE,
-):
+    amplitude: Values,
+    phase: Values = 0.0,
+    velocity: Values = None,
+    relative_velocity: Values = None,
+    periods: float = 10.0,
+    samples: int = 200,
+    table: Table = SINE,
+) -> xr.Dataset:
     """A ball over time, from a first impact as in :func:`simulate`.
 
     Parameters
@@ -568,7 +598,16 @@ def history(
     return over_time(grid, balls, nothing, periods, samples)
 
 
-def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200, table=SINE):
+def drop(
+    ball: Ball,
+    *,
+    height: Values,
+    amplitude: Values = 0.0,
+    phase: Values = 0.0,
+    periods: float = 10.0,
+    samples: int = 200,
+    table: Table = SINE,
+) -> xr.Dataset:
     """A ball that is dropped at rest above the table, over time.
 
     Parameters
@@ -612,7 +651,9 @@ def drop(ball, *, height, amplitude=0.0, phase=0.0, periods=10.0, samples=200, t
     return over_time(grid, first, fall[np.newaxis], periods, samples)
 
 
-def over_time(grid, balls, fall, periods, samples):
+def over_time(
+    grid: xr.DataArray, balls: Balls, fall: NDArray, periods: float, samples: int
+) -> xr.Dataset:
     """The dataset of balls over time, from their first impacts or from rows that record falls."""
     periods = checked("periods", periods, 0, np.inf, low_allowed=False)
     times = np.linspace(0, TURN * periods, round(periods * whole_number("samples", samples)) + 1)
@@ -637,7 +678,9 @@ def over_time(grid, balls, fall, periods, samples):
     return dataset(grid, found, DESCRIPTIONS, time=times)
 
 
-def states_at(record, origin, balls, times):
+def states_at(
+    record: NDArray, origin: float, balls: Balls, times: NDArray
+) -> tuple[NDArray, NDArray, NDArray]:
     """δ, δ′ and whether one ball is in contact at times after the phase ``origin`` of the table."""
     ball = balls.ball
     amplitude = float(balls.amplitude[0])
@@ -654,18 +697,19 @@ def states_at(record, origin, balls, times):
     if ball.lasts and contact.any():
         given = phase[contact], u[contact], since[contact]
         own_time = own_times(balls, own_time[contact], *given)
-        on_table = amplitude, 1.0, balls.table
-        _, gap[contact], rate[contact], _ = ball.contact(*given[:2], own_time, *on_table)
+        end = ball.contact(*given[:2], own_time, amplitude, table=balls.table)
+        gap[contact] = end.gap
+        rate[contact] = end.speed
     return gap, rate, contact
 
 
-def own_times(balls, above, *given):
+def own_times(balls: Balls, above: NDArray, *given: NDArray) -> NDArray:
     """T at times after the starts of contacts, from T above them or NaN, by a bracket.
 
     ``given`` are the phases and speeds at the starts, and the times since then.
     """
 
-    def late(T, phase, speed, since):
+    def late(T: Values, phase: Values, speed: NDArray, since: NDArray) -> NDArray:
         on_table = float(balls.amplitude[0]), 1.0, balls.table
         return balls.ball.contact(phase, speed, T, *on_table).duration - since
 

@@ -30,6 +30,7 @@ def reference():
     return {path.stem: read(path) for path in (ROOT / "figures").glob("*.nc")}
 
 
+@pytest.mark.long
 def test_the_result_in_the_repository_is_that_of_the_study(study, reference):
     found = study.changed_verdicts(reference, printed_table(study.PRINTED))
     with open(study.RESULT, encoding="utf-8", newline="") as file:

@@ -189,6 +189,7 @@ def conda(tmp_path, monkeypatch):
     return tmp_path / "asked"
 
 
+@pytest.mark.long
 def test_the_job_with_conda_runs(checkout, conda):
     """The script of continuous integration, and the commands of the page on clusters."""
     jobs = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text("utf-8"))["jobs"]

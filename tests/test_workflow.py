@@ -384,7 +384,7 @@ def test_a_failed_step_does_not_hide_the_others(tmp_path, ci, root):
         [ROOT / ".ci/run"], env=environment, capture_output=True, text=True, check=False
     )
     called = (tmp_path / "called").read_text("utf-8").splitlines()
-    first = ["setup", "lint", "clean", "all", "diff", "test", "test-cluster"]
+    first = ["setup", "lint", "clean", "all", "diff", "test", "test-long", "test-cluster"]
     assert called[:7] == first
     extras = [line for line in called[7:] if line != "apt-get"]
     assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in extras)

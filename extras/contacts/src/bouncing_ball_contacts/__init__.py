@@ -1,13 +1,14 @@
 """What to write into a physics engine for a bounce, and what bounce a recording shows."""
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from bouncing_ball_contacts.designs import Bounce, Design, design
-from bouncing_ball_contacts.diagnosis import Diagnosis, diagnose
 from bouncing_ball_contacts.engines import ENGINES
 from bouncing_ball_contacts.units import Refused
 
 if TYPE_CHECKING:
+    from bouncing_ball_contacts.diagnosis import Diagnosis, diagnose
     from bouncing_ball_contacts.fits import Fit, fit
 
 __all__ = [
@@ -23,10 +24,11 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    # Fits need SciPy, whose import takes longer than a design.
-    if name in ("Fit", "fit"):
-        from bouncing_ball_contacts import fits
+# Fits need SciPy, whose import takes longer than a design, which needs neither.
+_ELSEWHERE = {"Fit": "fits", "fit": "fits", "Diagnosis": "diagnosis", "diagnose": "diagnosis"}
 
-        return getattr(fits, name)
+
+def __getattr__(name: str) -> Any:
+    if name in _ELSEWHERE:
+        return getattr(import_module(f"{__name__}.{_ELSEWHERE[name]}"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

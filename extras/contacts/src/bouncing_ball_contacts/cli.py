@@ -10,7 +10,6 @@ from typing import Any
 import click
 
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, design
-from bouncing_ball_contacts.diagnosis import diagnose
 from bouncing_ball_contacts.engines import ENGINES, engine_named
 from bouncing_ball_contacts.rebounds import (
     BY_NUMBER,
@@ -213,6 +212,8 @@ def diagnose_command(
 
     Without numbers they are the engine's defaults, if it has some.
     """
+    from bouncing_ball_contacts.diagnosis import diagnose
+
     typed = _assigned(parameters)
     if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
         typed = _own_of_ode(typed, time_step)

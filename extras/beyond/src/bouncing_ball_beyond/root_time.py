@@ -393,8 +393,8 @@ def solve_panel(
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
             near = np.abs(moved) <= within
-        # Each sweep changes v by a smaller part of the last change than the one before, and a step of
-        # Newton's method by the square of that part.
+        # Each sweep changes v by a smaller part of the last change than the one before, and a step
+        # of Newton's method by the square of that part.
         left = change * np.fmin(change / earlier, 1.0) ** (2 if newton else 1)
         if np.all(near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
             break

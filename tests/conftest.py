@@ -2,6 +2,7 @@
 
 import ast
 import contextlib
+import gc
 import io
 import os
 import re
@@ -33,6 +34,13 @@ def stub(script: Path) -> str:
     nodes = ast.walk(ast.parse(script.read_text("utf-8")))
     imports = [ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
     return STUB.format(imports="\n    ".join(imports))
+
+
+def pytest_collection_finish():
+    """What is imported by now stays: the collector of garbage need not look at it again and again,
+    which is a tenth of the time.
+    """
+    gc.freeze()
 
 
 @pytest.fixture(scope="session", autouse=True)

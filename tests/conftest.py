@@ -38,7 +38,7 @@ def stub(script: Path) -> str:
 
 def pytest_collection_finish():
     """What is imported by now stays: the collector of garbage need not look at it again and again,
-    which is a tenth of the time.
+    which takes about a tenth of the time.
     """
     gc.freeze()
 

@@ -138,7 +138,7 @@ class Project:
 
     def lines(self, *names: str, reference: Path | None = None) -> list[str]:
         folders = self.results, reference or self.top
-        return Comparison(*folders, self.products, self.config, names, self.top).report().lines
+        return Comparison(*folders, self.products, self.config, names, self.top).lines
 
     def edit(self, file: str, old: str, new: str) -> None:
         path = self.top / file

@@ -26,15 +26,18 @@ LINES = {
     "code": (VERDICTS, "follows from fig14: changed: src/study.py ({})"),
     "a model": (VERDICTS, "follows from fig14: changed: src/model.py ({})"),
     "verdicts": (
-        "claims: today's code makes another figures/claims.nc of the reference: verdict is 'contr",
+        "claims: figures/claims.nc in the reference is not what today's code makes of its data: "
+        "verdict is 'contr",
         "; changed: src/judge.py ({})",
     ),
     "drawing": (
-        "fig02: today's code makes another figures/fig02.md of the reference: line 1: 'height",
+        "fig02: figures/fig02.md in the reference is not what today's code makes of its data: "
+        "line 1: 'height",
         "; changed: src/table.py ({})",
     ),
     "template": (
-        "paper: today's code makes another paper.md of the reference: line 1: 'The gr",
+        "paper: paper.md in the reference is not what today's code makes of its data: "
+        "line 1: 'The gr",
         "; changed: templates/paper.md ({})",
     ),
     "printed table": (
@@ -134,9 +137,7 @@ def test_a_claim_follows_from_the_dataset_that_decides_it(project):
     project.follow()
     lines = project.lines()
     assert lines[0].startswith(VERDICTS) and f"; follows from fig14: {NOTHING}" in lines[0], lines
-    assert any(
-        reads(line, ("fig02: attribute title of the dataset is 'another'", "")) for line in lines
-    )
+    assert any(reads(line, ("fig02: title fig02 -> another", "")) for line in lines)
 
 
 NOTHING = "no file that it is made from has changed since figures/fig14.nc"
@@ -173,5 +174,5 @@ def test_of_a_copy_without_git_the_files_are_known_and_not_when_they_changed(pro
     project.run()
     told = " ".join(project.lines())
     assert "; follows from fig14: changed: src/study.py " in told
-    assert "fig02.md of the reference: line 1" in told
-    assert "changes of the code are unknown without git" in told
+    assert "figures/fig02.md in the reference is not what" in told
+    assert "changes of the code are unknown without the history of git" in told

@@ -4,20 +4,17 @@ A dataset records its parameters, the versions of libraries, and the files of co
 their contents. Pictures, tables, claims and texts are functions of datasets.
 """
 
-import fcntl
-import os
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import matplotlib
 import netCDF4
 import xarray as xr
 from matplotlib.figure import Figure
 
 from bouncing_ball import datasets, drawing
 from bouncing_ball.datasets import PACKAGES, Datasets
-from bouncing_ball.differences import PICTURES, changes, record
+from bouncing_ball.differences import changes, record
 from bouncing_ball.history import commit, contents
 
 # Files, and the datasets that they follow from
@@ -44,11 +41,6 @@ class Product:
     def is_dataset(self) -> bool:
         """Whether it is a dataset, which follows from others."""
         return self.files[0].endswith(".nc")
-
-    @property
-    def is_picture(self) -> bool:
-        """Whether it is drawn, which another version of matplotlib does otherwise."""
-        return self.files[0].endswith(PICTURES)
 
 
 def picture(
@@ -108,46 +100,34 @@ class Side:
     data: dict[str, xr.Dataset]
     unread: dict[str, str]
 
-    def matplotlib(self, product: Product) -> str:
-        """The version of matplotlib that drew a picture, as its dataset says; that of a picture
-        without dataset is that of any.
-        """
-        made = [self.data[name] for name in product.needs or self.data if name in self.data]
-        return record(made[0], "versions")["matplotlib"] if made else matplotlib.__version__
+    def dataset(self, name: str) -> Path:
+        """The file of a dataset."""
+        return self.folder / "figures" / f"{name}.nc"
 
-    def drawn_elsewhere(self, product: Product) -> bool:
-        """Whether a picture was drawn by another version of matplotlib than that of today."""
-        return product.is_picture and self.matplotlib(product) != matplotlib.__version__
+    def versions(self, package: str, names: Iterable[str]) -> str:
+        """The versions of a package with which those of some datasets were made that are there."""
+        there = [self.data[name] for name in names if name in self.data]
+        return ", ".join(sorted({record(each, "versions")[package] for each in there}))
 
 
-def read_side(name: str, folder: Path, names: Collection[str]) -> Side:
-    """A side with the datasets that are there. Raises ValueError where files cannot be locked."""
+def read_side(name: str, folder: Path, names: Iterable[str]) -> Side:
+    """A side with the datasets that are there."""
     data = {}
     unread = {}
     for each in names:
         path = folder / "figures" / f"{each}.nc"
-        # A pipe would be read for ever.
-        if path.is_file():
-            try:
+        try:
+            # A pipe would be read for ever.
+            if path.is_file():
                 data[each] = read(path)
-            except Exception as error:  # Whatever readers of damaged files raise.
-                refuse_no_locks(path)
-                unread[each] = f"{type(error).__name__}: {error}"
+        except Exception as error:  # Whatever readers of damaged files raise.
+            # With this error HDF5 refuses a damaged file, and one that it cannot lock.
+            locks = LOCKS if "HDF error" in str(error) else ""
+            unread[each] = f"{type(error).__name__}: {error}{locks}"
     return Side(name, folder, data, unread)
 
 
-def refuse_no_locks(path: Path) -> None:
-    """Raise ValueError if HDF5, which locks each file that it reads, cannot lock this one."""
-    if os.environ.get("HDF5_USE_FILE_LOCKING") in ("FALSE", "0"):
-        return
-    try:
-        with path.open("rb") as file:
-            fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except OSError as error:
-        raise ValueError(
-            f"{path} cannot be locked ({error.strerror}): if the file system has no locks, set "
-            "HDF5_USE_FILE_LOCKING=FALSE"
-        ) from None
+LOCKS = "; if the file system has no locks, set HDF5_USE_FILE_LOCKING=FALSE"
 
 
 def read(path: Path) -> xr.Dataset:
@@ -157,17 +137,17 @@ def read(path: Path) -> xr.Dataset:
     """
     with netCDF4.Dataset(path) as file:
         unlimited = [name for name, each in file.dimensions.items() if each.isunlimited()]
-        beside = [*file.groups, *unlimited]
-        if file.data_model != "NETCDF4" or beside:
-            other = f" with groups or unlimited dimensions: {', '.join(beside)}" if beside else ""
-            raise ValueError(f"it has the format {file.data_model}{other}")
+        beside = ", ".join([*file.groups, *unlimited]) or "none"
+        if (file.data_model, beside) != ("NETCDF4", "none"):
+            form = f"{file.data_model} with groups or unlimited dimensions: {beside}"
+            raise ValueError(f"it has the format {form}")
     data = datasets.read(path)
-    records = {key: record(data, key) for key in ("parameters", "code", "versions")}
-    missing = [name for name in PACKAGES if not isinstance(records["versions"].get(name), str)]
-    if missing:
-        raise ValueError(f"it does not record the versions of {', '.join(missing)}")
-    if not all(isinstance(content, str) for content in records["code"].values() or [None]):
-        raise ValueError("it does not record the code that made it")
+    record(data, "parameters")
+    code = record(data, "code")
+    versions = record(data, "versions")
+    texts = [*code.values(), *(versions.get(package) for package in PACKAGES)]
+    if not code or not all(isinstance(text, str) for text in texts):
+        raise ValueError(f"it does not record its code and the versions of {', '.join(PACKAGES)}")
     return data
 
 

@@ -15,16 +15,16 @@ Three comparisons are made, of which `differences` says what is different:
 The cause of a difference is what the file is made from and what has changed. A dataset records its
 parameters, versions, and files of code with their contents, so that those of both sides can be
 compared without git, which then only says when a file changed. Claims change by other code, which
-the second comparison shows, or by the datasets that decide them.
+the second comparison shows, or by datasets: those that alone change them in the reference, too.
 """
 
 import io
 import os
 import sys
 import tempfile
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -35,9 +35,8 @@ import yaml
 
 from bouncing_ball import datasets
 from bouncing_ball.artifacts import Product, Side, needed, read_side, staleness
-from bouncing_ball.datasets import PACKAGES
+from bouncing_ball.datasets import PACKAGES, Datasets
 from bouncing_ball.differences import (
-    DESCRIPTIVE,
     KINDS,
     Finding,
     changes,
@@ -49,39 +48,6 @@ from bouncing_ball.differences import (
 from bouncing_ball.history import CHECKOUT, History
 
 
-@dataclass(frozen=True)
-class Report:
-    """What was found, the most telling first, and what else a reader should know.
-
-    `consequences` are files of the results that differ from those of the reference because their
-    datasets do; they are shown and not counted. `notes` tell of other versions. `skipped` of the
-    files are pictures that were not compared, because another matplotlib drew them.
-    """
-
-    findings: list[Finding]
-    consequences: list[Finding]
-    notes: list[str]
-    files: int
-    skipped: int
-
-    @property
-    def lines(self) -> list[str]:
-        """The report on a terminal: the most telling finding of each artifact, others of the same
-        with another cause, and the verdict.
-        """
-        told = []
-        red: set[str] = set()
-        for finding in self.findings:
-            if finding.cause or finding.artifact not in red:
-                told.append(finding.line)
-            red.add(finding.artifact)
-        agreeing = f"{self.files - self.skipped} of {self.files}" if self.skipped else self.files
-        verdict = f"{'' if self.skipped else 'All '}{agreeing} files agree with the reference."
-        if red:
-            verdict = f"Differences: {len(self.findings)}, in {', '.join(sorted(red))}."
-        return [*told, " ".join([verdict, *self.notes])]
-
-
 class Comparison:
     """Results beside the reference: all, or those with the names given.
 
@@ -89,6 +55,10 @@ class Comparison:
     `config` is the configuration of the results, and `top` the checkout of today's code. Raises
     ValueError if the results are no results or the reference itself, or for a name that is not
     compared.
+
+    `findings` are the differences, the most telling first. `consequences` are files of the results
+    that differ from those of the reference because their datasets do; the page shows them.
+    `skipped` are pictures that were not compared, because another matplotlib drew them.
     """
 
     def __init__(
@@ -110,133 +80,139 @@ class Comparison:
         self.new = read_side("results", Path(results), needed(products))
         self.old = read_side("reference", Path(reference), needed(products))
         self.derived = {product.artifact for product in products if product.is_dataset}
+        both = self.new.data.keys() & self.old.data.keys()
         self.differences = {
-            name: compared(self.new.data[name], self.old.data[name])
-            for name in self.new.data
-            if name in self.old.data and name not in self.derived
+            name: compared(self.new.data[name], self.old.data[name]) for name in both
         }
+        self.same = {name for name in both if same_bits(self.new.data[name], self.old.data[name])}
+        # A picture without a dataset may have been drawn by the versions of any.
+        known = {*self.names, *needed(self.made)} or {*needed(products)}
+        self.versions = other_versions(self.new, self.old, known)
+        pictures = [each for each in self.files if each.endswith((".svg", ".png"))]
+        self.skipped = pictures if "matplotlib" in self.versions else []
         self.why = cache(self.cause_of_dataset)
         self.why_made = cache(self.cause_of_product)
+        self.findings = sorted(self.found(), key=lambda each: each.rank)
+        red = {finding.artifact for finding in self.findings}
+        self.consequences = [each for made in self.made for each in self.seen(made, red)]
 
-    def report(self) -> Report:
-        """All findings. The cause of differences is stated once for each artifact."""
-        findings = [*self.file_findings(self.new), *self.file_findings(self.old)]
-        for name in self.names:
-            findings += self.dataset_findings(name)
-        with tempfile.TemporaryDirectory() as scratch:
-            for product in self.made:
-                findings += self.product_findings(product, Path(scratch))
-        findings.sort(key=lambda each: each.rank)
-        red = {finding.artifact for finding in findings}
-        shown = [each for product in self.made for each in self.consequences(product, red)]
-        stated = {(each.artifact, each.cause): each for each in reversed(findings)}
-        return Report(
-            [
-                each if stated[each.artifact, each.cause] is each else replace(each, cause="")
-                for each in findings
-            ],
-            shown,
-            self.notes(),
-            len(self.files),
-            len(self.skipped()),
-        )
+    @property
+    def lines(self) -> list[str]:
+        """The report on a terminal: the most telling finding of each artifact with each cause, and
+        the verdict.
+        """
+        told: dict[tuple[str, str], str] = {}
+        for finding in self.findings:
+            told.setdefault((finding.artifact, finding.cause), finding.line)
+        red = sorted({artifact for artifact, _ in told})
+        number = len(self.files)
+        count = f"{number - len(self.skipped)} of {number}" if self.skipped else f"All {number}"
+        verdict = f"{count} files agree with the reference."
+        if red:
+            verdict = f"Differences: {len(self.findings)}, in {', '.join(red)}."
+        notes = []
+        if self.skipped:
+            number = len(self.skipped)
+            notes.append(
+                f"{number} pictures were not compared, because another matplotlib drew them."
+            )
+        if self.versions:
+            notes.append(f"Other versions: {'; '.join(self.versions.values())}.")
+        return [*told.values(), " ".join([verdict, *notes])]
 
     # What differs
 
+    def found(self) -> Iterator[Finding]:
+        """All findings with their causes. What is wrong in the results alone has none."""
+        yield from self.file_findings(self.new)
+        yield from self.file_findings(self.old)
+        for name in self.names:
+            yield from self.dataset_findings(name)
+        with tempfile.TemporaryDirectory() as scratch:
+            for product in self.made:
+                for each in self.product_findings(product, scratch):
+                    cause = "" if each.of_results else self.why_made(product)
+                    yield replace(each, artifact=product.artifact, cause=cause)
+                if product.is_dataset:
+                    yield from self.derived_findings(product, scratch)
+
     def file_findings(self, side: Side) -> Iterator[Finding]:
         """Files of one side that are missing, unreadable or, in a whole comparison, unexpected."""
-        present = sorted(path.name for path in (side.folder / "figures").iterdir())
-        accepted = {path.stem for path in (self.old.folder / "figures").iterdir()}
-        texts = {
-            file: f"{file} of the {side.name} is made by no rule"
-            for file in (f"figures/{name}" for name in present if name[0] != ".")
-            if self.whole and file not in self.files
-        }
-        for file in self.files:
+        present = [path.name for path in (side.folder / "figures").iterdir()]
+        figures = [f"figures/{name}" for name in present if not name.startswith(".")]
+        for file in sorted({*self.files, *(figures if self.whole else ())}):
             path = side.folder / file
-            name = path.stem
-            if side is self.old and file.startswith("figures/") and name not in accepted:
-                texts[name] = (
-                    f"{name} is not in the reference yet: commit, then "
-                    f"snakemake --cores 2 {name} accept"
-                )
+            words = ""
+            if file not in self.files:
+                words = "is made by no rule"
             elif not path.is_file():
-                what = "no regular file" if path.exists() else "missing"
-                texts[file] = f"{file} is {what} in the {side.name}"
-            elif file == f"figures/{name}.nc" and name in side.unread:
-                texts[file] = f"{file} of the {side.name} cannot be read: {side.unread[name]}"
-        for file, words in texts.items():
-            yield Finding("file", words, artifact=Path(file).stem, of_results=side is self.new)
+                words = "is no regular file" if path.exists() else "is missing"
+                words += "; if it is new, commit, then accept it" if side is self.old else ""
+            elif path.suffix == ".nc" and path.stem in side.unread:
+                words = f"cannot be read: {side.unread[path.stem]}"
+            if words:
+                text = f"{file} in the {side.name} {words}"
+                yield Finding("file", text, artifact=path.stem, of_results=side is self.new)
 
     def dataset_findings(self, name: str) -> Iterator[Finding]:
-        """Whether a dataset is stale, and where it differs from the reference."""
+        """Whether a dataset is stale, and where one of the models differs from the reference."""
         if name in self.new.data:
             for words in staleness(self.new.data[name], name, self.config, self.history.top):
                 yield Finding("stale", words, artifact=name, of_results=True)
-        for each in self.differences.get(name, []):
-            yield replace(each, artifact=name, cause=self.why(name))
+        if name not in self.derived:
+            for each in self.differences.get(name, []):
+                yield replace(each, artifact=name, cause=self.why(name))
 
-    def product_findings(self, product: Product, scratch: Path) -> Iterator[Finding]:
+    def product_findings(self, product: Product, scratch: str) -> Iterator[Finding]:
         """Files of both sides that are not what today's code makes of the datasets of that side.
 
         The datasets being the same to the last bit, a product is made once.
         """
+        needs = {*product.needs}
+        sides = [side for side in (self.old, self.new) if side.data.keys() >= needs]
         made = None
-        for side in (self.old, self.new):
-            if side.drawn_elsewhere(product) or not side.data.keys() >= {*product.needs}:
-                continue
-            needs = [(self.new.data.get(name), self.old.data.get(name)) for name in product.needs]
-            if made is None or not all(new and old and same_bits(new, old) for new, old in needs):
-                made = scratch / side.name
-                (made / "figures").mkdir(parents=True, exist_ok=True)
+        for side in sides if product.files[0] not in self.skipped else ():
+            wrong = side is self.new
+            if made is None or not needs <= self.same:
                 try:
-                    product.make(side.data, made)
+                    made = remade(product, side.data, scratch)
                 except Exception as error:  # Whatever a drawing does not find in a dataset.
                     words = f"today's code cannot make it of the dataset in the {side.name}"
-                    yield self.found(Finding("file", f"{words}: {error!r}"), product, side)
+                    yield Finding("file", f"{words}: {error!r}", of_results=wrong)
                     # The other side would fail in the same way.
                     return
             for file in product.files:
                 path = side.folder / file
-                what = f"today's code makes another {file} of the reference"
-                if side is self.new:
-                    what = f"{file} in the results is not what its dataset gives"
-                for each in file_differences(made / file, path) if path.is_file() else []:
-                    yield self.found(replace(each, text=f"{what}: {each.text}"), product, side)
-            if side is self.old and product.is_dataset:
-                yield from self.followed(product, datasets.read(made / product.files[0]))
+                what = f"{file} in the {side.name} is not what today's code makes of its data"
+                for each in file_differences(made / file, path) if path.is_file() else ():
+                    yield replace(each, text=f"{what}: {each.text}", of_results=wrong)
 
-    def found(self, finding: Finding, product: Product, side: Side) -> Finding:
-        """A finding on a product; what is wrong in the results alone has no cause in the code."""
-        wrong = side is self.new
-        cause = "" if wrong else self.why_made(product)
-        return replace(finding, artifact=product.artifact, cause=cause, of_results=wrong)
-
-    def followed(self, product: Product, expected: xr.Dataset) -> Iterator[Finding]:
+    def derived_findings(self, product: Product, scratch: str) -> Iterator[Finding]:
         """How a dataset that follows from others differs from what today's code makes of those in
-        the reference. The causes are the datasets that decide the claims that differ.
+        the reference. The causes are the datasets that alone change the same variable.
         """
-        name = product.artifact
-        if name not in self.new.data:
+        old = self.old.data
+        if not self.differences.get(product.artifact) or not old.keys() >= {*product.needs}:
             return
-        new = self.new.data[name]
-        declared = declarations(expected) | declarations(new)
-        changed = [other for other in product.needs if self.values_differ(other)]
-        for each in compared(new, expected):
-            decided = [declared.get(label, set()) & {*changed} for label in each.labels]
-            deciding = fewest(decided) if each.labels else changed
-            causes = {self.why(other) for other in deciding}
+        (file,) = product.files
+        expected = remade(product, old, scratch) / file
+        others = {*product.needs} - self.derived
+        changed = sorted(name for name in others if self.differences.get(name))
+        alone: dict[str, set[str]] = {}
+        for name in changed:
+            with suppress(Exception):  # A mixture of old and new datasets may make no sense.
+                one = remade(product, {**old, name: self.new.data[name]}, scratch) / file
+                alone[name] = {each.variable for each in file_differences(one, expected)}
+        for each in file_differences(self.new.folder / file, expected):
+            deciding = [name for name in changed if each.variable in alone.get(name, ())]
+            deciding = deciding or changed
+            causes = {self.why(name) for name in deciding}
             # Each of several causes stands with its dataset.
             words = [f"follows from {', '.join(deciding)}", *(causes if len(causes) == 1 else ())]
-            yield replace(each, artifact=name, cause=": ".join(words) if deciding else "")
+            cause = ": ".join(words) if deciding else ""
+            yield replace(each, artifact=product.artifact, cause=cause)
 
-    def values_differ(self, name: str) -> bool:
-        """Whether a dataset has other numbers, texts or parameters than that of the reference."""
-        if name not in self.differences:
-            return name in self.new.data and name not in self.derived
-        return any(each.order != DESCRIPTIVE for each in self.differences[name])
-
-    def consequences(self, product: Product, red: Collection[str]) -> Iterator[Finding]:
+    def seen(self, product: Product, red: Collection[str]) -> Iterator[Finding]:
         """Texts and PNG files in the results that differ from those in the reference because one of
         their datasets does.
         """
@@ -250,40 +226,35 @@ class Comparison:
 
     def cause_of_dataset(self, name: str) -> str:
         """Why a dataset differs: by what both sides record."""
-        if name not in self.old.data:
-            return "it is not in the reference"
-        old, new = (
-            {key: record(side.data[name], key) for key in ("parameters", "versions", "code")}
-            for side in (self.old, self.new)
-        )
+        old = self.old.data[name]
+        new = self.new.data[name]
+        before = record(old, "code")
+        after = record(new, "code")
         # A file that was only moved has the same content.
-        same = {*old["code"].values()} & {*new["code"].values()}
-        code = {**old["code"], **new["code"]}
-        changed = [file for file, content in code.items() if content not in same]
-        parameters = changes(old["parameters"], new["parameters"])
-        versions = changes(old["versions"], new["versions"])
-        libraries = [each for each in versions if each.split()[0] in PACKAGES]
-        return self.cause([f"figures/{name}.nc"], changed, parameters, libraries)
+        same = {*before.values()} & {*after.values()}
+        changed = [file for file, content in (before | after).items() if content not in same]
+        parameters = changes(record(old, "parameters"), record(new, "parameters"))
+        versions = changes(record(old, "versions"), record(new, "versions"))
+        libraries = [each for each in versions if not each.startswith("python")]
+        return self.cause([self.old.dataset(name)], changed, parameters, libraries)
 
     def cause_of_product(self, product: Product) -> str:
         """Why today's code makes other files of the reference: by what has changed since they were
         made.
         """
-        files = [*product.files, *(f"figures/{name}.nc" for name in product.needs)]
+        made = [self.old.folder / file for file in product.files]
+        made += [self.old.dataset(name) for name in product.needs]
         commits = [str(self.old.data[name].attrs.get("commit")) for name in product.needs]
-        made = self.history.newest(commits, [self.old.folder / file for file in files])
         code = [self.history.top / file for file in product.code]
-        later = self.history.since(made, code)
         edited = self.history.uncommitted(code)
+        later = self.history.since(self.history.newest(commits, made), code)
         if later is None and not edited:
-            unknown = ": git does not know when the reference was made"
-            without = unknown if self.history.head else " without git"
-            return f"changes of the code are unknown{without}"
-        return self.cause(files, {*edited, *(later or ())})
+            return "changes of the code are unknown without the history of git"
+        return self.cause(made, {*edited, *(later or ())})
 
     def cause(
         self,
-        reference: Collection[str],
+        reference: Collection[Path],
         changed: Collection[str],
         parameters: Collection[str] = (),
         libraries: Collection[str] = (),
@@ -291,8 +262,7 @@ class Comparison:
         """The cause in words: what surely changes the result, changed files, among them those of
         the reference that were edited, and what perhaps changes it.
         """
-        paths = [self.old.folder / file for file in reference]
-        files = self.history.told({*changed, *self.history.uncommitted(paths)})
+        files = self.history.told({*changed} | self.history.uncommitted(reference))
         causes = {
             "changed parameter": "; ".join(parameters),
             "changed": ", ".join(files),
@@ -301,47 +271,21 @@ class Comparison:
         words = [f"{what}: {which}" for what, which in causes.items() if which]
         if words:
             return "; ".join(words)
-        since = self.history.told(self.history.names(paths))[:1]
-        return " since ".join(["no file that it is made from has changed", *since])
+        last = self.history.told(self.history.names(reference))[:1]
+        return " since ".join(["no file that it is made from has changed", *last])
 
-    # What else a reader should know
 
-    def skipped(self) -> dict[str, set[str]]:
-        """Pictures that are not compared, with the versions of matplotlib that drew them."""
-        sides = self.old, self.new
-        return {
-            file: {side.matplotlib(product) for side in sides if side.drawn_elsewhere(product)}
-            for product in self.made
-            if any(side.drawn_elsewhere(product) for side in sides)
-            for file in product.files
-        }
-
-    def notes(self) -> list[str]:
-        """What was not compared, and which versions are not those of today."""
-        found = []
-        skipped = self.skipped()
-        today = datasets.versions()
-        if skipped:
-            drew = ", ".join(sorted(set().union(*skipped.values())))
-            found.append(
-                f"{len(skipped)} pictures were not compared: matplotlib {drew} drew them, and this "
-                f"is {today['matplotlib']}."
-            )
-        others = []
-        compared = {*self.names, *needed(self.made)}
-        for package in PACKAGES:
-            old, new = (
-                {record(side.data[name], "versions")[package] for name in compared & {*side.data}}
-                for side in (self.old, self.new)
-            )
-            if (old | new) - {today[package]}:
-                others.append(
-                    f"{package} {', '.join(sorted(old))} in the reference, "
-                    f"{', '.join(sorted(new))} in the results, {today[package]} today"
-                )
-        if others:
-            found.append(f"Other versions: {'; '.join(others)}.")
-        return found
+def other_versions(new: Side, old: Side, names: Collection[str]) -> dict[str, str]:
+    """In words, the versions of packages that made some datasets, where they are not of today."""
+    today = datasets.versions()
+    found = {}
+    for package in PACKAGES:
+        before = old.versions(package, names)
+        after = new.versions(package, names)
+        if {before, after} - {today[package], ""}:
+            sides = f"{before} in the reference, {after} in the results"
+            found[package] = f"{package} {sides}, {today[package]} today"
+    return found
 
 
 def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
@@ -352,26 +296,12 @@ def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
         return [Finding("file", f"the datasets cannot be compared: {error!r}")]
 
 
-def declarations(data: xr.Dataset) -> dict[str, set[str]]:
-    """The datasets that each claim declares to decide it."""
-    if "decided_by" not in data or data.decided_by.dims != ("claim",):
-        return {}
-    pairs = zip(data.claim.values, data.decided_by.values, strict=True)
-    return {claim: {*str(text).split(", ")} for claim, text in pairs}
-
-
-def fewest(decided: Iterable[Collection[str]]) -> list[str]:
-    """Datasets of which one decides each claim: one that alone decides a claim is enough for the
-    others that it decides too.
-
-    >>> fewest([{"fig02", "fig06"}, {"fig06"}, {"fig14"}, set()])
-    ['fig06', 'fig14']
-    """
-    found: set[str] = set()
-    for names in sorted(decided, key=len):
-        if found.isdisjoint(names):
-            found |= {*names}
-    return sorted(found)
+def remade(product: Product, data: Datasets, scratch: str) -> Path:
+    """A new folder below another one, with the files that follow from some datasets."""
+    folder = Path(tempfile.mkdtemp(dir=scratch))
+    (folder / "figures").mkdir()
+    product.make(data, folder)
+    return folder
 
 
 def chosen(
@@ -414,7 +344,7 @@ def refuse(results: Path, reference: Path, files: Collection[str]) -> None:
 TEMPLATE = CHECKOUT / "workflow" / "templates" / "diff.html.j2"
 
 
-def page(report: Report) -> str:
+def page(report: Comparison) -> str:
     """The report as a page of HTML that needs no other file."""
     environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
     return environment.from_string(TEMPLATE.read_text("utf-8")).render(report=report, kinds=KINDS)
@@ -447,7 +377,7 @@ def main(
     log = Path(job.log[0] if job else os.devnull)
     log.write_text("The comparison has not ended.\n", encoding="utf-8")
     try:
-        report = Comparison(**given, products=products, top=top).report()
+        report = Comparison(**given, products=products, top=top)
     except ValueError as error:
         log.write_text(f"{error}\n", encoding="utf-8")
         return str(error)

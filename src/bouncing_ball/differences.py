@@ -13,7 +13,7 @@ import io
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import takewhile, zip_longest
 from pathlib import Path
 from typing import Any
@@ -41,17 +41,18 @@ class Finding:
     """A difference, as the report shows it.
 
     `text` says what is different in one line, `cause` why, as far as the parameters, the files of
-    code or git know. Within a kind, a smaller `order` tells more. `labels` are the claims or curves
-    that differ. `lines` are a unified diff, `images` the file, what it should be, and where they
-    differ. `of_results` says that the result is wrong in itself, whatever the reference is.
+    code or git know. Within a kind, a smaller `order` tells more. `lines` are a unified diff,
+    `images` the file, what it should be, and where they differ, `variable` is that of a number or a
+    word in a dataset. `of_results` says that the result
+    is wrong in itself, whatever the reference is.
     """
 
     kind: str
     text: str
     order: float = 0.0
-    labels: tuple = ()
     lines: str = ""
     images: tuple[str, ...] = ()
+    variable: str = ""
     artifact: str = ""
     cause: str = ""
     of_results: bool = False
@@ -76,28 +77,28 @@ PROVENANCE = ("commit", "code", "versions", "computed_on")
 STORAGE = ("dtype", "scale_factor", "add_offset", "_FillValue", "missing_value", "_Unsigned")
 """How a file packs a variable; other encodings, such as compression, do not change values."""
 
-DESCRIPTIVE = 2.0
-"""The order of findings that change no number: names and units, and not parameters."""
-
 
 def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     """Differences of a dataset from the reference `old`, whose tolerances apply; the most telling
     first.
     """
     moved, new, old = aligned(new, old)
-    found = [*described_otherwise(new, old)]
-    for name in old.variables:
-        if name in new.variables and same_form(new[name], old[name]):
-            found += value_differences(str(name), new, old)
+    names = gained_and_lost([*new.variables], [*old.variables])
+    texts = [f"variables: {names}"] if names else []
+    new = new.drop_vars(new.variables.keys() - old.variables.keys())
+    old = old.drop_vars(old.variables.keys() - new.variables.keys())
+    before = description(old)
+    after = description(new)
+    found = [Finding("content", text) for text in [*texts, *changes(before, after)]]
+    for name in map(str, old.variables):
+        if all(before[name][key] == after[name][key] for key in ("dimensions", "type")):
+            found += value_differences(name, new, old)
     rest = "were compared" if found else "agree"
-    values = [*moved, *(each for each in found if each.order != DESCRIPTIVE)]
-    if not values and record(old, "parameters") != record(new, "parameters"):
-        found.append(Finding("content", "its parameters changed, and its values did not"))
-    found += [replace(each, text=f"{each.text} {rest}") for each in moved]
+    found += [Finding("content", f"{text} {rest}", -1.0) for text in moved]
     return sorted(found, key=lambda each: each.rank)
 
 
-def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[Finding], xr.Dataset, xr.Dataset]:
+def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[str], xr.Dataset, xr.Dataset]:
     """Both datasets at the labels that they share, in the order of the reference, after what is
     different in these.
 
@@ -106,23 +107,22 @@ def aligned(new: xr.Dataset, old: xr.Dataset) -> tuple[list[Finding], xr.Dataset
     the same in another order.
     """
     found = []
-    for dim in [str(dim) for dim in old.indexes if dim in new.indexes]:
+    for dim in [dim for dim in old.indexes if dim in new.indexes]:
         ours = new.indexes[dim]
         theirs = old.indexes[dim]
         shared = theirs[theirs.isin(ours)]
         rounded = theirs.dtype.kind == "f" and len(ours) == len(theirs) > len(shared)
         unclear = rounded or not ours.is_unique or not theirs.is_unique or not len(shared)
-        if unclear or ours.tolist() == theirs.tolist():
+        if unclear or ours.equals(theirs):
             continue
-        labels = ours.symmetric_difference(theirs)
-        words = [gained_and_lost([*ours], [*theirs])] if len(labels) else []
-        if ours[ours.isin(theirs)].tolist() != shared.tolist():
+        labels = gained_and_lost([*ours], [*theirs])
+        words = [labels] if labels else []
+        if not ours[ours.isin(theirs)].equals(shared):
             words.append("the order changed")
-        new = new.isel({dim: ours.get_indexer(shared)})
-        old = old.isel({dim: theirs.get_indexer(shared)})
-        rest = f"the {'other ' if len(labels) else ''}{len(shared)}"
-        text = f"{dim}: {', and '.join(words)}; {rest}"
-        found.append(Finding("content", text, -1.0, tuple(labels)))
+        new = new.sel({dim: shared})
+        old = old.sel({dim: shared})
+        other = "other " if labels else ""
+        found.append(f"{dim}: {', and '.join(words)}; the {other}{len(shared)}")
     return found, new, old
 
 
@@ -142,76 +142,50 @@ def gained_and_lost(new: list, old: list) -> str:
     )
 
 
-def described_otherwise(new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
-    """Variables that are missing or new, and other descriptions of a dataset and its variables."""
-    added = [str(name) for name in new.variables if name not in old.variables]
-    missing = [str(name) for name in old.variables if name not in new.variables]
-    for name in missing:
-        twins = [other for other in added if new[other].variable.equals(old[name].variable)]
-        renamed = f"; {twins[0]} has its values: is it renamed?" if twins else ""
-        yield Finding("content", f"{name} is missing{renamed}")
-    for name in added:
-        yield Finding("content", f"{name} is not in the reference")
-    ours = description(new.drop_vars(added))
-    theirs = description(old.drop_vars(missing))
-    for what in sorted({*ours, *theirs}):
-        words = ours.get(what, "absent"), theirs.get(what, "absent")
-        if words[0] != words[1]:
-            order = DESCRIPTIVE if what.startswith("attribute") else 0.0
-            yield Finding("content", f"{what} is {words[0]}, in the reference {words[1]}", order)
-
-
-def description(data: xr.Dataset) -> dict[str, str]:
-    """What a dataset is apart from its numbers and their provenance: its attributes, and of each
-    variable dimensions, type, role, storage and attributes.
+def description(data: xr.Dataset) -> dict[str, Any]:
+    """What a dataset is apart from its numbers and their provenance: its attributes, parameters,
+    and of each variable dimensions, type, role, storage and attributes.
     """
-    judged = {key: data.attrs[key] for key in data.attrs.keys() - {*PROVENANCE, "parameters"}}
-    found = {
-        f"attribute {key} of the dataset": repr(datasets.plain(value))
-        for key, value in judged.items()
-    }
+    found = {key: value for key, value in data.attrs.items() if key not in PROVENANCE}
+    found["parameters"] = record(data, "parameters")
     for name, variable in data.variables.items():
         text = variable.dtype.kind in "UO"
-        packed = {key: str(variable.encoding[key]) for key in STORAGE if key in variable.encoding}
-        found[f"dimensions of {name}"] = str(dict(variable.sizes))
-        found[f"type of {name}"] = "text" if text else str(variable.dtype)
-        found[f"role of {name}"] = "coordinate" if name in data.coords else "variable"
-        # The storage of a text names its length.
-        found[f"storage of {name}"] = "" if text else str(packed)
-        for key, value in variable.attrs.items():
-            found[f"attribute {key} of {name}"] = repr(datasets.plain(value))
-    return found
-
-
-def same_form(first: xr.DataArray, second: xr.DataArray) -> bool:
-    """Whether two variables have one shape and type; texts may have other lengths."""
-    texts = {first.dtype.kind, second.dtype.kind} <= {*"UO"}
-    return first.shape == second.shape and (texts or first.dtype == second.dtype)
+        stored = {} if text else variable.encoding  # That of a text names its length.
+        found[str(name)] = variable.attrs | {
+            "dimensions": str(dict(variable.sizes)),
+            "type": "text" if text else str(variable.dtype),
+            "role": "coordinate" if name in data.coords else "variable",
+            "storage": {key: str(stored[key]) for key in STORAGE if key in stored},
+        }
+    return datasets.plain(found)
 
 
 def value_differences(name: str, new: xr.Dataset, old: xr.Dataset) -> Iterator[Finding]:
     """The place where a variable is furthest from the reference, if beyond the tolerance."""
     x = new[name].values
     y = old[name].values
-    numbers = y.dtype.kind == "f"
-    allowed = tolerance(name, old) if numbers else np.zeros(y.shape)
-    multiple = multiples(x, y, allowed) if numbers else np.where(x != y, np.inf, 0.0)
-    different = np.argwhere(multiple > 1)
-    if not len(different):
+    missing = new[name].isnull().values & old[name].isnull().values
+    # In multiples of the tolerance; a text, a NaN or an infinity is infinitely far from another.
+    distance = np.where((x != y) & ~missing, np.inf, 0.0)
+    if y.dtype.kind == "f":
+        allowed = tolerance(name, old)
+        with np.errstate(all="ignore"):
+            ratio = abs(x - y) / allowed
+        distance = np.where(np.isnan(ratio), distance, ratio)
+    count = np.count_nonzero(distance > 1)
+    if not count:
         return
-    worst = np.unravel_index(np.argmax(multiple), y.shape)
+    worst = np.unravel_index(np.argmax(distance), y.shape)
     found, expected = excerpts(*legible([x[worst], y[worst]]))
     text = f"{name} is {found}, the reference has {expected}"
-    labels: tuple = ()
     if y.ndim:
         text += f" at {', '.join(places(old[name], worst))}"
-        labels = tuple(old[old[name].dims[0]].values[np.unique(different[:, 0])])
-    if np.isfinite(multiple[worst]):
-        text += f" (tolerance {allowed[worst]:.1e}, exceeded {multiple[worst]:.2g} times)"
-    if len(different) > 1:
-        text += f", and {len(different) - 1} more of {y.size} values"
-    kind = "verdict" if name == "verdict" else "number" if numbers else "content"
-    yield Finding(kind, text, -multiple[worst], labels)
+    if np.isfinite(distance[worst]):
+        text += f" (tolerance {allowed[worst]:.1e}, exceeded {distance[worst]:.2g} times)"
+    if count > 1:
+        text += f", and {count - 1} more of {y.size} values"
+    kind = "verdict" if name == "verdict" else "number" if y.dtype.kind == "f" else "content"
+    yield Finding(kind, text, -distance[worst], variable=name)
 
 
 def places(variable: xr.DataArray, index: tuple) -> Iterator[str]:
@@ -227,14 +201,6 @@ def tolerance(name: str, old: xr.Dataset) -> np.ndarray:
     if "tolerance_scale" not in attributes:
         scale = np.maximum(scale, attributes.get("floor", 0.0))
     return attributes.get("tolerance", 0.0) * scale
-
-
-def multiples(x: np.ndarray, y: np.ndarray, allowed: np.ndarray) -> np.ndarray:
-    """|x - y| over what is allowed; infinite where one is NaN or infinite and the other is not."""
-    equal = (x == y) | (np.isnan(x) & np.isnan(y))
-    with np.errstate(all="ignore"):
-        ratio = abs(x - y) / allowed
-    return np.where(equal, 0.0, np.where(np.isnan(ratio), np.inf, ratio))
 
 
 def legible(values: Sequence | np.ndarray) -> list[str]:
@@ -263,23 +229,19 @@ def excerpts(first: str, second: str) -> tuple[str, str]:
 def record(data: xr.Dataset, key: str) -> dict:
     """The parameters, versions or files of code that a dataset records.
 
-    Raises ValueError if there is no such record, or if it has a key twice.
+    Raises ValueError if there is no such record, or if a key is in it twice, of which a reader
+    takes the last.
     """
-    if key not in data.attrs:
-        raise ValueError(f"it does not record its {key}")
-    return dict(json.loads(data.attrs[key], object_pairs_hook=once))
-
-
-def once(pairs: list[tuple[str, Any]]) -> dict:
-    """A mapping of JSON, of which a reader would take the last value of a repeated key."""
-    found = dict(pairs)
-    if len(found) < len(pairs):
-        raise ValueError(f"a key occurs twice among {', '.join(key for key, _ in pairs)}")
+    text = str(data.attrs.get(key, "{}"))
+    found = json.loads(text)
+    written = [json.dumps(found), json.dumps(found, ensure_ascii=False)]
+    if key not in data.attrs or not isinstance(found, dict) or text not in written:
+        raise ValueError(f"it does not record its {key}, each of them once")
     return found
 
 
 def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
-    """Changed parameters, as "frequency_ratio.max 1000.0 -> 500.0" or "amplitude: new 1.2"."""
+    """What changed, as "frequency_ratio.max 1000.0 -> 500.0" or "amplitude: new 1.2"."""
     found = []
     for key in sorted({*old, *new}):
         values = old.get(key, "absent"), new.get(key, "absent")
@@ -317,10 +279,7 @@ def file_differences(made: Path, path: Path) -> list[Finding]:
     """
     try:
         if path.suffix == ".nc":
-            found = dataset_differences(datasets.read(made), datasets.read(path))
-            return [
-                replace(each, text=each.text.replace("the reference", "the file")) for each in found
-            ]
+            return dataset_differences(datasets.read(made), datasets.read(path))
         return [*(png_differences if path.suffix == ".png" else text_differences)(made, path)]
     except Exception as error:  # Whatever readers of damaged files raise.
         return [Finding("file", f"it cannot be read: {error!r}")]
@@ -328,27 +287,25 @@ def file_differences(made: Path, path: Path) -> list[Finding]:
 
 def text_differences(made: Path, path: Path) -> Iterator[Finding]:
     """How two texts, which may be pictures as SVG, differ. Line ends may be those of Windows."""
-    drawn = path.suffix == ".svg"
     texts = [file.read_bytes().decode().replace("\r\n", "\n") for file in (path, made)]
-    if drawn:
+    if path.suffix == ".svg":
         description = f"<dc:description>{COMMIT}</dc:description>"
         texts = [re.sub(description, "", text, count=1) for text in texts]
-    if texts[0] == texts[1]:
-        return
     given, expected = (text.splitlines(keepends=True) for text in texts)
+    if given == expected:
+        return
     pairs = enumerate(zip_longest(given, expected, fillvalue=""), 1)
     number, pair = next((number, pair) for number, pair in pairs if pair[0] != pair[1])
     words = f"line {number}: {' -> '.join(map(repr, excerpts(*pair)))}"
-    if drawn:
-        # Letters are drawn as curves, with the words in comments.
-        labels = [re.findall("<!-- (.*?) -->", text) for text in texts]
-        differ = gained_and_lost(labels[1], labels[0])
-        parts = re.findall('<g id="(.*?)">', "".join(given[:number]))
-        changed = f"words: {differ}" if differ else ", ".join([*parts[-1:], words])
-        yield Finding("picture", changed)
-    else:
+    if path.suffix != ".svg":
         unified = difflib.unified_diff(given, expected, "the file", "as its datasets give it", n=1)
         yield Finding("text", words, lines="".join(unified))
+        return
+    # Letters are drawn as curves, with the words in comments.
+    before, after = (re.findall("<!-- (.*?) -->", text) for text in texts)
+    labels = gained_and_lost(after, before)
+    part = re.findall('<g id="(.*?)">', "".join(given[:number]))[-1:]
+    yield Finding("picture", f"words: {labels}" if labels else ", ".join([*part, words]))
 
 
 def png_differences(made: Path, path: Path) -> Iterator[Finding]:

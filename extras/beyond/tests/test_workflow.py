@@ -304,7 +304,7 @@ def results(tmp_path):
 
 def compared(results, name):
     config = yaml.safe_load((BEYOND / "config/config.yaml").read_text("utf-8"))
-    return Comparison(results, BEYOND, PRODUCTS, config, [name]).report()
+    return Comparison(results, BEYOND, PRODUCTS, config, [name])
 
 
 def test_the_reference_agrees_with_itself(results):

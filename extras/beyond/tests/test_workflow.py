@@ -310,7 +310,7 @@ def compared(results, name):
 def test_the_reference_agrees_with_itself(results):
     report = compared(results, "ext_impact")
     assert [finding.line for finding in report.findings] == []
-    assert report.files == 3
+    assert len(report.files) == 3
 
 
 def test_a_changed_number_is_found(results):

@@ -95,6 +95,9 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
             found += value_differences(name, new, old)
     rest = "were compared" if found else "agree"
     found += [Finding("content", f"{text} {rest}", -1.0) for text in moved]
+    if not found:
+        parameters = changes(record(old, "parameters"), record(new, "parameters"))
+        found = [Finding("content", f"parameters.{each}") for each in parameters]
     return sorted(found, key=lambda each: each.rank)
 
 
@@ -143,11 +146,11 @@ def gained_and_lost(new: list, old: list) -> str:
 
 
 def description(data: xr.Dataset) -> dict[str, Any]:
-    """What a dataset is apart from its numbers and their provenance: its attributes, parameters,
-    and of each variable dimensions, type, role, storage and attributes.
+    """What a dataset is apart from its numbers and their provenance: its attributes, and of each
+    variable dimensions, type, role, storage and attributes.
     """
-    found = {key: value for key, value in data.attrs.items() if key not in PROVENANCE}
-    found["parameters"] = record(data, "parameters")
+    judged = data.attrs.keys() - {*PROVENANCE, "parameters"}
+    found = {key: data.attrs[key] for key in judged}
     for name, variable in data.variables.items():
         text = variable.dtype.kind in "UO"
         stored = {} if text else variable.encoding  # That of a text names its length.

@@ -131,7 +131,7 @@ def test_a_picture_is_drawn_anew_by_the_matplotlib_of_today(project):
     commit(project.top, "another matplotlib")
     assert project.accept("fig14", further=[picture]) == ["figures/fig14.nc", "figures/fig14.svg"]
     other_matplotlib(project.results)
-    with pytest.raises(ValueError, match=r"matplotlib 3\.10\.0 drew pictures"):
+    with pytest.raises(ValueError, match=r"pictures were drawn by matplotlib 3\.10\.0"):
         project.accept("fig14", further=[picture])
 
 

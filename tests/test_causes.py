@@ -140,6 +140,20 @@ def test_a_claim_follows_from_the_dataset_that_decides_it(project):
     assert any(reads(line, ("fig02: title fig02 -> another", "")) for line in lines)
 
 
+def test_a_claim_that_only_two_datasets_together_change_follows_from_both(project):
+    project.edit("src/judge.py", "max(data", "sum(data")
+    project.edit("src/judge.py", "LIMIT = 2.0", "LIMIT = 2.9")
+    commit(project.top, "the sum of two heights decides")
+    project.run()
+    project.accept()
+    project.edit("config/config.yaml", "[0.5, 1.0]", "[0.5, 1.3]")
+    project.edit("config/config.yaml", "[1.0, 1.5]", "[1.0, 1.8]")
+    project.run()
+    line = project.lines()[0]
+    assert line.startswith("claims: verdict is 'contradicted', the reference has 'reproduced' at")
+    assert line.endswith("claim = 'both'; follows from fig02, fig14"), line
+
+
 NOTHING = "no file that it is made from has changed since figures/fig14.nc"
 
 

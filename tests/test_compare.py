@@ -186,6 +186,8 @@ def test_equal_results_are_one_green_line(drawn):
 def test_rounding_and_other_versions_of_the_code_of_the_reference_are_no_difference(drawn):
     drawn.edit(scaled("max_height", 1 + 1e-11))
     drawn.edit(scaled("relative_error", 1 + 1e-7, slice(20, None)))
+    drawn.edit(scaled("lyapunov_exponent", 0.0, ()), side="reference")
+    drawn.edit(scaled("lyapunov_exponent", -0.0, ()))
     old = {"commit": "old", "code": '{"old.py": "0"}', "computed_on": "old"}
     drawn.edit(lambda data: data.assign_attrs(old), side="reference")
     drawn.edit(lambda data: data[sorted(data.variables, reverse=True)])
@@ -198,12 +200,6 @@ def test_line_ends_of_windows_are_no_difference(drawn):
         path = drawn.reference / file
         path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     assert drawn.lines() == ""
-
-
-def test_signed_zeros_are_equal(record):
-    record.edit(scaled("error_threshold", 0.0, ()), side="reference")
-    record.edit(scaled("error_threshold", -0.0, ()))
-    assert "error_threshold" not in record.lines()
 
 
 def test_a_user_setting_of_matplotlib_changes_nothing(drawn):
@@ -343,27 +339,9 @@ def test_results_of_other_code_are_stale(record):
     assert line.endswith("/study.py; remove it, and run again")
 
 
-def test_a_changed_parameter_is_the_cause(record):
-    changed = PARAMETERS | {"frequency_ratio": {"min": 1.0, "max": 20.0}}
-    record.config["stage"]["fig14"] = changed
-    record.edit(lambda data: data.assign_attrs(parameters=json.dumps(changed)))
-    record.edit(scaled("error_threshold", 2, ()))
-    assert (
-        record.report("fig14")
-        .lines[0]
-        .endswith("; changed parameter: frequency_ratio.max 10.0 -> 20.0")
-    )
-
-
 def test_only_a_changed_parameter_is_a_difference(record):
     record.edit(lambda data: data.assign_attrs(parameters="{}"))
     assert "fig14: parameters.restitution 0.65 -> absent" in record.lines("fig14")
-
-
-def test_results_without_a_reference_may_be_stale(record):
-    (record.reference / "figures" / "fig14.nc").unlink()
-    record.edit(of_other_code)
-    assert "fig14: stale: it was made by other code than today's" in record.lines("fig14")
 
 
 def test_a_name_that_is_not_compared_is_refused(record):
@@ -431,27 +409,6 @@ def test_edited_texts_and_pictures_are_different(drawn, side):
     assert f"fig14: {WORDS.format('figures/fig14.svg', side)}" in lines
 
 
-@pytest.mark.parametrize(
-    ("old", "new"), [("82.18", "82.1"), ("The", "A"), ("reproduced, ", ""), ("\n", "")]
-)
-def test_an_edited_text_is_different(original, tmp_path, old, new):
-    made = original / "paper.md"
-    path = tmp_path / "paper.md"
-    path.write_text(made.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
-    assert file_differences(made, made) == []
-    assert file_differences(made, path)[0].kind == "text"
-
-
-def test_a_text_that_is_written_otherwise_is_different(record):
-    def floor(data):
-        return article(data).replace("82.18", "82.17")
-
-    changed = artifacts.text("paper.md", ("fig14", "claims"), floor)
-    record.products = [changed]
-    finding = record.report().findings[0]
-    assert "-The threshold is 82.18.\n+The threshold is 82.17." in finding.lines
-
-
 def test_a_number_that_rounds_otherwise_within_its_tolerance_is_no_difference(record):
     for side, value in (("reference", 82.175 - 1e-10), ("results", 82.175 + 1e-10)):
         record.edit(lambda data, value=value: data.assign(error_threshold=value), side=side)
@@ -514,19 +471,13 @@ def test_edited_pixels_are_different(original, tmp_path, change):
     assert len(finding.images) == 3
 
 
-def test_a_png_with_more_than_its_pixels_is_different(original, tmp_path):
+def test_a_png_with_a_second_frame_is_different(original, tmp_path):
     made = original / "figures" / "fig14.png"
     path = tmp_path / "fig14.png"
     with Image.open(made) as image:
         black = Image.new("RGBA", image.size, "black")
         image.save(path, save_all=True, append_images=[black], default_image=False)
     assert "chunks IHDR acTL" in file_differences(made, path)[0].text
-    data = made.read_bytes()
-    gamma = bytes.fromhex("0000000467414d410000b18f0bfc6105")
-    path.write_bytes(data[:33] + gamma + data[33:])
-    assert "the PNG has other chunks IHDR gAMA" in file_differences(made, path)[0].text
-    path.write_bytes(data[:500])
-    assert file_differences(made, path)[0].kind == "file"
 
 
 def test_the_first_line_on_a_picture_says_which_words_or_which_part_changed(drawn):
@@ -588,9 +539,7 @@ def test_pictures_of_another_matplotlib_are_not_compared_and_this_is_said(drawn,
     today = matplotlib.__version__
     assert report.lines == [
         "3 of 5 files agree with the reference. 2 pictures were not compared, because another "
-        "matplotlib drew them. Other versions: matplotlib "
-        f"{'3.10.0' if side == 'reference' else today} in the reference, "
-        f"{'3.10.0' if side == 'results' else today} in the results, {today} today."
+        f"matplotlib drew them. Other versions in the {side}: matplotlib 3.10.0 (today {today})."
     ]
     drawn.rewrite("paper.md", "82.18", "82.19", side)
     lines = drawn.report().lines
@@ -601,8 +550,8 @@ def test_libraries_of_other_versions_are_said(record):
     record.edit(other("numpy", "2.1.0"), side="reference")
     today = datasets.versions()["numpy"]
     assert record.report().lines == [
-        "All 3 files agree with the reference. Other versions: numpy "
-        f"2.1.0, {today} in the reference, {today} in the results, {today} today."
+        "All 3 files agree with the reference. "
+        f"Other versions in the reference: numpy 2.1.0 (today {today})."
     ]
     record.edit(scaled("error_threshold", 2, ()))
     assert f"; other versions: numpy 2.1.0 -> {today}" in record.report("fig14").lines[0]
@@ -653,6 +602,8 @@ def test_another_format_or_an_unlimited_dimension_is_different(record):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
+        ({"versions": None}, "it does not record its versions"),
+        ({"code": None}, "it does not record its code"),
         ({"versions": "{}"}, "it does not record its code and the versions of numpy, scipy"),
         ({"versions": "[]"}, "it does not record its versions"),
         ({"versions": '{"numpy": {}}'}, "it does not record its code and the versions of numpy"),
@@ -666,26 +617,15 @@ def test_another_format_or_an_unlimited_dimension_is_different(record):
     ],
 )
 def test_a_dataset_says_how_it_was_made(record, side, change, said):
-    record.edit(lambda data: data.assign_attrs(change), side=side)
+    def changed(data):
+        attributes = data.attrs | change
+        data.attrs = {key: value for key, value in attributes.items() if value is not None}
+        return data
+
+    record.edit(changed, side=side)
     lines = record.lines("fig14")
     assert lines.startswith(f"fig14: figures/fig14.nc in the {side} cannot be read: ")
     assert said in lines
-
-
-def test_results_without_versions_or_code_are_different(record):
-    def without(key):
-        def change(data):
-            del data.attrs[key]
-            return data
-
-        return change
-
-    record.edit(without("versions"), "claims")
-    record.edit(without("code"))
-    words = "{}.nc in the results cannot be read: ValueError: it does not record its {}"
-    lines = record.lines()
-    assert words.format("claims", "versions") in lines
-    assert words.format("fig14", "code") in lines
 
 
 PNG_CHUNKS = {

@@ -76,10 +76,9 @@ def unfit(comparison: Comparison, committed: list[Path]) -> Iterator[str]:
     for finding in comparison.findings:
         if finding.of_results:
             yield f": {finding.line}"
-    today = datasets.versions()["matplotlib"]
-    drew = comparison.new.versions("matplotlib", comparison.names)
-    if drew not in (today, ""):
-        yield f": matplotlib {drew} drew pictures, and this is {today}"
+    drew = [each for each in comparison.others["results"] if each.startswith("matplotlib")]
+    if drew:
+        yield f": pictures were drawn by {', '.join(drew)}"
 
 
 def renewed(

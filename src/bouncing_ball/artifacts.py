@@ -104,10 +104,12 @@ class Side:
         """The file of a dataset."""
         return self.folder / "figures" / f"{name}.nc"
 
-    def versions(self, package: str, names: Iterable[str]) -> str:
-        """The versions of a package with which those of some datasets were made that are there."""
-        there = [self.data[name] for name in names if name in self.data]
-        return ", ".join(sorted({record(each, "versions")[package] for each in there}))
+    def other_versions(self, names: Iterable[str]) -> list[str]:
+        """Versions of packages, other than those of today, with which some datasets were made."""
+        today = datasets.versions()
+        there = [record(self.data[name], "versions") for name in names if name in self.data]
+        others = {(each, made[each]) for made in there for each in PACKAGES} - {*today.items()}
+        return [f"{each} {made} (today {today[each]})" for each, made in sorted(others)]
 
 
 def read_side(name: str, folder: Path, names: Iterable[str]) -> Side:

@@ -35,9 +35,10 @@ import yaml
 
 from bouncing_ball import datasets
 from bouncing_ball.artifacts import Product, Side, needed, read_side, staleness
-from bouncing_ball.datasets import PACKAGES, Datasets
+from bouncing_ball.datasets import Datasets
 from bouncing_ball.differences import (
     KINDS,
+    PICTURES,
     Finding,
     changes,
     dataset_differences,
@@ -87,9 +88,9 @@ class Comparison:
         self.same = {name for name in both if same_bits(self.new.data[name], self.old.data[name])}
         # A picture without a dataset may have been drawn by the versions of any.
         known = {*self.names, *needed(self.made)} or {*needed(products)}
-        self.versions = other_versions(self.new, self.old, known)
-        pictures = [each for each in self.files if each.endswith((".svg", ".png"))]
-        self.skipped = pictures if "matplotlib" in self.versions else []
+        self.others = {side.name: side.other_versions(known) for side in (self.old, self.new)}
+        drawn = any(each.startswith("matplotlib") for side in self.others.values() for each in side)
+        self.skipped = [each for each in self.files if drawn and each.endswith(PICTURES)]
         self.why = cache(self.cause_of_dataset)
         self.why_made = cache(self.cause_of_product)
         self.findings = sorted(self.found(), key=lambda each: each.rank)
@@ -116,8 +117,9 @@ class Comparison:
             notes.append(
                 f"{number} pictures were not compared, because another matplotlib drew them."
             )
-        if self.versions:
-            notes.append(f"Other versions: {'; '.join(self.versions.values())}.")
+        for side, others in self.others.items():
+            if others:
+                notes.append(f"Other versions in the {side}: {', '.join(others)}.")
         return [*told.values(), " ".join([verdict, *notes])]
 
     # What differs
@@ -273,19 +275,6 @@ class Comparison:
             return "; ".join(words)
         last = self.history.told(self.history.names(reference))[:1]
         return " since ".join(["no file that it is made from has changed", *last])
-
-
-def other_versions(new: Side, old: Side, names: Collection[str]) -> dict[str, str]:
-    """In words, the versions of packages that made some datasets, where they are not of today."""
-    today = datasets.versions()
-    found = {}
-    for package in PACKAGES:
-        before = old.versions(package, names)
-        after = new.versions(package, names)
-        if {before, after} - {today[package], ""}:
-            sides = f"{before} in the reference, {after} in the results"
-            found[package] = f"{package} {sides}, {today[package]} today"
-    return found
 
 
 def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:

@@ -46,7 +46,7 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 test: setup
 	OMP_NUM_THREADS=1 $(RUN) pytest
 
-# The recipes of CONTRIBUTING.md, the study of choices, and the job with conda.
+# The recipes of CONTRIBUTING.md, published commands, the study of choices, a killed run, the report.
 test-long: setup
 	OMP_NUM_THREADS=1 $(RUN) pytest -m long tests
 

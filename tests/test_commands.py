@@ -143,6 +143,7 @@ def checkout(fresh):
     return fresh
 
 
+@pytest.mark.long
 def test_commands_with_options_run(checkout):
     """The others name targets, which exist; a cluster and conda have tests of their own."""
     ran = 0

@@ -210,6 +210,7 @@ def test_a_failed_figure_does_not_stop_other_stages(fresh):
     assert made(fresh.path) == datasets | files("fig01") | files("fig04")
 
 
+@pytest.mark.long
 def test_a_killed_run_is_unlocked_and_completed(fresh):
     script = fresh.path / "workflow/scripts/permanent_contact.py"
     at_once = script.read_text("utf-8")
@@ -289,6 +290,7 @@ def test_results_may_be_a_link_to_another_disk_but_not_a_file(fresh, tmp_path):
     assert fresh.run("--dry-run", "fig11")[0] == line
 
 
+@pytest.mark.long
 def test_the_report_has_every_figure_and_table(used):
     status, printed = used.run("--report", "report.html")
     assert status == 0, printed

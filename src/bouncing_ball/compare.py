@@ -125,18 +125,14 @@ class Comparison:
     # What differs
 
     def found(self) -> Iterator[Finding]:
-        """All findings with their causes. What is wrong in the results alone has none."""
+        """All findings with their causes."""
         yield from self.file_findings(self.new)
         yield from self.file_findings(self.old)
         for name in self.names:
             yield from self.dataset_findings(name)
         with tempfile.TemporaryDirectory() as scratch:
             for product in self.made:
-                for each in self.product_findings(product, scratch):
-                    cause = "" if each.of_results else self.why_made(product)
-                    yield replace(each, artifact=product.artifact, cause=cause)
-                if product.is_dataset:
-                    yield from self.derived_findings(product, scratch)
+                yield from self.product_findings(product, scratch)
 
     def file_findings(self, side: Side) -> Iterator[Finding]:
         """Files of one side that are missing, unreadable or, in a whole comparison, unexpected."""
@@ -174,38 +170,43 @@ class Comparison:
         sides = [side for side in (self.old, self.new) if side.data.keys() >= needs]
         made = None
         for side in sides if product.files[0] not in self.skipped else ():
-            wrong = side is self.new
             if made is None or not needs <= self.same:
                 try:
                     made = remade(product, side.data, scratch)
                 except Exception as error:  # Whatever a drawing does not find in a dataset.
                     words = f"today's code cannot make it of the dataset in the {side.name}"
-                    yield Finding("file", f"{words}: {error!r}", of_results=wrong)
+                    yield self.attributed(Finding("file", f"{words}: {error!r}"), product, side)
                     # The other side would fail in the same way.
                     return
             for file in product.files:
                 path = side.folder / file
                 what = f"{file} in the {side.name} is not what today's code makes of its data"
                 for each in file_differences(made / file, path) if path.is_file() else ():
-                    yield replace(each, text=f"{what}: {each.text}", of_results=wrong)
+                    told = replace(each, text=f"{what}: {each.text}")
+                    yield self.attributed(told, product, side)
+            if side is self.old and self.differences.get(product.artifact) and product.is_dataset:
+                yield from self.derived_findings(product, made, scratch)
 
-    def derived_findings(self, product: Product, scratch: str) -> Iterator[Finding]:
-        """How a dataset that follows from others differs from what today's code makes of those in
-        the reference. The causes are the datasets that alone change the same variable.
+    def attributed(self, finding: Finding, product: Product, side: Side) -> Finding:
+        """A finding on a product; what is wrong in the results alone has no cause in the code."""
+        wrong = side is self.new
+        cause = "" if wrong else self.why_made(product)
+        return replace(finding, artifact=product.artifact, cause=cause, of_results=wrong)
+
+    def derived_findings(self, product: Product, made: Path, scratch: str) -> Iterator[Finding]:
+        """How a dataset that follows from others differs from what is `made` of those in the
+        reference. The causes are the datasets that alone change the same variable.
         """
-        old = self.old.data
-        if not self.differences.get(product.artifact) or not old.keys() >= {*product.needs}:
-            return
         (file,) = product.files
-        expected = remade(product, old, scratch) / file
         others = {*product.needs} - self.derived
         changed = sorted(name for name in others if self.differences.get(name))
         alone: dict[str, set[str]] = {}
         for name in changed:
             with suppress(Exception):  # A mixture of old and new datasets may make no sense.
-                one = remade(product, {**old, name: self.new.data[name]}, scratch) / file
-                alone[name] = {each.variable for each in file_differences(one, expected)}
-        for each in file_differences(self.new.folder / file, expected):
+                mixture = {**self.old.data, name: self.new.data[name]}
+                one = remade(product, mixture, scratch) / file
+                alone[name] = {each.variable for each in file_differences(one, made / file)}
+        for each in file_differences(self.new.folder / file, made / file):
             deciding = [name for name in changed if each.variable in alone.get(name, ())]
             deciding = deciding or changed
             causes = {self.why(name) for name in deciding}

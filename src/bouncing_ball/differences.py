@@ -12,7 +12,7 @@ import difflib
 import io
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile, zip_longest
 from pathlib import Path
@@ -83,14 +83,11 @@ def dataset_differences(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
     first.
     """
     moved, new, old = aligned(new, old)
-    names = gained_and_lost([*new.variables], [*old.variables])
-    texts = [f"variables: {names}"] if names else []
-    new = new.drop_vars(new.variables.keys() - old.variables.keys())
-    old = old.drop_vars(old.variables.keys() - new.variables.keys())
-    before = description(old)
-    after = description(new)
-    found = [Finding("content", text) for text in [*texts, *changes(before, after)]]
-    for name in map(str, old.variables):
+    common = [str(name) for name in old.variables if name in new.variables]
+    before = description(old, common)
+    after = description(new, common)
+    found = [Finding("content", text) for text in changes(before, after)]
+    for name in common:
         if all(before[name][key] == after[name][key] for key in ("dimensions", "type")):
             found += value_differences(name, new, old)
     rest = "were compared" if found else "agree"
@@ -145,16 +142,18 @@ def gained_and_lost(new: list, old: list) -> str:
     )
 
 
-def description(data: xr.Dataset) -> dict[str, Any]:
-    """What a dataset is apart from its numbers and their provenance: its attributes, and of each
-    variable dimensions, type, role, storage and attributes.
+def description(data: xr.Dataset, names: Iterable[str]) -> dict[str, Any]:
+    """What a dataset is apart from its numbers and their provenance: its attributes, its variables,
+    and of those with the given names dimensions, type, role, storage and attributes.
     """
     judged = data.attrs.keys() - {*PROVENANCE, "parameters"}
     found = {key: data.attrs[key] for key in judged}
-    for name, variable in data.variables.items():
+    found["variables"] = sorted(map(str, data.variables))
+    for name in names:
+        variable = data[name].variable
         text = variable.dtype.kind in "UO"
         stored = {} if text else variable.encoding  # That of a text names its length.
-        found[str(name)] = variable.attrs | {
+        found[name] = variable.attrs | {
             "dimensions": str(dict(variable.sizes)),
             "type": "text" if text else str(variable.dtype),
             "role": "coordinate" if name in data.coords else "variable",

@@ -653,7 +653,9 @@ class _Contacts:
         which = which[good]
         if self.by.any() or self.motion.steps.keys() - {"T"}:
             self.differentiate(kept, which, panel.of(good), newton=newton)
-        self.end_events(kept[which >= 0], which[which >= 0])
+        at_events = which >= 0
+        if at_events.any():
+            self.end_events(kept[at_events], which[at_events])
 
     def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
         """Move the derivatives to the ends of panels, some of which are at events."""

@@ -779,10 +779,11 @@ def basins(
     Warnings
     --------
     "chaotic" after ``impacts`` impacts may be a long transient. For ϖ = 15, r = 0.7, Λ = 1.3 and
-    60 starts along each axis, 2 % are chaotic after 2,000 impacts, and none is after 20,000. Where a
-    transient is chaotic, rounding decides on its end: with Tsuji's law (r = 0.85 and a duration of
-    0.1 at the speed 3, Λ = 1.2) 21 of 900 balls end elsewhere if their first speeds change by 10⁻¹⁴
-    of them, which is less than the standard error of the shares.
+    60 starts along each axis, 2 % are chaotic after 2,000 impacts, and none is after 20,000.
+
+    Where a transient is chaotic, rounding decides on its end: with Tsuji's law (r = 0.85 and a
+    duration of 0.1 at the speed 3, Λ = 1.2) 21 of 900 balls end elsewhere if their first speeds
+    change by 10⁻¹⁴ of them. That is less than what the standard errors of the shares say.
 
     Examples
     --------

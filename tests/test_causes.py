@@ -154,6 +154,20 @@ def test_a_claim_that_only_two_datasets_together_change_follows_from_both(projec
     assert line.endswith("claim = 'both'; follows from fig02, fig14"), line
 
 
+def test_of_datasets_that_make_sense_only_together_all_are_named(project):
+    together = "if data['fig02'].sizes != data['fig14'].sizes:\n        raise ValueError\n"
+    project.edit("src/judge.py", "    heights", f"    {together}    heights")
+    commit(project.top, "two datasets of one size")
+    project.run()
+    project.accept()
+    project.edit("config/config.yaml", "[0.5, 1.0]", "[0.5, 1.0, 2.1]")
+    project.edit("config/config.yaml", "[1.0, 1.5]", "[1.0, 1.5, 1.6]")
+    project.run()
+    line = project.lines()[0]
+    assert line.startswith("claims: verdict is 'contradicted', the reference has 'reproduced' at")
+    assert line.endswith("follows from fig02, fig14"), line
+
+
 def test_verdicts_that_cannot_be_judged_anew_are_one_line(project):
     project.edit("src/judge.py", "LIMIT = 2.0", "LIMIT = {}['limit']")
     project.change("claims", project.results, lambda data: data.assign_attrs(title="another"))

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 import tomllib
+from functools import cache
 from importlib.util import find_spec
 from modulefinder import ModuleFinder
 from pathlib import Path
@@ -175,6 +176,14 @@ def test_a_changed_file_runs_what_reads_it_again(used, file, again):
     assert used.planned() == again
 
 
+@cache
+def modules_of(script: str) -> set[str]:
+    """The names of the files of a script and of what it imports of this repository."""
+    found = ModuleFinder(path=[str(ROOT / "src")])
+    found.run_script(str(ROOT / script))
+    return {Path(each.__file__).name for each in found.modules.values() if each.__file__}
+
+
 def test_rules_have_the_modules_that_their_scripts_import_as_inputs(stubs):
     blocks = stubs.plan("all", "diff").split("rule ")
     blocks += stubs.plan("accept").split("rule accept")[1:]
@@ -185,10 +194,7 @@ def test_rules_have_the_modules_that_their_scripts_import_as_inputs(stubs):
         if script is None:
             continue
         scripts.add(Path(script).name)
-        found = ModuleFinder(path=[str(ROOT / "src")])
-        found.run_script(str(ROOT / script))
-        modules = {Path(each.__file__).name for each in found.modules.values() if each.__file__}
-        assert {Path(path).name for path in code} == modules, script
+        assert {Path(path).name for path in code} == modules_of(script), script
     assert scripts == {path.name for path in (ROOT / "workflow/scripts").glob("*.py")}
 
 

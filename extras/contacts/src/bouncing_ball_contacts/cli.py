@@ -5,20 +5,12 @@ import json
 import re
 import sys
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, design
 from bouncing_ball_contacts.engines import ENGINES, engine_named
-from bouncing_ball_contacts.rebounds import (
-    BY_NUMBER,
-    Rebound,
-    engine_by_number,
-    falling,
-    number_for,
-    rebound,
-)
 from bouncing_ball_contacts.scripts import drop_script
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
@@ -28,6 +20,9 @@ from bouncing_ball_contacts.units import (
     show,
     step_in_si,
 )
+
+if TYPE_CHECKING:
+    from bouncing_ball_contacts.rebounds import Rebound
 
 _DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
 _BODY = [
@@ -61,6 +56,8 @@ _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240
 
 
 def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
+    from bouncing_ball_contacts.rebounds import BY_NUMBER
+
     return [name for name in [*ENGINES, *BY_NUMBER] if name.startswith(typed)]
 
 
@@ -94,6 +91,8 @@ def main(context: click.Context) -> None:
 
 
 def _values(found: Any) -> dict[str, Any]:
+    from bouncing_ball_contacts.rebounds import Rebound
+
     if isinstance(found, dict):
         return {name: _values(each) for name, each in found.items()}
     values = dataclasses.asdict(found)
@@ -105,7 +104,7 @@ def _values(found: Any) -> dict[str, Any]:
     return values
 
 
-def _print(found: Any, as_json: bool, written: Design | Rebound | None = None) -> None:
+def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None) -> None:
     if not as_json:
         click.echo("\n\n".join(str(each) for each in (found, written) if each is not None))
         return
@@ -142,17 +141,22 @@ def design_command(
     **bounce: Any,
 ) -> None:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    row = engine_by_number(engine)
-    if row is not None and row.name not in ENGINES:
-        for option, value in {"--one-body": one_body, "--pick": pick, "--script": script}.items():
-            if value:
-                raise Refused(f"{option} has no place where the restitution is a number")
-        _print(number_for(falling(**bounce), row, time_step), as_json)
-        return
-    known = engine_named(row.name if row else engine)
+    # Other names than those of springs may be known where the restitution is a number.
+    if engine not in ENGINES:
+        from bouncing_ball_contacts.rebounds import engine_by_number, falling, number_for
+
+        row = engine_by_number(engine)
+        if row is not None and row.name not in ENGINES:
+            options = {"--one-body": one_body, "--pick": pick, "--script": script}
+            for option, value in options.items():
+                if value:
+                    raise Refused(f"{option} has no place where the restitution is a number")
+            _print(number_for(falling(**bounce), row, time_step), as_json)
+            return
+        engine = row.name if row else engine
     found = design(
         Bounce(**bounce),
-        known,
+        engine_named(engine),
         time_step,
         tolerance=tolerance or TOLERANCE,
         one_body=one_body,
@@ -213,6 +217,7 @@ def diagnose_command(
     Without numbers they are the engine's defaults, if it has some.
     """
     from bouncing_ball_contacts.diagnosis import diagnose
+    from bouncing_ball_contacts.rebounds import engine_by_number, falling, rebound
 
     typed = _assigned(parameters)
     if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
@@ -295,6 +300,7 @@ def fit_command(
     RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
     from bouncing_ball_contacts.fits import fit
+    from bouncing_ball_contacts.rebounds import engine_by_number, falling, number_for
     from bouncing_ball_contacts.recordings import read
 
     balls = read("/dev/stdin" if recording == "-" else recording, _lines(leave_out), ball)
@@ -330,6 +336,8 @@ def fit_command(
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and the versions in which they were run."""
+    from bouncing_ball_contacts.rebounds import BY_NUMBER
+
     click.echo("With a stiffness; the parameters are of both bodies alike:")
     for row in ENGINES.values():
         combined = ", ".join(dict.fromkeys(row.rules[name].text for name in row.names))

@@ -10,6 +10,7 @@ SETTINGS = {
     "init.defaultBranch": "main",
     "commit.gpgSign": "false",
     "core.hooksPath": "/dev/null",
+    "init.templateDir": "",
 }
 
 

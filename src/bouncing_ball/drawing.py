@@ -21,6 +21,7 @@ import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -176,6 +177,8 @@ def panels(height: float, rows: int = 1, columns: int = 1, **options: Any) -> tu
     the page, and else as one column of it.
     """
     figure = Figure(figsize=(WIDTH if columns == 1 else WHOLE_WIDTH, height))
+    # It keeps its renderer, which every measurement of a text would make anew otherwise.
+    FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, **options)
 
 

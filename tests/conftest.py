@@ -33,7 +33,12 @@ def stub(script: Path) -> str:
     """A script that only writes its outputs. It names the modules that the true one imports."""
     nodes = ast.walk(ast.parse(script.read_text("utf-8")))
     imports = [ast.unparse(node) for node in nodes if isinstance(node, ast.Import | ast.ImportFrom)]
-    return STUB.format(imports="\n    ".join(imports))
+    # Lines may go on after a backslash.
+    return STUB.format(imports="\n    ".join(imports).replace(", ", ", \\\n"))
+
+
+# The collector of garbage looks at a few large heaps instead of many small ones.
+gc.set_threshold(100_000)
 
 
 def pytest_collection_finish():

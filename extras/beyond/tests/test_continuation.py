@@ -9,7 +9,8 @@ from scipy.optimize import brentq, fsolve
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
-from bouncing_ball_beyond.continuation import FollowedBranch, cascade, follow, limits
+from bouncing_ball_beyond.branches import FollowedBranch
+from bouncing_ball_beyond.continuation import cascade, follow, limits
 from bouncing_ball_beyond.equations import kind_named
 from bouncing_ball_beyond.march import TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji

@@ -16,15 +16,14 @@ Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import brief
-from bouncing_ball_beyond.continuation import FollowedBranch, both_ways
+from bouncing_ball_beyond.branches import SpecialCurve, both_ways
 from bouncing_ball_beyond.equations import (
     KINDS,
     OF_RESTS,
@@ -33,7 +32,7 @@ from bouncing_ball_beyond.equations import (
     PeriodicOrbit,
 )
 from bouncing_ball_beyond.forms import one_impact_less
-from bouncing_ball_beyond.march import CLOSED, newton, unit
+from bouncing_ball_beyond.march import newton, unit
 from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.special_orbits import GENERALIZED
 from bouncing_ball_beyond.starts import flip
@@ -43,39 +42,6 @@ OTHER = 1e-3
 
 BESIDE = 0.01
 """Distance of the first saddle-node from a generalized period doubling, as that of a step."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class SpecialCurve(FollowedBranch):
-    """Special orbits of one kind along two parameters: a `FollowedBranch` with their kind.
-
-    Its ``special`` orbits are those of codimension two.
-    """
-
-    kind: str = ""
-
-    def __repr__(self) -> str:
-        return super().__repr__().replace("FollowedBranch", f"SpecialCurve: {self.kind}")
-
-    @property
-    def along(self) -> str:
-        """The names of the two parameters."""
-        return " and ".join(path.name for path in self.equations.along)
-
-    def first(self, kind: str) -> PeriodicOrbit:
-        """The first orbit of codimension two of a kind.
-
-        Raises
-        ------
-        OrbitNotFound
-            If the curve has none.
-        """
-        return self._first(kind, "this curve; its orbits of codimension two are")
-
-    @cached_property
-    def orbits(self) -> tuple[PeriodicOrbit, ...]:
-        """The special orbits one by one."""
-        return tuple(self.equations.orbit(row, self.kind) for row in self.z)
 
 
 def special_curve(
@@ -128,17 +94,7 @@ def special_curve(
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
         raise OrbitNotFound(f"the orbit is no {equations.kind}: the nearest one is elsewhere")
-    forth, back = both_ways(equations, first.z, unit(first.tangent), window, points)
-    if forth.end == CLOSED:
-        return SpecialCurve(equations, forth.z, forth.special, CLOSED, CLOSED, equations.kind)
-    return SpecialCurve(
-        equations,
-        np.concatenate([back.z[:0:-1], forth.z]),
-        (*back.special[::-1], *forth.special),
-        back.end,
-        forth.end,
-        equations.kind,
-    )
+    return both_ways(equations, first.z, unit(first.tangent), window, points)
 
 
 SUCH = "such as branch.first('period doubling')"

@@ -22,41 +22,46 @@ LIMITS = {
 }
 """The least and the greatest value of parameters; of all others, they are 0 and infinite."""
 
-
 OF_TABLES = ("harmonic_", "phase_")
 """How the names of the parameters of tables begin."""
 
 
 @dataclass(frozen=True)
-class Parameter:
+class Path:
     """One parameter: "amplitude" is Λ, all others are those of the ball or of the table."""
 
     name: str
 
+    def values(self, ball: Ball, amplitude: Any, value: Any) -> Mapping[str, Any]:
+        """The parameters that change, from those of another place, at a value of the variable."""
+        return {self.name: value}
+
     def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
-        """The ball and the amplitude with the value of this parameter."""
-        if self.name == "amplitude":
-            return ball, value
-        if self.name.startswith(OF_TABLES):
-            return ball, amplitude
-        return ball.at(**{self.name: value}), amplitude
+        """The ball and Λ at a value of the variable."""
+        values = dict(self.values(ball, amplitude, value))
+        amplitude = values.pop("amplitude", amplitude)
+        values = {name: x for name, x in values.items() if not name.startswith(OF_TABLES)}
+        return (ball.at(**values) if values else ball), amplitude
 
     def shape(self, table: Table, value: Any) -> Table:
-        """The table with the value of this parameter, if it is one of the table's."""
+        """The table at a value of the variable."""
         return table.at(**{self.name: value}) if self.name in table.parameters else table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
-        """The value of this parameter."""
+        """The value of the variable at a ball, an amplitude and a table."""
         return {"amplitude": amplitude, **ball.parameters, **table.parameters}[self.name]
 
     def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
-        """The least and the greatest value."""
+        """The least and the greatest value of the variable."""
         least = -np.inf if self.name.startswith(OF_TABLES) else 0.0
         return LIMITS.get(self.name, (least, np.inf))
 
 
+AMPLITUDE = Path("amplitude")
+
+
 @dataclass(frozen=True)
-class Frequency:
+class Frequency(Path):
     """A table that changes its frequency Ω at a fixed stroke a, below the same ball and contact.
 
     The variable is Ω/√(g/a) = √Λ. The parameters of the ball change by their own powers of Ω
@@ -65,16 +70,12 @@ class Frequency:
 
     name: str = "frequency"
 
-    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
-        """The ball and the amplitude at √Λ = value, from those at another frequency."""
+    def values(self, ball: Ball, amplitude: Any, value: Any) -> Mapping[str, Any]:
+        """Λ = value², and the parameters of the ball from those at another frequency."""
         times = value / np.sqrt(amplitude)
         old = ball.parameters
         powers = ball.frequency_powers.items()
-        return ball.at(**{name: old[name] * times**power for name, power in powers}), value**2
-
-    def shape(self, table: Table, value: Any) -> Table:
-        """The table, whose waveform remains as it is."""
-        return table
+        return {"amplitude": value**2, **{name: old[name] * times**power for name, power in powers}}
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """√Λ."""
@@ -87,24 +88,17 @@ class Frequency:
 
 
 @dataclass(frozen=True, init=False)
-class ParameterPath:
+class ParameterPath(Path):
     """Parameters as functions of one variable, along which orbits are followed.
 
     Parameters
     ----------
     name : str
-        The name of the variable.
-    low, high : float
-        The range of the variable.
+        The name of the variable, which is in [low, high].
     **functions : callable
-        For each parameter that changes, such as ``amplitude`` or ``frequency_ratio``, an analytic
-        function of the variable that takes arrays, also complex ones. The first one must rise or
-        fall throughout, because it tells where on the path an orbit is.
-
-    Raises
-    ------
-    ValueError
-        If the range is none, or if a function is missing, not analytic or not monotonic.
+        For each parameter that changes, an analytic function of the variable that takes arrays,
+        also complex ones. The first one must rise or fall throughout: it tells where on the path
+        an orbit is. ValueError if one is not analytic or not monotonic.
 
     Examples
     --------
@@ -119,7 +113,6 @@ class ParameterPath:
     ... )
     """
 
-    name: str
     low: float
     high: float
     functions: Mapping[str, Callable] = field(compare=False)
@@ -136,15 +129,11 @@ class ParameterPath:
         steps = np.diff(function(samples))
         if not (np.all(steps > 0) or np.all(steps < 0)):
             raise ValueError(f"{first} must rise or fall throughout the path {name}")
-        for key, value in {"name": name, "low": low, "high": high, "functions": functions}.items():
-            object.__setattr__(self, key, value)
+        vars(self).update(name=name, low=low, high=high, functions=functions)
 
-    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
-        """The ball and the amplitude at a value of the variable."""
-        values = {name: function(value) for name, function in self.functions.items()}
-        amplitude = values.pop("amplitude", amplitude)
-        values = {name: x for name, x in values.items() if not name.startswith(OF_TABLES)}
-        return (ball.at(**values) if values else ball), amplitude
+    def values(self, ball: Ball, amplitude: Any, value: Any) -> Mapping[str, Any]:
+        """The functions at a value of the variable."""
+        return {name: function(value) for name, function in self.functions.items()}
 
     def shape(self, table: Table, value: Any) -> Table:
         """The table at a value of the variable."""
@@ -152,13 +141,7 @@ class ParameterPath:
         return table.at(**{name: self.functions[name](value) for name in names}) if names else table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
-        """The value of the variable, by the first function.
-
-        Raises
-        ------
-        ValueError
-            If the parameters of the ball are not those of the path.
-        """
+        """The value of the variable; ValueError if the parameters are not those of the path."""
         # Only paths of one's own need this module, which takes long to import.
         from scipy.optimize import brentq
 
@@ -170,13 +153,13 @@ class ParameterPath:
                 f"the orbit is not on the path {self.name}: its {name} is {here[name]:.10g}, and on"
                 f" the path it is in [{ends[0]:g}, {ends[1]:g}]"
             )
-        # Numbers that differ by rounding are on the path.
         place = brentq(lambda x: function(x) - here[name], self.low, self.high, xtol=1e-15)
-        for name, function in self.functions.items():
-            if not np.isclose(function(place), here[name], rtol=1e-9, atol=0):
+        for name, value in self.values(ball, amplitude, place).items():
+            # Numbers that differ by rounding are on the path.
+            if not np.isclose(value, here[name], rtol=1e-9, atol=0):
                 raise ValueError(
                     f"the orbit is not on the path {self.name}: its {name} is {here[name]:.10g},"
-                    f" and {function(place):.10g} on the path"
+                    f" and {value:.10g} on the path"
                 )
         return place
 
@@ -185,37 +168,28 @@ class ParameterPath:
         return self.low, self.high
 
 
-Path = Parameter | Frequency | ParameterPath
-
-AMPLITUDE = Parameter("amplitude")
-
-
 def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
     """The path that is meant by a name, or a path itself.
 
-    Raises
-    ------
-    ValueError
-        If neither the ball nor the table has such a parameter.
+    ValueError if neither the ball nor the table has such a parameter.
     """
-    if isinstance(along, ParameterPath):
-        allowed = ["amplitude", *ball.parameters, *table.parameters]
-        for name in along.functions:
-            if name not in allowed:
-                raise ValueError(
-                    f"the path {along.name} has {name!r}: must be one of {', '.join(allowed)}"
-                )
+    allowed = ["amplitude", *ball.parameters, *table.parameters]
     if not isinstance(along, str):
+        unknown = [name for name in getattr(along, "functions", ()) if name not in allowed]
+        if unknown:
+            raise ValueError(
+                f"the path {along.name} has {unknown[0]!r}: must be one of {', '.join(allowed)}"
+            )
         return along
-    allowed = ["amplitude", "frequency", *ball.parameters, *table.parameters]
-    if along in vars(ball) and along not in allowed:
+    allowed.insert(1, "frequency")
+    if along in allowed:
+        return Frequency() if along == "frequency" else Path(along)
+    if along in vars(ball):
         raise ValueError(
             f"along = {along!r}: the ball is given by {' and '.join(ball.parameters)}; start from"
             f" the orbit of a ball that is given by its {along}"
         )
-    if along not in allowed:
-        raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)} or a path")
-    return Frequency() if along == "frequency" else Parameter(along)
+    raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)} or a path")
 
 
 def usual_range(path: Path, value: float, least: float, greatest: float) -> tuple[float, float]:
@@ -232,7 +206,7 @@ def usual_range(path: Path, value: float, least: float, greatest: float) -> tupl
 
 
 def _check_analytic(name: str, function: Callable, samples: NDArray) -> None:
-    """Raise ValueError unless complex steps give the derivatives, and these have no jump."""
+    """ValueError unless complex steps give the derivatives, and these have no jump."""
 
     def slopes(x: NDArray) -> NDArray:
         return np.broadcast_to(np.imag(function(x + 1j * H)) / H, x.shape)

@@ -18,7 +18,6 @@ from bouncing_ball_beyond.search import (
     near_instants,
     rows_of,
     shortest_contacts,
-    single,
 )
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
@@ -90,17 +89,12 @@ def orbit(
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     equations = OrbitEquations(row, 1, periods, table=table)
     sign = 1 if side == "stable" else -1
-    z, good, linear = near_instants(equations, amplitudes.astype(float), sign)
-    admissible = good & equations.admissible(z, linear)
-    found: list = [
-        PeriodicOrbit(single(equations, i), z[i]) if good[i] else None for i in range(len(z))
-    ]
+    found, admissible = near_instants(equations, amplitudes.astype(float), sign)
     missing = np.flatnonzero(~admissible)
-    if missing.size:
-        others = [found[i] for i in missing]
-        searched = _searched(equations.rows(missing), amplitudes[missing], sign, others)
-        for i, each in zip(missing, searched, strict=True):
-            found[i] = each
+    near = [found[i] for i in missing]
+    searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
+    for i, each in zip(missing, searched, strict=True):
+        found[i] = each
     if shape:
         return found
     if isinstance(found[0], OrbitNotFound):
@@ -108,23 +102,23 @@ def orbit(
     return found[0]
 
 
-def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: list) -> list:
+def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
     """The orbits with one impact and the shortest contact on a side of the saddle-node, by rows.
 
-    If a ball follows no such orbit, it is one that no ball follows, of ``others`` if there is one.
+    If a ball follows no such orbit, it is one that no ball follows, if possible that of ``near``.
     Below the saddle-node of the branch it is the reason.
     """
-    found: list = [None] * len(amplitude)
+    found: list = [None] * len(near)
+    admissible = np.zeros(len(near), bool)
     # With a number r and a sine the instants are the impacts, so that there are no others.
-    if not (equations.ball.simple and equations.table.compiled):
-        orbits = shortest_contacts(equations, amplitude, sign)
-        found = [each[0] if each else None for each in orbits]
-    missing = [i for i, each in enumerate(found) if not (each and each.admissible)]
+    if near and not (equations.ball.simple and equations.table.compiled):
+        found, admissible = shortest_contacts(equations, amplitude, sign)
+    missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
     # The limits of balls that creep off the table take long to find.
-    ending = [i for i in missing if ends[i]]
+    ending = missing[ends[missing]]
     rows = equations.rows(ending)
-    lowest = limits(rows.ball, n=rows.periods, table=equations.table) if ending else []
+    lowest = limits(rows.ball, n=rows.periods, table=equations.table) if len(ending) else []
     folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
@@ -133,8 +127,8 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, others: 
         if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
             where, limit = apart(amplitude[i], fold.amplitude)
             why = f"below the saddle-node at Λ = {limit}"
-        elif others[i] or found[i]:
-            found[i] = others[i] or found[i]
+        elif near[i] or found[i]:
+            found[i] = near[i] or found[i]
             continue
         elif not ends[i]:
             why = "none is found, and without a table its impacts do not end"

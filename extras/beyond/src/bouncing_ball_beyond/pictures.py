@@ -15,11 +15,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
-from bouncing_ball_beyond.continuation import FollowedBranch
-from bouncing_ball_beyond.curves import SpecialCurve
+from bouncing_ball_beyond.branches import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.paths import OF_TABLES
 from bouncing_ball_beyond.periodic import PeriodicOrbit
-from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS, with_special
+from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS
 
 MARKS = {
     "saddle-node": "o",
@@ -132,7 +131,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     """Draw one branch or curve; returns what a legend says of it."""
     is_curve = isinstance(branch, SpecialCurve)
     shown = branch.refined()
-    orbits = with_special(shown)
+    orbits = shown.with_special()
     whole = replace(shown, z=np.array([each.z for each in orbits]))
     x, y = _coordinates(whole, quantity)
     stable = np.ones(len(x), bool) if is_curve else whole.stable

@@ -17,8 +17,7 @@ import xarray as xr
 
 from bouncing_ball_beyond import named_laws
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.continuation import FollowedBranch
-from bouncing_ball_beyond.curves import SpecialCurve
+from bouncing_ball_beyond.branches import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.paths import OF_TABLES, Path, path_of
@@ -145,7 +144,7 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
     if isinstance(found, PeriodicOrbit):
         return [found]
     if isinstance(found, FollowedBranch):
-        return with_special(found)
+        return found.with_special()
     several: list[Any] = list(found) if isinstance(found, Iterable) else [found]
     if any(isinstance(each, FollowedBranch) for each in several):
         raise ValueError(
@@ -163,19 +162,6 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
         )
     if len({each.table.at(**dict.fromkeys(each.table.parameters, 0.0)) for each in orbits}) > 1:
         raise ValueError("the orbits of one dataset are on tables with the same harmonics")
-    return orbits
-
-
-def with_special(branch: FollowedBranch) -> list[PeriodicOrbit]:
-    """The orbits of a branch with its special orbits, each in the step where it makes no detour."""
-    orbits = list(branch.orbits)
-    units = branch.equations.scales(branch.z)[0]
-    points = branch.z / units
-    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
-    for special in reversed(branch.special):
-        distance = np.linalg.norm(points - special.z / units, axis=1)
-        place = int(np.argmin(distance[:-1] + distance[1:] - steps)) if len(steps) else 0
-        orbits.insert(place + 1, special)
     return orbits
 
 
@@ -270,7 +256,7 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
     special = [replace(each, equations=equations) for each in orbits if each.kind != common]
     equations = replace(equations, kind=common)
     given = equations, z, tuple(special), data.attrs["start"], data.attrs["end"]
-    return SpecialCurve(*given, common) if form == "SpecialCurve" else FollowedBranch(*given)
+    return SpecialCurve(*given) if form == "SpecialCurve" else FollowedBranch(*given)
 
 
 def _path(name: str, ball: Ball, given: Path | None, table: Table) -> Path:

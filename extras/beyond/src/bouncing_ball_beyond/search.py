@@ -87,32 +87,37 @@ def guess_of_instants(
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
 
 
-def near_instants(equations: OrbitEquations, amplitude: NDArray, sign: int) -> tuple:
-    """Orbits with one impact near those of the corrected model, as rows, which of them are found on
-    a side of the saddle-node, and the derivatives of their legs.
+def near_instants(
+    equations: OrbitEquations, amplitude: NDArray, sign: int
+) -> tuple[list[PeriodicOrbit | None], NDArray]:
+    """Orbits with one impact near those of the corrected model, on a side of the saddle-node.
+
+    One for each row, or None; and which of them a ball follows, shape (rows,).
     """
-    on_table = sign, equations.table
-    guess = guess_of_instants(equations.ball, equations.periods, amplitude, *on_table)
+    guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
     z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
     good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
-    return z, good, solution.linear
+    rows = enumerate(zip(good, z, strict=True))
+    found = [single(equations, i).orbit(row) if is_good else None for i, (is_good, row) in rows]
+    return found, good & equations.admissible(z, solution.linear)
 
 
 def shortest_contacts(
     equations: OrbitEquations, amplitude: NDArray, sign: int
-) -> list[list[PeriodicOrbit]]:
-    """Orbits with one impact on a side of the saddle-node, a list for each row.
+) -> tuple[list[PeriodicOrbit | None], NDArray]:
+    """Orbits with one impact and the shortest contact on a side of the saddle-node.
 
-    Those that a ball follows, and of these those with short contacts, come first.
+    One for each row, if possible one that a ball follows, or None; and which of them it follows.
     """
-    found = []
+    found: list[PeriodicOrbit | None] = []
     for i, z in enumerate(all_orbits(equations, amplitude)):
-        orbits = [PeriodicOrbit(single(equations, i), row) for row in z]
+        orbits = [single(equations, i).orbit(row) for row in z]
         on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
-        found.append(sorted(on_side, key=lambda each: (not each.admissible, each.contact_duration)))
-    return found
+        on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
+        found.append(on_side[0] if on_side else None)
+    return found, np.array([each is not None and each.admissible for each in found])
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:

@@ -23,29 +23,26 @@ the parameter.
 class Task(NamedTuple):
     """Orbits to be followed, by rows.
 
-    Their goals, one or two, the limits of the parameter, and the kinds of special orbits at which
-    branches end, or None.
+    ``goal`` is the value to be reached, ``other`` that of the other way, NaN if there is only one;
+    ``limits`` are those of the parameter, shape (rows, 2), and ``until`` the kinds of special
+    orbits at which branches end, or None.
     """
 
     equations: OrbitEquations
     z: NDArray
-    goals: NDArray
+    goal: NDArray
+    other: NDArray
     limits: NDArray
     until: NDArray
 
 
-def _none(task: Task) -> NDArray:
-    """No reasons against a branch."""
-    return np.full(len(task.z), "", object)
-
-
-def _on_side(reasons: NDArray, away: NDArray, task: Task, goal: NDArray, what: str) -> None:
-    """Add the reason that orbits are on the other side of a special orbit than the goal."""
+def _refuse(reasons: NDArray, which: NDArray, task: Task, text: str, away: NDArray) -> None:
+    """Give rows without a reason one, with the place of the orbit and the side of the branch."""
     name = task.equations.along[-1].name
-    here = task.z[:, -1]
-    for i in np.flatnonzero((reasons == "") & ~(away * (goal - here) > 0)):
+    for i in np.flatnonzero((reasons == "") & which):
+        place = f"{name} = {task.z[i, -1]:.10g}"
         side = "above" if away[i] > 0 else "below"
-        reasons[i] = what.format(side=side, place=f"{name} = {here[i]:.10g}")
+        reasons[i] = text.format(name=name, place=place, side=side)
 
 
 def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
@@ -68,20 +65,17 @@ def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     return np.concatenate([null, -null, np.zeros((rows, len(equations.along)))], axis=1)
 
 
-def _ordinary_start(task: Task, way: int) -> Start:
+def _ordinary_start(task: Task) -> Start:
     """The branch through orbits."""
-    goal = task.goals[:, way]
-    ahead = goal - task.z[:, -1]
+    ahead = task.goal - task.z[:, -1]
     direction = tangents(task.equations, task.z)
     direction = direction * np.sign(ahead * direction[:, -1])[:, np.newaxis]
-    reasons = _none(task)
-    for i in np.flatnonzero(ahead == 0):
-        name = task.equations.along[-1].name
-        reasons[i] = f"{name} = {goal[i]:.10g} is that of the orbit already"
-    return Start(task.equations, task.z, direction, goal, reasons)
+    reasons = np.full(len(task.z), "", object)
+    _refuse(reasons, ahead == 0, task, "{place} is that of the orbit already", ahead)
+    return Start(task.equations, task.z, direction, task.goal, reasons)
 
 
-def _fold_start(task: Task, way: int) -> Start:
+def _fold_start(task: Task) -> Start:
     """The branch that is stable next to a saddle-node; also the other one, if both are followed.
 
     Both are on the same side of the parameter.
@@ -91,21 +85,23 @@ def _fold_start(task: Task, way: int) -> Start:
     near = newton(task.equations, task.z + 1e-3 * direction * units, direction / units)
     away = near.z[:, -1] - task.z[:, -1]
     stable = np.sign(1 - task.equations.turn(near.linear))
-    other = task.goals.shape[1] == 2 and way == 0
-    direction = direction * units * (-stable if other else stable)[:, np.newaxis]
-    goal = np.where(away > 0, task.goals.max(axis=1), task.goals.min(axis=1))
-    reasons = _none(task)
+    side = np.where(task.goal < task.other, -stable, stable)
+    farthest = np.fmax(task.goal, task.other), np.fmin(task.goal, task.other)
+    goal = np.where(away > 0, *farthest)
+    reasons = np.full(len(task.z), "", object)
     reasons[~near.found] = "no orbit is found beside the saddle-node"
-    _on_side(reasons, away, task, goal, "the orbits of the saddle-node at {place} are {side} it")
-    return Start(task.equations, task.z, direction, goal, reasons)
+    on_side = away * (goal - task.z[:, -1]) > 0
+    text = "the orbits of the saddle-node at {place} are {side} it"
+    _refuse(reasons, ~on_side, task, text, away)
+    return Start(task.equations, task.z, direction * units * side[:, np.newaxis], goal, reasons)
 
 
-def _grazing_start(task: Task, way: int) -> Start:
+def _grazing_start(task: Task) -> Start:
     """The branch with one impact more, from orbits with a flight that touches the table."""
     more = replace(task.equations, impacts=task.equations.impacts + 1)
     origin = np.zeros((len(task.z), more.length))
     direction = np.ones(origin.shape)
-    reasons = _none(task)
+    reasons = np.full(len(task.z), "", object)
     for i, z in enumerate(task.z):
         try:
             _, origin[i], direction[i] = one_impact_more(single(task.equations, i), z)
@@ -115,21 +111,21 @@ def _grazing_start(task: Task, way: int) -> Start:
     units = more.scales(origin)
     ahead = unit(direction / units)
     start = newton(more, origin + 1e-3 * ahead * units, ahead / units)
-    reasons[(reasons == "") & ~start.found] = "the orbits with one impact more are not found"
-    goal = task.goals[:, way]
     away = start.z[:, -1] - origin[:, -1]
-    what = "the orbits with one impact more are {side} the grazing at {place}"
-    _on_side(reasons, away, task, goal, what)
-    return Start(more, start.z, start.z - origin, goal, reasons, step=1e-3, origin=origin)
+    _refuse(reasons, ~start.found, task, "the orbits with one impact more are not found", away)
+    on_side = away * (task.goal - task.z[:, -1]) > 0
+    text = "the orbits with one impact more are {side} the grazing at {place}"
+    _refuse(reasons, ~on_side, task, text, away)
+    return Start(more, start.z, start.z - origin, task.goal, reasons, step=1e-3, origin=origin)
 
 
-def _halved_start(task: Task, way: int) -> Start:
+def _halved_start(task: Task) -> Start:
     """The branch of half the period."""
     equations, z = task.equations.halved(task.z)
-    return _ordinary_start(task._replace(equations=equations, z=z), way)
+    return _ordinary_start(task._replace(equations=equations, z=z))
 
 
-def _doubled_start(task: Task, way: int) -> Start:
+def _doubled_start(task: Task) -> Start:
     """The branch of twice the period.
 
     The parameter and tr/(1 + det), which is 1 at the doubling, change there with the square of the
@@ -152,24 +148,26 @@ def _doubled_start(task: Task, way: int) -> Start:
             away = (solution.z[:, -1] - np.tile(origin[:, -1], 2)).reshape(2, rows)
             lost = 1 - pair.turn(solution.linear).reshape(2, rows)
             bend = np.linalg.norm((solution.z - guess)[:rows] / units, axis=1)
-            new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < 0.2 * step)
-            new &= _about_four(away) & _about_four(lost) & (np.abs(lost[0]) < 0.3)
+            ratios = np.stack([away[0] / away[1], lost[0] / lost[1]])
+        new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < 0.2 * step)
+        new &= ((ratios > 3) & (ratios < 5.5)).all(axis=0) & (np.abs(lost[0]) < 0.3)
         start[new] = solution.z[:rows][new]
         good |= new
         if good.all():
             break
         step[~good] /= 2
-    goal = task.goals[:, way]
-    reasons = _none(task)
-    reasons[~good] = "the start of the orbits of twice the period is not found"
-    away = start[:, -1] - origin[:, -1]
-    what = "the orbits of twice the period are {side} the period doubling at {place}"
-    _on_side(reasons, away, task, goal, what)
-    near = (reasons == "") & (np.abs(goal - origin[:, -1]) < NEAREST * units[:, -1])
-    name = twice.along[-1].name
-    reasons[near] = f"{name} is too near to the period doubling: rounding errors hide the orbits"
+    reasons = np.full(rows, "", object)
+    missing = "the start of the orbits of twice the period is not found"
+    reasons[~good] = missing
+    here = origin[:, -1]
+    away = start[:, -1] - here
+    text = "the orbits of twice the period are {side} the period doubling at {place}"
+    _refuse(reasons, ~(away * (task.goal - here) > 0), task, text, away)
+    near = np.abs(task.goal - here) < NEAREST * units[:, -1]
+    text = "{name} is too near to the period doubling: rounding errors hide the orbits"
+    _refuse(reasons, near, task, text, away)
     with np.errstate(all="ignore"):
-        share = (goal - origin[:, -1]) / away
+        share = (task.goal - here) / away
     short = (reasons == "") & (share < 1.5)
     if short.any():
         # The whole branch is hardly longer than its start, or shorter.
@@ -177,16 +175,8 @@ def _doubled_start(task: Task, way: int) -> Start:
         guess = origin + step[:, np.newaxis] * direction * units
         solution = newton(twice, guess, direction / units)
         start[short] = solution.z[short]
-        reasons[short & ~solution.found] = (
-            "the start of the orbits of twice the period is not found"
-        )
-    return Start(twice, start, start - origin, goal, reasons, step=step, origin=origin)
-
-
-def _about_four(pair: NDArray) -> NDArray:
-    """Whether the second row is about a quarter of the first."""
-    ratio = pair[0] / pair[1]
-    return (ratio > 3) & (ratio < 5.5)
+        reasons[short & ~solution.found] = missing
+    return Start(twice, start, start - origin, task.goal, reasons, step=step, origin=origin)
 
 
 STARTS = {

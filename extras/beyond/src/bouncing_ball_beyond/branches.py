@@ -1,0 +1,351 @@
+"""Branches of orbits along a parameter, and curves of special orbits along two."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.equations import (
+    KINDS,
+    MULTIPLIERS,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    kind_named,
+)
+from bouncing_ball_beyond.forms import RESONANT
+from bouncing_ball_beyond.march import (
+    AT_GOAL,
+    CLOSED,
+    FIRST_STEP,
+    Points,
+    Start,
+    ends_at,
+    march,
+    newton,
+    tangents,
+)
+from bouncing_ball_beyond.search import single
+from bouncing_ball_beyond.special_orbits import (
+    GENERALIZED,
+    Crossings,
+    crossings_of,
+    halved_at,
+    located,
+)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FollowedBranch:
+    """Orbits along a parameter, in order.
+
+    Parameters
+    ----------
+    z : ndarray, shape (points, N)
+        The orbits, as rows of the equations.
+    special : tuple of PeriodicOrbit
+        The special orbits in their order, without that at which the branch starts.
+    start, end : str
+        Where the branch starts, and why it ends.
+    """
+
+    equations: OrbitEquations
+    z: NDArray
+    special: tuple[PeriodicOrbit, ...]
+    start: str
+    end: str
+
+    @property
+    def _name(self) -> str:
+        return "FollowedBranch"
+
+    def __repr__(self) -> str:
+        first, last = self.values[[0, -1]]
+        kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
+        rows = {
+            "orbits": len(self),
+            "impacts": self.impacts,
+            "periods": self.periods,
+            "along": f"{self.along}, {first:.6g} to {last:.6g}",
+            "special orbits": kinds or "none",
+            "start": self.start,
+            "end": self.end,
+        }
+        return "\n".join([self._name, *(f"  {name:16}{row}" for name, row in rows.items())])
+
+    def __len__(self) -> int:
+        return len(self.z)
+
+    @property
+    def impacts(self) -> int:
+        """The number k of impacts of the orbits."""
+        return self.equations.impacts
+
+    @property
+    def periods(self) -> int:
+        """The number m of periods of the table in one period of the orbits."""
+        return int(self.equations.periods)
+
+    @property
+    def along(self) -> str:
+        """The name of what changes."""
+        return " and ".join(path.name for path in self.equations.along)
+
+    @property
+    def values(self) -> NDArray:
+        """The values of what changes, shape (points,)."""
+        return self.z[:, -1]
+
+    @cached_property
+    def orbits(self) -> tuple[PeriodicOrbit, ...]:
+        """The orbits one by one."""
+        return tuple(self.equations.orbit(row, self.equations.kind) for row in self.z)
+
+    @cached_property
+    def stable(self) -> NDArray:
+        """Whether the orbits are stable, shape (points,)."""
+        return self.equations.stable(self.equations.linear(self.z))
+
+    @cached_property
+    def admissible(self) -> NDArray:
+        """Whether a ball follows the orbits, shape (points,)."""
+        return self.equations.admissible(self.z)
+
+    def refined(self, spacing: float = 0.04) -> "FollowedBranch":
+        """The branch with further orbits in between, so that lines through them have no corners.
+
+        `spacing` is the largest distance, as root mean square of the changes of the times and
+        speeds of the impacts and as relative change of the parameter; but there are no more than 50
+        orbits in a step of the branch. All are solved as those of the branch are.
+        """
+        if len(self) < 2:
+            return self
+        units = self.equations.scales(self.z[:-1])
+        chords = np.diff(self.z, axis=0)
+        counts = np.ceil(np.linalg.norm(chords / units, axis=1) / spacing).astype(int).clip(1, 50)
+        which = np.repeat(np.arange(len(chords)), counts)
+        share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
+        guess = self.z[which] + share * chords[which]
+        solution = newton(self.equations, guess, (chords / units**2)[which])
+        good = solution.found | (share[:, 0] == 0)
+        z = np.where(share == 0, guess, solution.z)[good]
+        return replace(self, z=np.concatenate([z, self.z[-1:]]))
+
+    def first(self, kind: str) -> PeriodicOrbit:
+        """The first special orbit of a kind; OrbitNotFound if the branch has none."""
+        return self._first(kind_named(kind), "this branch; its special orbits are")
+
+    def _first(self, kind: str, where: str) -> PeriodicOrbit:
+        """The first special orbit of a kind, with spaces or hyphens in its name."""
+        for each in self.special:
+            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
+                return each
+        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
+        raise OrbitNotFound(f"no {kind} on {where}: {others}")
+
+    def with_special(self) -> list[PeriodicOrbit]:
+        """The orbits with the special ones, each in the step where it makes no detour."""
+        orbits = list(self.orbits)
+        units = self.equations.scales(self.z)[0]
+        points = self.z / units
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        for special in reversed(self.special):
+            distance = np.linalg.norm(points - special.z / units, axis=1)
+            place = int(np.argmin(distance[:-1] + distance[1:] - steps)) if len(steps) else 0
+            orbits.insert(place + 1, special)
+        return orbits
+
+
+class SpecialCurve(FollowedBranch):
+    """Special orbits of one kind along two parameters: a `FollowedBranch` with their kind.
+
+    Its ``special`` orbits are those of codimension two.
+    """
+
+    @property
+    def _name(self) -> str:
+        return f"SpecialCurve: {self.kind}"
+
+    @property
+    def kind(self) -> str:
+        """The kind of the special orbits."""
+        return self.equations.kind
+
+    def first(self, kind: str) -> PeriodicOrbit:
+        """The first orbit of codimension two of a kind; OrbitNotFound if the curve has none."""
+        return self._first(kind, "this curve; its orbits of codimension two are")
+
+
+def joined(back: Any, forth: Any) -> Any:
+    """A branch that is followed both ways from a point, in the order of the second way."""
+    if forth.end == CLOSED:
+        return replace(forth, start=CLOSED)
+    return replace(
+        forth,
+        z=np.concatenate([back.z[:0:-1], forth.z]),
+        special=(*back.special[::-1], *forth.special),
+        start=back.end,
+    )
+
+
+def both_ways(
+    equations: OrbitEquations,
+    z: NDArray,
+    direction: NDArray,
+    window: NDArray,
+    points: int,
+    until: str | None = None,
+    step: float = FIRST_STEP,
+) -> Any:
+    """The curve through a point, shape (1, N), along a direction and against it."""
+    both = np.concatenate([-direction, direction])
+    nothing = np.full(2, np.nan), np.full(2, "")
+    start = Start(equations, np.tile(z, (2, 1)), both, *nothing, step)
+    return joined(*followed(start, np.array([window, window]), [until, until], points, ""))
+
+
+class _Passed(NamedTuple):
+    """A special orbit, the number of the step in which it is, and how far on this step."""
+
+    number: int
+    place: float
+    orbit: PeriodicOrbit
+
+    @property
+    def order(self) -> tuple:
+        """Where a flight vanishes, an impact and a release do so at the same place."""
+        kinds = [*self.orbit.equations.kinds, self.orbit.kind]
+        return self.number, round(self.place, 6), kinds.index(self.orbit.kind)
+
+
+def followed(
+    start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
+) -> list[Any]:
+    """Branches from their starts to a value of their parameter, with their special orbits.
+
+    ``own`` is the kind of the special orbits at the starts, which are not listed.
+    """
+    steps = march(start, window, until, points)
+    row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
+    every = zip(*(points for points, _ in steps), strict=True)
+    z, slopes, tests, _ = (np.concatenate(each) for each in every)
+    crossings = crossings_of(start.equations, row, z, slopes, tests)
+    z, found = np.empty((2, 0))
+    if len(crossings.row):
+        z, found = located(start.equations, crossings)
+    branches = []
+    for i, (path, end) in enumerate(steps):
+        equations = single(start.equations, i)
+        passed = _resonant(equations, path)
+        for j in np.flatnonzero(crossings.row == i):
+            kind = str(crossings.kind[j])
+            number = crossings.number[j]
+            here = z[j] if found[j] else None
+            if kind == "period halving":
+                here = _merged(equations, crossings.ends[:, j])
+            if here is not None and not (number == 0 and kind == own):
+                place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
+                passed.append(_Passed(number, place, equations.orbit(here, kind)))
+        passed.sort(key=lambda each: each.order)
+        orbits = path.z
+        ends = [j for j, each in enumerate(passed) if ends_at(each.orbit.kind, until[i])]
+        if ends:
+            passed = passed[: ends[0] + 1]
+            last = passed[-1].orbit
+            orbits = np.vstack([orbits[: passed[-1].number + 1], last.z])
+            why = KINDS[last.kind].end if last.kind in KINDS else ""
+            end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
+        elif end in KINDS:
+            # Newton's method does not find it, but it is between the last two points.
+            end = f"{end} near {_place(equations, orbits[-1], 4)}: {KINDS[end].end}"
+            orbits = orbits[:-1]
+            passed = [each for each in passed if each.number + 1 < len(orbits)]
+        else:
+            end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
+            end += _in_words_of_symmetry(crossings, i, equations.along[-1].name)
+        special = tuple(each.orbit for each in passed)
+        kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
+        branches.append(kind_of_branch(equations, orbits, special, "", end))
+    return branches
+
+
+def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
+    """Where orbits merge with those of half their period.
+
+    Curves of saddle-nodes do so where the doubling of half the period is a generalized one.
+    """
+    if not equations.kind:
+        return halved_at(equations, ends)
+    half, near = equations.halved(ends)
+    half = replace(half, kind="period doubling")
+    start = newton(half, near.mean(axis=0, keepdims=True))
+    if equations.kind != "saddle-node" or not start.found[0]:
+        return None
+    reach = float(np.linalg.norm((ends[1] - ends[0]) / equations.scales(ends[:1])[0]))
+    window = start.z[0, half.size :] + reach * np.array([[-1.0], [1.0]])
+    given = half, start.z, tangents(half, start.z), window, 20
+    found = both_ways(*given, until=GENERALIZED, step=reach / 2).special
+    generalized = [each.z for each in found if each.kind == GENERALIZED]
+    return half.doubled(generalized[0][np.newaxis])[1][0] if generalized else None
+
+
+def _resonant(equations: OrbitEquations, path: Points) -> list[_Passed]:
+    """The resonance at the end of a curve, if it ends with one."""
+    if equations.kind not in MULTIPLIERS:
+        return []
+    column = equations.kinds.index(equations.kind)
+    resonant = np.abs(path.tests[:, column]) < RESONANT
+    if not resonant[-1] or resonant.all():
+        return []
+    orbit = equations.orbit(path.z[-1], equations.watched[column])
+    return [_Passed(len(path.z) - 1, 0.0, orbit)]
+
+
+def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:
+    """The values of what changes."""
+    values = zip(equations.along, z[equations.size :], strict=True)
+    return ", ".join(f"{path.name} = {value:.{digits}g}" for path, value in values)
+
+
+def _in_words(
+    end: str,
+    equations: OrbitEquations,
+    z: NDArray,
+    window: NDArray,
+    goal: float,
+    passed: list[_Passed],
+) -> str:
+    """Why a branch ends at an orbit that is not special."""
+    if end == CLOSED:
+        return end
+    if end != AT_GOAL:
+        return f"{end}; the last one is at {_place(equations, z)}"
+    values = z[equations.size :]
+    j = np.flatnonzero((values == window).any(axis=0))[-1]
+    name = equations.along[j].name
+    here = f"{name} = {values[j]:.10g}"
+    if len(values) > 1 or abs(values[j] - goal) <= 1e-12 * abs(goal):
+        return f"{here} is reached"
+    folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
+    turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
+    return f"{here} is reached, on the other side of the start than the goal{turned}"
+
+
+def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
+    """Where a multiplier passes 1 and the parameter does not turn back, or ""."""
+    rising = crossings.slopes[..., -1]
+    symmetric = (crossings.row == row) & (crossings.kind == "saddle-node")
+    symmetric &= rising[0] * rising[1] > 0
+    if not symmetric.any():
+        return ""
+    before, after = crossings.values[:, symmetric]
+    below, above = crossings.ends[:, symmetric, -1]
+    places = (below * after - above * before) / (after - before)
+    near = ", ".join(f"{place:.3g}" for place in places)
+    return (
+        f"; near {name} = {near} a multiplier passes 1 without a saddle-node: there orbits of less"
+        " symmetry branch off"
+    )

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
@@ -38,7 +39,7 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
 """What was measured is the first row whose columns are all there."""
 # Without its other half such a column says that another one is missing.
 _HALVES = ("drop height", "rebound height", "trial", "speed before", "speed after", "restitution")
-_KEYS = ("mass", "diameter", "contact time", "resolution", "drop height", "frame rate")
+_KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
@@ -122,28 +123,29 @@ def rounding_of(recording: Recording) -> float:
 # Numbers to series.
 
 
-def _series(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
+def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     """Return the numbers between missing ones, with their lines.
 
     Those of several columns, as h0 and h1, run along each line.
     """
-    matrix = np.column_stack([table.values(each) for each in columns])
+    runs: list[tuple[Array, Lines]] = []
     if len(columns) > 1:
+        matrix = np.column_stack([table.values(each) for each in columns])
         falls = matrix[:, 1:] / matrix[:, :-1]
         table.refuse(
             np.any(falls[:, 1:] > np.sqrt(falls[:, :-1]), axis=1),
             "these heights do not fall on as those of successive bounces: repeated drops from one "
             "height are named drop height, trial 1, trial 2",
         )
-        lines = np.broadcast_to(table.lines[:, None], matrix.shape)
-        runs = list(zip(matrix, lines, strict=True))
+        runs += zip(matrix, np.broadcast_to(table.lines[:, None], matrix.shape), strict=True)
     else:
-        jumps = np.zeros(len(matrix))
-        for each in table.of("count"):
-            jumps += np.cumsum(np.diff(each.numbers, prepend=each.numbers[0]) > 1)
-        parts = list(zip(_names(table, "recording"), jumps, strict=True))
-        groups = [[each == part for each in parts] for part in dict.fromkeys(parts)]
-        runs = [(matrix[rows, 0], table.lines[rows]) for rows in groups]
+        for part in table.parts("recording").values():
+            begins = [0]
+            for each in part.of("count"):
+                begins += (np.flatnonzero(np.diff(each.numbers) > 1) + 1).tolist()
+            values = part.values(*part.of(columns[0].role))
+            for begin, end in itertools.pairwise([*begins, len(values)]):
+                runs.append((values[begin:end], part.lines[begin:end]))
     return [
         (values[piece], lines[piece])
         for values, lines in runs
@@ -151,49 +153,11 @@ def _series(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     ]
 
 
-def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
-    """Return the recording of heights, of flights, or of times."""
-    are_times = kind == "times"
-    digit = min(each.digit for each in columns)
-    runs = _series(table, columns)
-    if are_times:
-        runs = [(np.diff(times), lines[1:]) for times, lines in runs]
-    # The errors of intervals that were rounded one by one do not cancel, as those of times.
-    is_read = are_times or kind == "heights"
-    found = Recording(
-        table.name,
-        "heights" if kind == "heights" else "flights",
-        tuple(values for values, _ in runs if len(values)),
-        are_times=are_times,
-        digit=digit if is_read else 0.0,
-        head=table.head,
-    )
-    rounding = rounding_of(found) if found.chains else 0.0
-    for values, lines in runs:
-        # Errors of two readings may let a height grow by a last digit, and those of three times a
-        # flight by two.
-        grows = 2 * rounding if are_times else rounding
-        what = "height of {} m" if kind == "heights" else "flight of {} s"
-        if kind != "heights":
-            _refuse_durations(table, are_times, values, lines)
-        table.refuse(
-            values[1:] > _GROWTH * values[:-1] + grows,
-            f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
-            "release, or another recording begins (leave an empty line, or --leave-out its line)",
-            values[1:],
-            values[:-1],
-            lines=lines[1:],
-        )
-        if kind != "heights":
-            _refuse_ratios(table, values, lines, rounding)
-    return found
-
-
-def _refuse_durations(table: Table, are_times: bool, flights: Array, lines: Lines) -> None:
+def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
     """Refuse flights in s that no ball has."""
     half = len(flights) // 2
     # Flights get shorter, even if r is 0.997.
-    if are_times and half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
+    if half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
         raise Refused(
             f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
             "and y"
@@ -232,17 +196,56 @@ def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) 
     )
 
 
-def _of_pairs(table: Table, kind: str, columns: list[Column]) -> Recording:
+def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
+    """Return the recording of heights, of flights, or of times."""
+    runs = _runs(table, columns)
+    if kind == "times":
+        runs = [(np.diff(times), lines[1:]) for times, lines in runs]
+    found = Recording(
+        table.name,
+        "heights" if kind == "heights" else "flights",
+        tuple(values for values, _ in runs if len(values)),
+        are_times=kind == "times",
+        # The errors of intervals that were rounded one by one do not cancel, as those of times.
+        digit=0.0 if kind == "flights" else min(each.digit for each in columns),
+        head=table.head,
+    )
+    rounding = rounding_of(found) if found.chains else 0.0
+    # Errors of two readings may let a height grow by a last digit, and those of three times a
+    # flight by two.
+    grows = 2 * rounding if kind == "times" else rounding
+    what = "height of {} m" if kind == "heights" else "flight of {} s"
+    for values, lines in runs:
+        if kind != "heights":
+            _refuse_durations(table, values, lines)
+        table.refuse(
+            values[1:] > _GROWTH * values[:-1] + grows,
+            f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
+            "release, or another recording begins (leave an empty line, or --leave-out its line)",
+            values[1:],
+            values[:-1],
+            lines=lines[1:],
+        )
+        if kind != "heights":
+            _refuse_ratios(table, values, lines, rounding)
+    return found
+
+
+def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Column]) -> Recording:
     """Return the recording of pairs: of the first column with each of the others."""
     first, *others = (table.values(each) for each in columns)
-    pairs = np.concatenate([np.column_stack([first, each]) for each in others])
-    lines = np.tile(table.lines, len(others))
-    is_there = ~np.isnan(pairs).any(axis=1)
+    # Without a unit an uncertainty has that of the coefficients.
+    known = [replace(each, unit=each.unit or columns[-1].unit) for each in errors]
+    rows = [np.column_stack([first, each, *map(table.values, known)]) for each in others]
+    numbers = np.concatenate(rows)
+    is_there = ~np.isnan(numbers).any(axis=1)
+    pairs = numbers[is_there, :2]
     if kind != "coefficients":
-        _refuse_growth(table, kind, pairs[is_there], lines[is_there])
+        _refuse_growth(table, kind, pairs, np.tile(table.lines, len(others))[is_there])
     read_off = columns if kind == "speeds" else columns[1:]
     digit = min(each.digit for each in read_off)
-    return Recording(table.name, kind, (pairs[is_there],), digit=digit)
+    uncertainty = numbers[is_there, 2] if errors else None
+    return Recording(table.name, kind, (pairs,), uncertainty, digit=digit)
 
 
 def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
@@ -255,29 +258,6 @@ def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
 
 
 # Samples to series.
-
-
-def _samples(table: Table, columns: list[Column]) -> tuple[Array, Array, Lines]:
-    """Return times in s, values as they are written, and lines."""
-    is_there = ~np.isnan([each.numbers for each in columns]).any(axis=0)
-    t = table.values(columns[0])[is_there]
-    lines = table.lines[is_there]
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{table.name}: {len(t)} lines of a track are too few")
-    steps = np.diff(t)
-    table.refuse(steps < 0, "the time is not after the one before: sort the lines", lines=lines[1:])
-    gap = steps > 20 * np.mean(steps)
-    table.refuse(gap, "a gap in the time: one recording of positions is read", lines=lines[1:])
-    return t, columns[1].numbers[is_there], lines
-
-
-def _even(t: Array) -> Array:
-    """Return times of even frames, if the times agree with these but for their last digit."""
-    frames = np.arange(len(t))
-    even = np.polyval(np.polyfit(frames, t, 1), frames)
-    digits = next((d for d in range(9) if np.abs(np.round(t, d) - t).max() < 1e-10), 9)
-    is_rounded = np.abs(t - even).max() <= 10.0**-digits
-    return np.where(is_rounded, even, t)
 
 
 def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
@@ -303,52 +283,71 @@ def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
     return flights, bottoms
 
 
-def _of_track(table: Table, columns: list[Column]) -> Recording:
-    """Return the speeds at impacts; gravity gives their scale."""
-    t, y, lines = _samples(table, columns)
-    unit = columns[1].unit
-    # Impacts bend a track upwards, which skews second differences. Over the time from frame to
-    # frame noise may hide that: of the times, that counts over which they are skewed the most.
-    bends = [y[: -2 * n] - 2 * y[n:-n] + y[2 * n :] for n in 2 ** np.arange(8) if 4 * n < len(y)]
-    skewness = [float(np.mean(each**3)) / (float(np.std(each)) or 1.0) ** 3 for each in bends]
-    turn = -1 if max(skewness, key=abs) < 0 else 1
-    flights, bottoms = _flights_of_track(turn * y)
-    even = _even(t)
-    lasting = np.array([np.ptp(even[each]) if len(each) else 0.0 for each in flights])
-    first = lines[[each[0] if len(each) else 0 for each in flights]]
-    said = "a flight of {} s is too long: is it in ms, or of slow motion?"
-    table.refuse(lasting > 9, said, lasting, lines=first)
+def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, float, float]]:
+    """Return the track of each impact, its speeds before and after, and gravity."""
+    flights, bottoms = _flights_of_track(up)
     impacts = {}
     for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
         if min(len(before), len(after)) < _FEWEST:
             continue
         both = np.concatenate([before, after])
-        track = np.column_stack([even[both], turn * y[both], np.isin(both, after)])
-        down, up, gravity, misfit = impact_of(track)
+        track = np.column_stack([t[both], up[both], np.isin(both, after)])
+        v_before, v_after, gravity, misfit = impact_of(track)
         # What misses the positions by more than a twentieth of the height is no flight.
-        lowest = min(down, up) ** 2 / (2 * gravity)
-        if min(down, up, gravity) > 0 and misfit < 0.05 * lowest:
-            impacts[bottom] = track, down, up, gravity
+        slowest = min(v_before, v_after)
+        if min(slowest, gravity) > 0 and misfit < 0.05 * slowest**2 / (2 * gravity):
+            impacts[bottom] = track, v_before, v_after, gravity
+    return impacts
+
+
+def _of_track(table: Table, columns: list[Column]) -> Recording:
+    """Return the tracks of impacts; gravity gives their scale."""
+    is_there = np.all([~np.isnan(each.numbers) for each in columns], axis=0)
+    t = table.values(columns[0])[is_there]
+    y = columns[1].numbers[is_there]
+    lines = table.lines[is_there]
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(f"{table.name}: {len(t)} lines of a track are too few")
+    steps = np.diff(t)
+    table.refuse(steps < 0, "the time is not after the one before: sort the lines", lines=lines[1:])
+    gap = steps > 20 * np.mean(steps)
+    table.refuse(gap, "a gap in the time: one recording of positions is read", lines=lines[1:])
+    # Times that are rounded are those of even frames.
+    frames = np.arange(len(t))
+    even = np.polyval(np.polyfit(frames, t, 1), frames)
+    t = np.where(np.abs(t - even).max() <= columns[0].digit, even, t)
+    # Upside down no flight is a parabola.
+    ways = [_impacts_of_track(t, up) for up in (y, -y)]
+    impacts = max(ways, key=len)
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    tracks, downs, ups, gravities = zip(*impacts.values(), strict=True)
+    tracks, *speeds, gravities = zip(*impacts.values(), strict=True)
+    pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
+    lines = lines[list(impacts)]
+    lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
+    long = "a flight of {} s is too long: is it in ms, or of slow motion?"
+    table.refuse(lasts > 9, long, lasts, lines=lines)
+    _refuse_growth(table, "speeds", pairs, lines)
     mean = float(np.mean(gravities))
+    unit = columns[1].unit
+    notes = []
     # Without a scale, as of pixels, nothing contradicts gravity.
-    scale = in_si("y", f"1 {unit}", "m") if re.fullmatch("[cm]?m", unit) else math.nan
-    slow = math.sqrt(STANDARD_GRAVITY / (scale * mean))
-    further = {
-        f"gravity is {scale * mean:.3g} m/s² by the heights and times: the times are {slow:.3g} "
-        "times the true ones, as in slow motion, or the heights have another unit": (
-            max(slow, 1 / slow) > math.sqrt(2)
-        ),
-        f"{len(impacts)} of {len(bottoms)} impacts were found between flights that can be fitted; "
-        f"gravity, {mean:.4g} {unit or 'units'}/s² in this track, is the scale": True,
-        "the positions grow downwards, as in a picture: they were turned": turn < 0,
-    }
-    pairs = np.column_stack([downs, ups]) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    _refuse_growth(table, "speeds", pairs, lines[list(impacts)])
-    notes = tuple(text for text, holds in further.items() if holds)
-    return Recording(table.name, "track", tracks, notes=notes)
+    if re.fullmatch("[cm]?m", unit):
+        measured = in_si("y", f"1 {unit}", "m") * mean
+        slow = math.sqrt(STANDARD_GRAVITY / measured)
+        if not 0.5 < slow**2 < 2:
+            notes.append(
+                f"gravity is {measured:.3g} m/s² by the heights and times: the times are "
+                f"{slow:.3g} times the true ones, as in slow motion, or the heights have another "
+                "unit"
+            )
+    notes.append(
+        f"{len(impacts)} impacts were found between flights that can be fitted; gravity, "
+        f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale"
+    )
+    if impacts is ways[1]:
+        notes.append("the positions grow downwards, as in a picture: they were turned")
+    return Recording(table.name, "track", tracks, notes=tuple(notes))
 
 
 # What was measured.
@@ -366,52 +365,39 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        strange = [repr(each.name) for each in table.columns if each.name and not each.role]
-        balls = ""
-        if "drop height" in roles and len(strange) > 1:
-            balls = (
-                f"; if {', '.join(strange)} are balls, write one below the other, with a column "
-                "'ball' and one 'rebound height'"
+        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}")
+    columns = [each for role in needed for each in table.of(role)]
+    for each, other in itertools.pairwise(columns):
+        is_counted = each.role in ("trial", "height") and re.search(r"\d$", each.name + other.name)
+        if each.role == other.role and not is_counted:
+            raise Refused(
+                f"{table.name}: two columns are both {each.role}, {each.name!r} and "
+                f"{other.name!r}: successive bounces are named h0, h1, h2, repeated drops trial 1, "
+                "trial 2, and of several balls one is below the other, with a column 'ball'"
             )
-        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}{balls}")
-    columns = []
-    for role in needed:
-        same = table.of(role)
-        is_counted = all(re.search(r"\d$", each.name) for each in same)
-        if len(same) > 1 and not (role in ("trial", "height") and is_counted):
-            ways = (
-                "successive bounces are named h0, h1, h2, and repeated drops trial 1, trial 2"
-                if role == "rebound height"
-                else "write one table for each, or one below the other with a column 'ball'"
-            )
-            named = f"{same[0].name!r} and {same[1].name!r}"
-            raise Refused(f"{table.name}: two columns are both {role}, {named}: {ways}")
-        columns += same
-    heights = columns[-1].numbers[~np.isnan(columns[-1].numbers)]
-    # Tops fall, and a ball in flight rises as well.
-    if needed == ("time", "height") and (np.diff(heights) < 0).all():
-        return "heights", columns[1:]
     return kind, columns
 
 
-def _names(table: Table, role: str) -> list[str]:
-    """Return the names of a column for each line; an empty cell has the name above it."""
-    name = ""
-    cells = [each.cells for each in table.of(role)[:1]] or [[""] * len(table.lines)]
-    return [name := cell or name for cell in cells[0]]
+def _durations(table: Table, kind: str, is_there: NDArray[np.bool_]) -> Array | None:
+    """Return the contact times of impacts, or one if not each of them has its own."""
+    if "contact time" in table.head:
+        return np.array([positive("contact time", table.head["contact time"], "s")])
+    for each in table.of("duration"):
+        values = table.values(each)[is_there]
+        known = values[~np.isnan(values)]
+        is_each = kind == "coefficients" and len(known) == len(values)
+        if len(known):
+            return known if is_each else known.mean(keepdims=True)
+    return None
 
 
 def _recording(table: Table) -> Recording:
     """Return the recording of one ball."""
-    drop = table.head.get("drop height")
-    if drop is not None and not table.of("drop height"):
-        height = np.full(len(table.lines), in_si("drop height", drop, "m"))
-        above = Column("drop height", "m", "drop height", [], height)
-        table = replace(table, columns=[*table.columns, above])
     kind, columns = _layout(table)
-    is_missing = np.isnan([each.numbers for each in columns]).any(axis=0)
+    errors = table.of("uncertainty")[:1] if kind == "coefficients" else []
+    is_there = np.all([~np.isnan(each.numbers) for each in columns + errors], axis=0)
     if kind in ("drops", "speeds", "coefficients"):
-        recording = _of_pairs(table, kind, columns)
+        recording = _of_pairs(table, kind, columns, errors)
     elif kind == "track":
         recording = _of_track(table, columns)
     else:
@@ -419,46 +405,23 @@ def _recording(table: Table) -> Recording:
     if not sum(map(len, recording.chains)):
         named = ", ".join(each.name for each in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
-    used = list(columns)
-    found: dict[str, Array] = {}
-    beside = {} if kind == "track" else {"duration": ""}
-    if kind == "coefficients":
-        # Without a unit an uncertainty has that of the coefficients.
-        beside["uncertainty"] = columns[-1].unit
-    for role, unit in beside.items():
-        for each in table.of(role)[:1]:
-            values = table.values(replace(each, unit=each.unit or unit))
-            if kind == "coefficients":
-                values = values[~is_missing]
-            known = values[~np.isnan(values)]
-            is_each = kind == "coefficients" and len(known) == len(values)
-            if is_each or (role == "duration" and len(known)):
-                found[role] = known if is_each else known.mean(keepdims=True)
-                used.append(each)
-    if "contact time" in table.head:
-        found["duration"] = np.array([positive("contact time", table.head["contact time"], "s")])
-    ignored = [
-        repr(each.name) for each in table.columns if each not in used and each.role not in TEXTS
-    ]
-    unused = [
-        f"'{key}: {value}'"
-        for key, value in table.head.items()
-        if key not in _KEYS and " uncertainty" not in key and re.fullmatch(_QUANTITY, value)
-    ]
-    gaps = ", ".join(map(str, table.lines[is_missing]))
-    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-    further = {
-        f"columns not used: {', '.join(ignored)}": bool(ignored),
-        f"a number is missing in line {gaps}, which is left out{divides}": bool(gaps),
-        f"the head has {', '.join(unused)}, but only {', '.join(_KEYS)} are used": bool(unused),
-    }
+    used = [*columns, *errors, *table.of("duration")]
+    ignored = [each for each in table.columns if each not in used and each.role not in TEXTS]
+    notes = list(recording.notes)
+    if names := [repr(each.name) for each in ignored if each.name]:
+        notes.append(f"columns not used: {', '.join(names)}")
+    if gaps := [str(line) for line in table.lines[~is_there]]:
+        divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
+        notes.append(f"a number is missing in line {', '.join(gaps)}, which is left out{divides}")
+    for key, value in table.head.items():
+        if key.removesuffix(" uncertainty") not in _KEYS and re.fullmatch(_QUANTITY, value):
+            notes.append(f"the head has '{key}: {value}', but only {', '.join(_KEYS)} are used")
     return replace(
         recording,
         head=table.head,
-        uncertainty=found.get("uncertainty"),
-        durations=found.get("duration"),
+        durations=_durations(table, kind, is_there),
         is_free=columns[0].role == "flight",
-        notes=recording.notes + tuple(text for text, holds in further.items() if holds),
+        notes=tuple(notes),
     )
 
 
@@ -495,20 +458,13 @@ def read(
         if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
                 f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
-                "'ball' for one result each, or leave it out for one of all"
+                "'ball' for one result each, or 'remark' for one of all"
             )
-    names = _names(table, "ball")
-    if ball is not None:
-        ball = next((each for each in names if each.lower() == ball.lower()), ball)
-    if ball is not None and ball not in names:
-        known = ", ".join(filter(None, dict.fromkeys(names))) or "no column of balls"
-        raise Refused(f"{table.name} has {known}: name one, --ball")
-    found = {}
-    for name in dict.fromkeys(names if ball is None else [ball]):
-        rows = [i for i, each in enumerate(names) if each == name]
-        columns = [
-            replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
-            for each in table.columns
-        ]
-        found[name] = _recording(Table(table.name, table.head, columns, table.lines[rows]))
-    return found
+    balls = table.parts("ball")
+    if ball is None:
+        return {name: _recording(part) for name, part in balls.items()}
+    for name, part in balls.items():
+        if name.lower() == ball.lower():
+            return {name: _recording(part)}
+    known = ", ".join(filter(None, balls)) or "no column of balls"
+    raise Refused(f"{table.name} has {known}: name one, --ball")

@@ -6,11 +6,10 @@ the head, in which ``# mass: 46 g`` is a quantity of the ball.
 """
 
 import csv
-import difflib
-import math
+import itertools
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -22,7 +21,6 @@ from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.units import LARGEST, Refused, in_si
 
 Lines = NDArray[np.intp]
-"""Numbers of the lines of a file, from 1 on."""
 
 NAMES = {
     "time": "time, t, impact time",
@@ -42,22 +40,26 @@ NAMES = {
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
+    "remark": "remark, note, comment",
 }
 """What a column has, and the names that say so."""
 HEADINGS = (
     "name them drop height and rebound height, time, interval, height, speed before and speed "
-    "after, speed and restitution, or t and y"
+    "after, speed and restitution, or t and y, and write several balls one below the other, with a "
+    "column 'ball'"
 )
 _ROLES = {
     re.sub(r"[ .]", "", name.lower()): role
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
+TEXTS = ("ball", "recording", "remark", "count")
+"""What divides a table or is said of its lines, and is no reading."""
 _UNITS = {
-    "time": "s",
     "interval": "s",
     "flight": "s",
     "duration": "s",
+    "time": "s",
     "drop height": "m",
     "rebound height": "m",
     "trial": "m",
@@ -68,17 +70,16 @@ _UNITS = {
     "restitution": "",
     "uncertainty": "",
 }
-TEXTS = ("ball", "recording", "count")
-"""What divides a table, and is no reading."""
-# Of each SI unit: what has it, the least and the most that a ball has, without a unit and with one,
-# and the unit that was perhaps meant.
-_PLAUSIBLE = {
-    "s": ("time", 1e-9, 1e4, 1e4, "ms"),
-    "m": ("height", 1e-6, 10.0, 100.0, "cm"),
-    "m/s": ("speed", 1e-6, 100.0, 100.0, "cm/s"),
+# By the unit: what a number is, the largest ones without and with a unit in the heading, and the
+# unit in which a larger one may have been written.
+_LARGEST = {
+    "s": ("time", 1e4, 1e4, "ms"),
+    "m": ("height", 10.0, 100.0, "cm"),
+    "m/s": ("speed", 100.0, 100.0, "cm/s"),
     # An error of its reading may let an r exceed 1.
-    "": ("restitution coefficient", 1e-6, 1.05, 1.05, "%"),
+    "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
+_SMALLEST = 1e-9
 
 
 def experiments() -> list[str]:
@@ -126,6 +127,21 @@ class Table:
         """Return the columns that have a quantity."""
         return [each for each in self.columns if each.role == role]
 
+    def parts(self, role: str) -> "dict[str, Table]":
+        """Return the lines of each name in a column of names; an empty cell has the one above."""
+        name = ""
+        cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
+        names = [name := cell or name for cell in cells[0]]
+        parts = {}
+        for part in dict.fromkeys(names):
+            rows = [i for i, each in enumerate(names) if each == part]
+            columns = [
+                replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
+                for each in self.columns
+            ]
+            parts[part] = replace(self, columns=columns, lines=self.lines[rows])
+        return parts
+
     def refuse(
         self, is_bad: NDArray[np.bool_], text: str, *numbers: Array, lines: Any = None
     ) -> None:
@@ -138,19 +154,14 @@ class Table:
     def values(self, column: Column) -> Array:
         """Return the numbers of a column in SI units, and refuse those that no ball has."""
         unit = _UNITS[column.role]
+        what, bare, most, meant = _LARGEST[unit]
         # The sign of a velocity is its direction.
-        numbers = np.abs(column.numbers) if unit == "m/s" else column.numbers
-        values = column.scale * numbers
-        what, least, bare, most, meant = _PLAUSIBLE[unit]
-        said = f"a {what} of {{}} {unit}".strip() + f" below {column.name!r}"
-        largest = most if column.unit else bare
-        hint = f"is it in {meant}? write ({meant}) behind the heading"
-        if column.role != "time":
-            self.refuse(values <= 0, f"{said} is not positive", values)
-        self.refuse(
-            (values > 0) & (values < least), f"{said} is too small: is the unit right?", values
-        )
-        self.refuse(values > largest, f"{said} is large: {hint}", values)
+        values = column.scale * (np.abs(column.numbers) if unit == "m/s" else column.numbers)
+        said = f"a {what} of {{}} {unit}".strip() + f" below {column.name!r} is "
+        small = "not positive, or too small: is the unit right?"
+        large = f"large: is it in {meant}? write ({meant}) behind the heading"
+        self.refuse((values < _SMALLEST) & (column.role != "time"), said + small, values)
+        self.refuse(values > (most if column.unit else bare), said + large, values)
         return values
 
 
@@ -166,11 +177,11 @@ def _text_of(source: Any) -> tuple[str, str]:
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if not path.exists() or path.is_dir():
-        is_what = "is a folder" if path.is_dir() else "does not exist"
-        near = difflib.get_close_matches(str(source), experiments(), 1)
-        meant = f": did you mean the experiment {near[0]}?" if near else ""
-        raise Refused(f"the file {source} {is_what}{meant}")
+    if path.is_dir():
+        raise Refused(f"the file {source} is a folder")
+    if not path.exists():
+        known = ", ".join(experiments())
+        raise Refused(f"the file {source} does not exist, and the experiments are {known}")
     data = path.read_bytes()
     if b"\0" in data or data.startswith(b"PK"):
         raise Refused(f"{path.name} is no text: save it as csv in UTF-8")
@@ -179,64 +190,69 @@ def _text_of(source: Any) -> tuple[str, str]:
 
 def _columns_as_text(columns: Mapping[str, Any]) -> str:
     """Return columns below their headings; the unit of a quantity stands behind its heading."""
-    named = {
-        f"{heading} ({each.units:~C})" if hasattr(each, "units") else heading: getattr(
-            each, "magnitude", each
-        )
-        for heading, each in columns.items()
-    }
-    if any(np.ndim(each) != 1 or isinstance(each, str) for each in named.values()):
-        raise Refused("columns have one number in each cell: {'time (s)': [0.45, 1.17, 1.75]}")
-    sizes = [len(each) for each in named.values()]
-    if len(set(sizes)) > 1:
+    texts = []
+    for heading, column in columns.items():
+        unit = f" ({column.units:~C})" if hasattr(column, "units") else ""
+        cells = np.asarray(getattr(column, "magnitude", column), dtype=object)
+        if cells.ndim != 1:
+            raise Refused("columns have one number in each cell: {'time (s)': [0.45, 1.17, 1.75]}")
+        texts.append([heading + unit, *("" if cell is None else str(cell) for cell in cells)])
+    sizes = {len(each) - 1: None for each in texts}
+    if len(sizes) > 1:
         raise Refused(f"columns differ in length: {', '.join(map(str, sizes))} cells")
-    by_line = zip(*named.values(), strict=True)
-    rows = [["" if cell is None else str(cell) for cell in row] for row in by_line]
-    return "\n".join("\t".join(row) for row in [list(named), *rows])
+    return "\n".join("\t".join(row) for row in zip(*texts, strict=True))
 
 
 def _heading(text: str) -> tuple[str, str, str]:
     """Return the name of a heading, its unit, and what it has: '' if that is not known."""
     plain = " ".join(text.replace("_", " ").split())
     parts = re.fullmatch(r"(.+?) ?[(\[](.*)[)\]]", plain) or re.fullmatch(
-        r"(.+?)[ /]+(?:in )?(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
+        r"(.+?)[ /]+(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
     )
     name, unit = parts.groups() if parts else (plain, "")
     key = re.sub(r"[ .]", "", name.lower())
-    counted = re.sub(r"\d+$", "", key)
     # h0, h1, h2 are counted, and v0 is a name of its own.
-    unit = "" if unit == "-" else unit
-    return name, unit, _ROLES.get(key) or _ROLES.get(counted, "")
+    return name, unit, _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:
     """Return a number, NaN for an empty cell, or None for another text and for infinity."""
     plain = cell.replace("−", "-")
-    if plain.lower() in ("", "-", "nan"):
-        return math.nan
+    if is_decimal_comma:
+        plain = plain.replace(",", ".")
     try:
-        number = float(plain.replace(",", ".") if is_decimal_comma else plain)
+        number = float(plain or "nan")
     except ValueError:
         return None
-    return number if abs(number) <= LARGEST else None
+    return None if abs(number) > LARGEST else number
 
 
-def _rows_of(text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
-    """Return what the head says, the cells of each line, and whether commas are decimal."""
+def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
+    """Return what the head says, the cells by line, and whether commas are decimal.
+
+    The first line of cells has the headings, also if a program wrote a title above it.
+    """
     head: dict[str, str] = {}
     lines: dict[int, str] = {}
     for i, line in enumerate(text.rstrip().splitlines(), 1):
         if line.startswith("#"):
             key, _, said = line.lstrip("# ").partition(":")
-            key = key.strip().lower().replace("_", " ")
+            key = key.strip().lower()
             head[key] = f"{head.get(key, '')} {said.strip()}".strip()
         elif lines or line.strip():
             lines[i] = line
-    above = [line for line in list(lines.values())[:4] if re.match(r"\W*[^\W\d]", line)]
-    sign = next((each for each in "\t;," if any(each in line for line in above)), "\t")
-    cells = csv.reader(lines.values(), delimiter=sign, skipinitialspace=True)
-    rows = zip(lines, ([cell.strip() for cell in row] for row in cells), strict=False)
-    return head, dict(rows), sign != ","
+    titles = {i: re.split(r'[\t;,"]+', lines[i]) for i in list(lines)[:4]}
+    known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
+    begin = min(known or lines, default=0)
+    table = {i: line for i, line in lines.items() if i >= begin}
+    if len(table) < 2:
+        raise Refused(f"{name} has no line of numbers below a heading")
+    sign = next((each for each in "\t;," if each in table[begin]), "\t")
+    rows = {}
+    for i, line in table.items():
+        (cells,) = csv.reader([line], delimiter=sign, skipinitialspace=True)
+        rows[i] = [cell.strip() for cell in cells]
+    return head, rows, sign != ","
 
 
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
@@ -250,22 +266,20 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         If there is no table with headings, or a number is none.
     """
     name, text = _text_of(source)
-    head, rows, is_decimal_comma = _rows_of(text)
-    # Programs write a title above the headings.
-    titled = [i for i in list(rows)[:4] if any(_heading(cell)[2] for cell in rows[i])]
-    begin = min(titled or rows, default=0)
-    lines = [i for i in rows if i > begin]
-    if not lines:
-        raise Refused(f"{name} has no line of numbers below a heading")
-    headings = rows[begin]
-    if headings[0] and _number(headings[0], is_decimal_comma) is not None:
+    head, rows, is_decimal_comma = _rows_of(name, text)
+    begin, *lines = rows
+    headings = rows.pop(begin)
+    if _number(headings[0] or "no", is_decimal_comma) is not None:
         raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
     if unknown := set(leave_out) - set(lines):
         raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
+    for i, row in rows.items():
+        if any(row[len(headings) :]):
+            raise Refused(f"{name}, line {i}: {len(row)} cells below {len(headings)} headings")
+    rows |= {i: [] for i in leave_out}
     columns = []
-    for j, heading in enumerate(headings):
+    for heading, *cells in itertools.zip_longest(headings, *rows.values(), fillvalue=""):
         title, unit, role = _heading(heading)
-        cells = [rows[i][j] if j < len(rows[i]) and i not in leave_out else "" for i in lines]
         numbers = [_number(cell, is_decimal_comma) for cell in cells]
         if role and role not in TEXTS and None in numbers:
             i = numbers.index(None)

@@ -336,8 +336,10 @@ def test_the_impulse_of_pybullet_is_written_when_it_is_picked():
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_points_share_the_force(name):
-    contact = Candidate(depth=2e-3, ratio=0.1, step=1e-5)
-    one, four = (Problem(replace(SHORT, points=n), ENGINES[name]).row(contact) for n in (1, 4))
+    one, four = (
+        problem.row(problem.candidate(depth=2e-3, ratio=0.1, step=1e-5))
+        for problem in (Problem(replace(SHORT, points=n), ENGINES[name]) for n in (1, 4))
+    )
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
     # At an impedance near 1 points do not matter.
     by_impedance = ("genesis", "mujoco", "mujoco-warp", "newton-mujoco")
@@ -521,19 +523,16 @@ class NoneKeeps(Problem):
     """Contacts of long steps are too deep, and the shallow ones of short steps have a farther r."""
 
     def keeping(self, step_of):
-        return Candidate(1e-3, 0.0, step_of(1e-3))
-
-    def outcome_of(self, contact):
-        milliseconds = 1e3 * contact.step
-        depth = 0.001 if milliseconds < 0.05 else 0.02
+        step = step_of(1e-3)
+        depth = 0.001 if step < 5e-5 else 0.02
         # Of the shallow ones, those of the longest steps are the nearest.
-        r = 0.5 + milliseconds
-        return Outcome((depth, depth), 0.0, (0.0, 0.0), (r, r, r))
+        r = 0.5 + 1e3 * step
+        return Candidate(1e-3, 0.0, step, Outcome((depth, depth), 0.0, (0.0, 0.0), (r, r, r)))
 
 
 def test_if_no_contact_keeps_all_a_shallow_one_comes_before_a_near_one():
     problem = NoneKeeps(Bounce(mass=1, radius=0.1, restitution=0.8), engine_named("generic"))
-    depths = [problem.outcome_of(problem.keeping(problem.step_of(n))).depth[1] for n in (4, 600)]
+    depths = [problem.keeping(problem.step_of(n)).outcome.depth[1] for n in (4, 600)]
     assert depths[0] > problem.bounce.limit > depths[1]
     found = problem.wanted()
     assert found.step < 5e-5

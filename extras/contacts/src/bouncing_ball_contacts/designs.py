@@ -380,11 +380,15 @@ class Row:
 
 
 class Candidate(NamedTuple):
-    """A contact by its undamped depth δ in m and its ratio of damping, at a step in s."""
+    """A contact by its undamped depth δ in m and its ratio of damping, at a step in s.
+
+    ``outcome`` is what it does before its numbers are written.
+    """
 
     depth: float
     ratio: float
     step: float
+    outcome: Outcome
 
 
 def _written(value: Any) -> Any:
@@ -484,6 +488,11 @@ class Problem:
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
 
+    @property
+    def slight_hop(self) -> float:
+        """The height in m below which nothing is said of a hop in MuJoCo, where all bodies hop."""
+        return self.bounce.size / 100
+
     def hop(self, law: Law, step: float, r: float) -> float:
         """Return by how much a body with the restitution r still hops at rest in m.
 
@@ -494,6 +503,12 @@ class Problem:
         if fall == 0 or r >= 1 or not (law.is_number or isinstance(law, Impedance)):
             return 0.0
         lost = max(1 - r, LEAST_RESTITUTION)
+        if isinstance(law, Impedance) and law.low == law.high:
+            # A bounce leaves r of the speed, and a step of gravity adds g h to it at most.
+            most = fall / lost
+            height = most**2 / (2 * self.bounce.load)
+            if height + most / math.sqrt(float(law.stiffness)) < self.slight_hop:
+                return 0.0
         speed = np.minimum(self.bounce.impact_speed, fall / lost * np.linspace(1, 3, 8))
         scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
         # After two thirds of so many bounces less than a fiftieth of this speed is left.
@@ -504,7 +519,7 @@ class Problem:
     def restless(self, law: Law, step: float, found: Outcome) -> str:
         """Return why a body never lies still, and by how much it hops; empty if it does."""
         hops = self.hop(law, step, found.restitution[2])
-        is_slight = isinstance(law, Impedance) and hops < self.bounce.size / 100
+        is_slight = isinstance(law, Impedance) and hops < self.slight_hop
         return (
             ""
             if is_slight or hops == 0
@@ -579,9 +594,9 @@ class Problem:
             ratios = ratio * np.linspace(0.65, 1.5, 17)
         return ratio
 
-    def outcome_of(self, contact: Candidate) -> Outcome:
-        """Return what a contact does, before its numbers are written."""
-        return self.outcome(self.law(contact.depth, contact.ratio), contact.step)
+    def candidate(self, depth: float, ratio: float, step: float) -> Candidate:
+        """Return a contact with what it does."""
+        return Candidate(depth, ratio, step, self.outcome(self.law(depth, ratio), step))
 
     def is_near(self, found: Outcome) -> bool:
         """Return whether r is within the tolerance."""
@@ -593,7 +608,7 @@ class Problem:
 
     def at(self, depth: float, step: float) -> Candidate:
         """Return the contact of an undamped depth in m at a time step in s."""
-        return Candidate(depth, self.ratio(depth, step), step)
+        return self.candidate(depth, self.ratio(depth, step), step)
 
     def step_of(self, count: float) -> Callable[[float], float]:
         """Return the step of an undamped depth with which a contact has so many steps."""
@@ -607,13 +622,13 @@ class Problem:
         depth = self.bounce.limit / math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
         for _ in range(8):
             contact = self.at(depth, step_of(depth))
-            sunk = max(self.outcome_of(contact).depth[1], self.bounce.limit / 100)
+            sunk = max(contact.outcome.depth[1], self.bounce.limit / 100)
             change = _AIM * self.bounce.limit / sunk
             # Between δ, of a fast body, and δ², of one that its weight presses in.
             depth *= change**0.75
             if abs(change - 1) < 0.01:
                 break
-        return Candidate(depth, contact.ratio, step_of(depth))
+        return self.candidate(depth, contact.ratio, step_of(depth))
 
     def is_shallow(self, found: Outcome) -> bool:
         """Return whether the depth is at most the permitted one, or the contact was given."""
@@ -621,12 +636,11 @@ class Problem:
 
     def keeps(self, contact: Candidate) -> bool:
         """Return whether r is within the tolerance, and the depth at most the permitted one."""
-        found = self.outcome_of(contact)
-        return self.is_shallow(found) and self.is_near(found)
+        return self.is_shallow(contact.outcome) and self.is_near(contact.outcome)
 
     def works(self, contact: Candidate) -> bool:
         """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
-        found = self.outcome_of(contact)
+        found = contact.outcome
         is_seen = found.depth[1] < self.deepest and not found.rest >= self.bounce.size
         return is_seen and self.is_near(found)
 
@@ -643,7 +657,7 @@ class Problem:
             tried.append(contact)
 
         def falls_short(contact: Candidate) -> tuple[bool, float]:
-            found = self.outcome_of(contact)
+            found = contact.outcome
             return not self.is_shallow(found), found.deviation(self.bounce.restitution)
 
         return min(tried, key=falls_short)
@@ -661,7 +675,7 @@ class Problem:
             return self.at(depths[place], step)
 
         places = range(len(depths))
-        place = bisect_left(places, True, key=lambda i: self.is_near(self.outcome_of(contact(i))))
+        place = bisect_left(places, True, key=lambda i: self.is_near(contact(i).outcome))
         return contact(min(place, places[-1]))
 
     def row(self, contact: Candidate) -> Row:

@@ -80,6 +80,8 @@ _VISIBLE = TOLERANCE / 2
 # With so few steps in a contact r depends on the instant of the impact.
 _FEW = 10
 _MEAN = exact(offsets(21))
+# At a step and at half of it.
+_BOTH = Trials(np.tile(_MEAN.at, 2), np.repeat([1.0, 0.5], 21), np.ones(42))
 
 
 @dataclass(frozen=True)
@@ -124,6 +126,11 @@ class Contact:
         longest = self.step * max(1.0, self.steps / MOST_STEPS)
         explicit = isinstance(self.problem.engine.scheme, SemiImplicit) and not self.is_ratio
         return explicit and float(self.law.damping) * longest > 1
+
+    @property
+    def mean(self) -> float:
+        """The mean r."""
+        return float(self.problem.drops(self.law, self.step, _MEAN).mean)
 
     def outcome(self, *trials: Trials) -> Outcome:
         """Return what the contact does."""
@@ -430,7 +437,8 @@ def _spring(law: Law) -> Law:
 def _in_short_steps(contact: Contact, gravity: float) -> float:
     """Return r in the limit of short steps, with nothing that is set beside the contact.
 
-    The steps are semi-implicit also where the engine's are implicit: they come nearer to the limit.
+    r differs from its limit by a multiple of the step, and so does half of it at half the step. The
+    steps are semi-implicit also where the engine's are implicit: they come nearer to the limit.
     """
     law = contact.law
     if law.is_number:
@@ -440,11 +448,11 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     speed = contact.problem.bounce.impact_speed
     step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
-    found = float(drop(law, explicit, step, speed, gravity, _MEAN).mean)
-    if found > 1 + TOLERANCE:
+    whole, half = drop(law, explicit, step, speed, gravity, _BOTH).restitution.reshape(2, -1)
+    if max(whole.mean(), half.mean()) > 1 + TOLERANCE:
         # A damper that is too strong for explicit steps.
-        found = float(drop(law, scheme, step, speed, gravity, _MEAN).mean)
-    return found
+        return float(drop(law, scheme, step, speed, gravity, _MEAN).mean)
+    return max(float(2 * half.mean() - whole.mean()), 0.0)
 
 
 def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
@@ -586,7 +594,7 @@ def _nearest(contact: Contact) -> Change:
     while high > (1 + 1e-4) * low:
         middle = math.sqrt(low * high)
         tried = contact.damped(middle)
-        is_above = not tried.diverges and tried.outcome(_MEAN).restitution[1] > target
+        is_above = not tried.diverges and tried.mean > target
         if is_above == raises:
             high = middle
         else:

@@ -118,8 +118,7 @@ class FollowedBranch:
         """The branch with further orbits in between, so that lines through them have no corners.
 
         `spacing` is the largest distance, as root mean square of the changes of the times and
-        speeds of the impacts and as relative change of the parameter; but there are no more than 50
-        orbits in a step of the branch. All are solved as those of the branch are.
+        speeds of the impacts and as relative change of the parameter; a step has at most 50 orbits.
         """
         if len(self) < 2:
             return self

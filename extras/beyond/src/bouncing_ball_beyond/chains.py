@@ -42,25 +42,15 @@ def solved_or_nan(matrix: NDArray, values: NDArray) -> NDArray:
 def solve_bordered(
     derivatives: NDArray, right: NDArray, border: NDArray, border_right: NDArray
 ) -> NDArray:
-    """Solve the linear equations of the legs together with p further ones.
+    """Solve the linear equations of the legs together with p further ones, the border.
+
+    Derivatives have the shape (rows, k, q, q + 2 + p), right sides (rows, k, q, m), the border
+    (rows, p, N) and its right sides (rows, p, m); solutions (rows, N, m), NaN if singular.
 
     Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the
     impact between the two and the other half is a leg from the first impact to the one after the
-    second. The number of legs is halved until one matrix is small. This is stable for
-    orbits of any instability, and its work is proportional to the number of legs.
-
-    Parameters
-    ----------
-    derivatives : ndarray, shape (rows, k, q, q + 2 + p)
-    right : ndarray, shape (rows, k, q, m)
-        Right sides of the legs.
-    border : ndarray, shape (rows, p, N)
-    border_right : ndarray, shape (rows, p, m)
-
-    Returns
-    -------
-    ndarray, shape (rows, N, m)
-        NaN for singular equations.
+    second. The number of legs is halved until one matrix is small: this is stable for any orbit,
+    and its work is proportional to the number of legs.
     """
     rows, k, q, columns = derivatives.shape
     m = right.shape[-1]

@@ -1,7 +1,6 @@
 """Orbits along a parameter, cascades of period doublings, and the limits of orbits with one impact.
 
-A branch is followed by pseudo-arclength continuation: the predictor goes along the tangent, and the
-corrector is Newton's method on the plane across it. Many branches, rows, are followed side by side.
+Many branches, rows, are followed side by side.
 """
 
 from collections.abc import Iterable
@@ -43,19 +42,17 @@ def follow(
         "amplitude", a parameter of the ball or the table, "frequency" (that of a table with a fixed
         stroke, Ω/√(g/a) = √Λ, along which the ball's parameters change as well), or a
         `ParameterPath`. By default what changed on the branch of the orbit.
-    to : float, array_like or tuple of two floats, optional
-        The value at which a branch ends; an array has one for each orbit. Behind a saddle-node the
-        parameter moves back, at most as far beyond its first value. With a tuple (low, high) the
-        branch is followed both ways. By default the parameter rises to the end of its
-        range, or to ten times its value and at least 10; a phase by one turn.
+    to : float, array_like or tuple (low, high), optional
+        Where a branch ends, one value or one for each orbit; a tuple has both ways. Behind a
+        saddle-node the parameter moves back, at most as far beyond its first value. By default it
+        rises to the end of its range, or to ten times its value and at least 10; a phase by a turn.
     points : int
         The largest number of orbits on a branch, of each direction.
 
     Raises
     ------
     OrbitNotFound
-        If there is no branch from a single orbit: for example, if `to` is on the side of a period
-        doubling on which there are no doubled orbits.
+        If a single orbit has no branch, for example towards `to` from a period doubling.
     ValueError
         If the parameter is unknown, or `to` out of its range.
 
@@ -79,22 +76,10 @@ def follow(
 def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     """The branches of a cascade of period doublings, each up to the doubling where the next begins.
 
-    Parameters
-    ----------
-    doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
-        Period doublings; a sequence has a list of cascades.
-    to : float or array_like
-        A value of the parameter beyond which nothing is followed.
-    impacts : int
-        The largest number of impacts of an orbit. The doubling of orbits with that many impacts is
-        included: their branch is followed up to it.
-
-    Raises
-    ------
-    OrbitNotFound
-        If there is no doubled orbit towards `to`.
-    ValueError
-        If `doubling` is no orbit and no list of them.
+    Nothing is followed beyond `to`, one value of the parameter or one for each doubling. Orbits
+    have at most so many `impacts`; their branch is followed up to its doubling. A sequence of
+    doublings has a list of cascades, with the OrbitNotFound in place of one; a single one raises it
+    if there is no doubled orbit towards `to`.
 
     Examples
     --------
@@ -185,10 +170,7 @@ def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
 
 
 def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list[Task]:
-    """What is to be followed from one orbit, as one row for each way.
-
-    ValueError if a goal is out of its range, or the orbit not on the path.
-    """
+    """What is to be followed from one orbit, as one row for each way."""
     equations, z = orbit.on(path)
     value = float(z[-1])
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
@@ -273,10 +255,9 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     """The saddle-node and the period doubling of the n-T orbits of a ball, as `Limits`.
 
     An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
-    and no saddle-node. The orbits of other balls may end otherwise, for example with the grazing of
-    an impact if ζ > 1. In place of a limit there is then an OrbitNotFound with the reason. On a
-    table that is no sine these are the orbits on both sides of the phase at which it rises fastest.
-    If n or a parameter of the ball is an array, there is a list.
+    and those of others may end with the grazing of an impact, for example: in place of a limit
+    there is then an OrbitNotFound with the reason. On any table these are the orbits on both sides
+    of the phase at which it rises fastest. If n or a parameter is an array, there is a list.
 
     Examples
     --------
@@ -308,11 +289,8 @@ def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """An orbit with one impact for each row, if possible between the limits of instants.
-
-    A ball follows it, wherever such an orbit is found at one of the amplitudes. Newton's method may
-    lead to another branch instead, such as one on which the ball never leaves; then it is the one
-    with the shortest contact among all orbits.
+    """An orbit with one impact for each row that a ball follows, if possible between the limits of
+    instants; that with the shortest contact where Newton's method leads to another branch.
     """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution

@@ -1,16 +1,8 @@
-r"""Curves of special orbits in two parameters, with their points of codimension two.
+"""Curves of special orbits in two parameters, with their points of codimension two.
 
 A special orbit solves the equations of an orbit and one more: the test of its kind is zero. With
-two free parameters such orbits lie on a curve, which is followed as branches are. On it are named:
-
-* a cusp, where two saddle-nodes meet: both parameters turn back;
-* a generalized period doubling, where b = 0 in the normal form: doublings are supercritical on one
-  side of it only;
-* the resonances 1:1 and 1:2, where both multipliers are 1, or -1: their product is 1;
-* special orbits of another kind, where for example a flight begins to graze the table.
-
-A fold-flip, with the multipliers 1 and -1, does not occur, because the determinant of the return
-map is a product of positive numbers.
+two free parameters such orbits lie on a curve, which is followed as branches are. docs/orbits.md
+says which points of codimension two there are.
 
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
@@ -68,10 +60,6 @@ def special_curve(
     points : int
         The largest number of orbits in each direction.
 
-    Returns
-    -------
-    SpecialCurve
-
     Raises
     ------
     OrbitNotFound
@@ -101,9 +89,7 @@ SUCH = "such as branch.first('period doubling')"
 
 
 def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray | None]:
-    """The equations of special orbits along two parameters, one of them, and the normal of a plane
-    across their curve, if it is not that of the last parameter.
-    """
+    """The equations of special orbits, one of them, and a normal, if not the last parameter's."""
     allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
@@ -130,14 +116,13 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray |
         return replace(others, kind="grazing of a flight"), row, None
     if special.kind == "period halving":
         half, rows = equations.halved(z[np.newaxis])
-        return replace(half, periods=int(half.periods), kind="period doubling"), rows[0], None
+        return replace(half, kind="period doubling"), rows[0], None
     if special.kind == GENERALIZED:
         # There the curve of the saddle-nodes of doubled orbits begins.
         twice, rows = equations.doubled(z[np.newaxis])
-        twice = replace(twice, periods=int(twice.periods), kind="saddle-node")
         units = twice.scales(rows)
         ahead = unit(flip(equations, z[np.newaxis]) / units)
-        return twice, (rows + BESIDE * ahead * units)[0], ahead / units
+        return replace(twice, kind="saddle-node"), (rows + BESIDE * ahead * units)[0], ahead / units
     return replace(equations, kind=special.kind), z, None
 
 

@@ -1,9 +1,8 @@
 """Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
 
-Along v on the centre manifold, the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
-ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling; docs/orbits.md derives a and b from the chain of
-legs. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, sections 4.3, 4.5 and
-5.4; Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM J. Numer. Anal. 43, 1407 (2005).
+The derivation is in docs/orbits.md. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation
+Theory*, sections 4.3, 4.5 and 5.4; Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM
+J. Numer. Anal. 43, 1407 (2005).
 """
 
 from dataclasses import dataclass, replace
@@ -25,12 +24,10 @@ from bouncing_ball_beyond.march import newton
 NODES = np.arange(-4.0, 5.0)
 FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
-"""Weights of the central differences of the first and the second derivative over the nodes, exact
-for polynomials up to the eighth degree."""
+"""Weights of central differences over the nodes, exact for polynomials of the eighth degree."""
 
 RESONANT = 1e-6
-"""A special orbit is in resonance if the product of its multipliers differs from 1 by less. Located
-at a range's end, the determinant has at least ten digits."""
+"""A special orbit is in resonance if the product of its multipliers differs from 1 by less."""
 
 SHARE = 0.1
 """Step of the differences: the largest change of an unknown over the least speed, or over 1."""
@@ -40,11 +37,7 @@ SHARE = 0.1
 
 
 class Curvature(NamedTuple):
-    """Derivatives of the legs, and the first two derivatives of these along a vector v.
-
-    Each has the shape (k, q, q + 2 + p) of `equations.Linear`; ``first`` is B(v, ·), and ``second``
-    is C(v, v, ·).
-    """
+    """Derivatives as in `equations.Linear`, and B(v, ·) and C(v, v, ·) of docs/orbits.md."""
 
     derivatives: NDArray
     first: NDArray
@@ -62,10 +55,8 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 def curvature(
     equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
-    """Derivatives of the legs along a vector v of the impacts that comes back multiplied by ±1.
-
-    They are those of the first half of the orbit taken twice, along which v is periodic.
-    """
+    """Derivatives of the legs along a vector v that comes back multiplied by ±1: those of the first
+    half of the orbit taken twice, along which v is periodic."""
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
@@ -104,10 +95,7 @@ def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
 
 @np.errstate(all="ignore")
 def degeneracy(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """b (det - 1)² at period doublings, shape (rows,), which is zero where b is.
-
-    At a resonance, where det = 1, b has a double pole; there this is NaN.
-    """
+    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance."""
     linear = equations.linear(z)
     apart = equations.trace_and_determinant(linear)[1] - 1
     values = np.full(len(z), np.nan)
@@ -121,11 +109,11 @@ def degeneracy(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 @dataclass(frozen=True)
 class NormalForm:
-    """The normal form of a saddle-node or a period doubling, see the module and `normal_form`.
+    """What `normal_form` returns.
 
-    ``coefficient`` is a or b, and ``error`` its uncertainty; ``rate`` is that of the parameter
-    ``along``; ``direction`` is the unit vector in (τ, δ′) of the first impact along which ξ is
-    measured; ``other`` is the other multiplier.
+    ``coefficient`` is a or b, ``error`` its uncertainty, ``rate`` that of the parameter ``along``,
+    ``direction`` the unit vector of ξ in (τ, δ′) of the first impact, ``other`` the other
+    multiplier.
     """
 
     kind: str
@@ -138,15 +126,10 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether a period doubling has b > 0.
+        """Whether a period doubling has b > 0; ValueError for a saddle-node.
 
-        The orbits of twice the period are then where the orbit is unstable, and they are stable
-        if the other multiplier is inside the unit circle.
-
-        Raises
-        ------
-        ValueError
-            For a saddle-node.
+        The orbits of twice the period are then where the orbit is unstable, and they are stable if
+        the other multiplier is inside the unit circle.
         """
         if self.kind != "period doubling":
             raise ValueError("a saddle-node is neither supercritical nor subcritical")
@@ -154,23 +137,16 @@ class NormalForm:
 
     @property
     def opens_upwards(self) -> bool:
-        """Whether the parameter is larger on the orbits that branch off.
-
-        These are the two orbits of a saddle-node, or those of twice the period.
-        """
+        """Whether the parameter is larger on the orbits that branch off, or on both that meet."""
         return -MULTIPLIERS[self.kind] * self.rate * self.coefficient > 0
 
 
 def normal_form(orbit: PeriodicOrbit) -> NormalForm:
-    """The normal form of a saddle-node or a period doubling.
+    """The normal form of a saddle-node or a period doubling; ValueError for other orbits.
 
-    The doubled orbits are at ξ² = rate dλ/b for small dλ, and the two orbits of a saddle-node at
-    ξ² = -rate dλ/a.
-
-    Raises
-    ------
-    ValueError
-        If the orbit is neither of the two.
+    On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, whose orbits
+    are at ξ² = -rate dλ/a, and ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling, whose doubled
+    orbits are at ξ² = rate dλ/b.
 
     Examples
     --------
@@ -215,23 +191,18 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
 # Grazing flights
 
 SAMPLES = 2001
-"""Samples of a flight among which its lowest point is searched."""
+"""Samples of a flight in the search for its lowest point."""
 
 TOUCHES = 1e-9
 """A flight touches the table if its lowest point is this near: grazings are located to 1e-12."""
 
 SLOW = 1e-3
-"""An added impact is slow if its speed is this share of aD², for free impacts of duration D ≤ 1.
-
-The orbits with a stiff contact can turn back at a few hundredths of aD²."""
+"""The speed of an added impact over aD², for free impacts of duration D ≤ 1: orbits of a stiff
+contact can turn back at a few hundredths."""
 
 
 class Touch(NamedTuple):
-    """The lowest turning point of the flights of an orbit.
-
-    ``leg`` is the number of the impact before it, ``time`` that of the point, ``acceleration`` is
-    δ″, and ``height`` is δ.
-    """
+    """The lowest turning point of flights, after the impact ``leg``, with δ″ and δ."""
 
     leg: int
     time: float
@@ -240,13 +211,7 @@ class Touch(NamedTuple):
 
 
 def touch(equations: OrbitEquations, z: NDArray) -> Touch:
-    """The lowest point of an orbit's flights at which δ has a minimum.
-
-    Raises
-    ------
-    OrbitNotFound
-        If no flight turns back from the table.
-    """
+    """The lowest point of an orbit's flights where δ has a minimum, or OrbitNotFound."""
     ends = equations.ends(z[np.newaxis])
     leaves, gap, speed, last, amplitudes = (each[0] for each in ends[:5])
     amplitude = float(amplitudes[0])
@@ -267,13 +232,7 @@ def touch(equations: OrbitEquations, z: NDArray) -> Touch:
 
 
 def _grazing(equations: OrbitEquations, z: NDArray) -> Touch:
-    """Where a flight of an orbit touches the table.
-
-    Raises
-    ------
-    OrbitNotFound
-        If none does.
-    """
+    """Where a flight of an orbit touches the table; OrbitNotFound if none does."""
     if equations.ball.sinks:
         raise OrbitNotFound(
             "an impact of the corrected model takes effect below the table: at a grazing flight"
@@ -292,31 +251,9 @@ def one_impact_more(
 ) -> tuple[OrbitEquations, NDArray, NDArray]:
     """The orbits with one impact more that branch off where a flight touches the table.
 
-    Their equations are smooth if the speed of the added impact is an unknown, although the return
-    map has a square root there. An instantaneous impact begins with the speed 0. A contact of
-    finite duration has no regular equation there, because it ends as it starts; it begins with a
-    slow impact, which lasts for 2u/a, as if there were no contact force.
-
-    Parameters
-    ----------
-    equations : OrbitEquations
-        Those of one ball along one parameter.
-    z : ndarray, shape (N,)
-        The orbit with the grazing flight.
-
-    Returns
-    -------
-    OrbitEquations
-        Those of k + 1 impacts.
-    ndarray, shape (N + q,)
-        The first orbit.
-    ndarray, shape (N + q,)
-        The direction in which the added impact gets faster by 1.
-
-    Raises
-    ------
-    OrbitNotFound
-        If no flight touches the table, or the ball has no slow impacts.
+    z, shape (N,), is an orbit of one ball along one parameter. Returns the equations of k + 1
+    impacts, their first orbit, and the direction in which the added impact gets faster by 1.
+    OrbitNotFound if no flight touches the table, or the ball has no slow impacts.
     """
     at = _grazing(equations, z)
     added = np.array([at.time, 0.0])
@@ -343,13 +280,7 @@ def one_impact_more(
 
 
 def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The orbit without its slowest impact, whose flight touches the table where that vanishes.
-
-    Raises
-    ------
-    OrbitNotFound
-        If the orbit has no other impact.
-    """
+    """The orbit without its slowest impact; OrbitNotFound if it has no other one."""
     if equations.impacts == 1:
         raise OrbitNotFound("the only impact of the orbit vanishes: there is no orbit without it")
     q = equations.unknowns
@@ -360,14 +291,14 @@ def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquatio
 
 @dataclass(frozen=True)
 class GrazingForm:
-    """What happens at a grazing flight, see `grazing_form`.
+    """What `grazing_form` returns.
 
     ``leg`` is the number of the impact before the flight, counted from 0, ``phase`` the phase of
-    the table at the touch, and ``acceleration`` a = δ″ there; ``coefficient`` is S. ``slope`` is
-    the derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts
-    of finite duration. ``opens_upwards`` says whether the orbits with one impact more are at larger
-    values of the parameter, and ``persists`` whether they are where the flight would be below the
-    table; otherwise both orbits exist on one side and disappear together.
+    the table at the touch, ``acceleration`` a = δ″ there, and ``coefficient`` S. ``slope`` is the
+    derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts of
+    finite duration. The orbits with one impact more are at larger values of the parameter if the
+    form ``opens_upwards``, and where the flight would be below the table if it ``persists``;
+    otherwise both orbits exist on one side and disappear together.
     """
 
     leg: int
@@ -383,20 +314,10 @@ class GrazingForm:
 def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     """The square root of the return map at a grazing flight, and the orbits with one impact more.
 
-    If the least gap of a neighbouring flight is -d < 0, the ball lands there with δ′ = -√(2ad) and
-    leaves with r √(2ad), whereas a flight without the impact would have had -√(2ad). The impact
-    changes the velocity by S √d, with the coefficient ::
-
-        S = (1 + r) √(2a)
-
-    and r at the speed 0, so that the derivative of the return map is infinite. A contact of finite
-    duration has S = 0: a slow impact lasts for about 2√(2d/a), and in this time the spring and the
-    damper change the velocity by a multiple of d only.
-
-    Raises
-    ------
-    OrbitNotFound
-        If no flight of the orbit touches the table, or if the ball has no slow impacts.
+    Where a neighbouring flight would be a depth d below the table, the added impact changes the
+    velocity by S √d, with S = (1 + r) √(2a) and r at the speed 0; a contact of finite duration has
+    S = 0 (derived in docs/orbits.md). OrbitNotFound if no flight touches the table, or if the ball
+    has no slow impacts.
 
     Examples
     --------

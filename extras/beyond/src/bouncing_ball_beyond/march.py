@@ -1,9 +1,8 @@
 """One Newton's method and one march for all curves of solutions.
 
-A problem is F(z) = 0 with one equation less than unknowns: orbits along a parameter, special orbits
-of a kind along two, or orbits with a rest. Its curves are followed by pseudo-arclength
-continuation: the predictor goes along the tangent, and the corrector is Newton's method on the
-plane across it. Many of them, rows, are followed side by side.
+A problem is F(z) = 0 with one equation less than unknowns. Its curves are followed by
+pseudo-arclength continuation: the predictor goes along the tangent, and the corrector is Newton's
+method on the plane across it. Many of them, rows, are followed side by side.
 
 Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
 """
@@ -20,20 +19,16 @@ ROUNDING = 4 * np.finfo(float).eps
 """Rounding errors of the equations, relative to their largest terms."""
 
 TOLERANCE = 1e-11
-"""The largest last step, in units of `OrbitEquations.sizes`. Steps fall quadratically, so that the
-error after such a step is that of rounding."""
+"""The largest last step, in units of `OrbitEquations.sizes`: the next one is one of rounding."""
 
 SPECIAL = 1e-9
-"""The same for special orbits. A step is wrong by its square and by 1e-10 of itself, the error of
-the gradient, so that the error is again that of rounding."""
+"""The same for special orbits, whose gradients have errors of 1e-10."""
 
 FAST = 0.1
-"""A special orbit at a point needs no new gradient if a step is so much shorter than that before;
-the first one is compared with 1."""
+"""A special orbit at a point needs no new gradient if a step is so much shorter than the last."""
 
 LONG = 2.0
-"""A step of Newton's method for special orbits, relative to 1 + |z|, that leads too far away: to
-contacts that last for many periods, and seldom back."""
+"""A step to a special orbit, relative to 1 + |z|, that leads too far away, and seldom back."""
 
 FIRST_STEP = 0.1
 LONGEST_STEP = 0.4
@@ -52,11 +47,8 @@ BEFORE_END = 1e-3
 
 
 class Solution(NamedTuple):
-    """What Newton's method ends with, by rows.
-
-    ``z`` are the orbits, NaN where the equations are not finite; ``found`` says which of them are
-    solutions; ``tangent`` is the direction of the curve of orbits, with normal · tangent = 1;
-    ``linear`` are the legs and derivatives at z.
+    """What Newton's method ends with, by rows: orbits, which of them are found, and the tangent of
+    their curve, with normal · tangent = 1.
     """
 
     z: NDArray
@@ -72,21 +64,10 @@ def newton(
     normal: NDArray | None = None,
     iterations: int = 12,
 ) -> Solution:
-    """Solutions on the planes through z across a normal, by Newton's method.
+    """Solutions on the planes through rows z across a normal, by Newton's method.
 
-    With one free parameter, special orbits of a kind are points, and need no plane.
-
-    Parameters
-    ----------
-    equations : OrbitEquations
-    z : ndarray, shape (rows, N)
-    normal : ndarray, shape (rows, N), optional
-        By default the last parameter is fixed.
-    iterations : int
-
-    Returns
-    -------
-    Solution
+    By default the last parameter is fixed. With one free parameter, special orbits of a kind are
+    points, and need no plane.
     """
     if normal is None:
         normal = np.zeros_like(z)
@@ -113,51 +94,39 @@ def newton(
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
-    """Special orbits; only rows that are not found yet go on, because their gradients cost.
-
-    As long as steps to points become shorter fast, gradients are changed by Broyden's rule: they
-    explain the last value, which should have been zero, by the last step.
+    """Special orbits. As long as steps to points become shorter fast, gradients, which cost much,
+    are changed by Broyden's rule: they explain the last value, which should have been zero.
     """
     z = z.copy()
-    tangent = np.full(z.shape, np.nan)
+    gradient, step, tangent = np.ones((3, *z.shape))
     found = np.zeros(len(z), bool)
-    left = np.arange(len(z))
-    part = equations
-    gradient, step = np.ones((2, *z.shape))
     slow = ~found
-    size_before = np.ones(len(z))
+    before = np.ones(len(z))
     for _ in range(iterations):
-        linear = part.linear(z[left])
-        value = part.excess(z[left], linear)
-        gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        linear = equations.linear(z)
+        value = equations.excess(z, linear)
+        gradient += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
         if slow.any():
-            _, gradient[left[slow]] = part.rows(slow).condition(z[left[slow]])
-        condition = value, gradient[left]
-        solution = part.bordered(z[left], linear, normal[left], condition)
+            _, gradient[slow] = equations.rows(slow).condition(z[slow])
+        solution = equations.bordered(z, linear, normal, (value, gradient))
         step = solution[..., 0]
-        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
-        step[size > LONG] = np.nan
-        z[left] += step
-        tangent[left] = solution[..., 1]
-        moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
-        found[left] = moved < np.where(slow, SPECIAL, TOLERANCE)
-        going = ~found[left] & np.isfinite(moved)
-        slow = (moved >= FAST * size_before[left])[going] | (len(equations.along) > 1)
-        size_before[left] = moved
-        step = step[going]
-        left = left[going]
-        if not left.size:
+        step[np.abs(step).max(axis=1) > LONG * (1 + np.abs(z).max(axis=1))] = np.nan
+        going = ~found
+        z[going] += step[going]
+        tangent[going] = solution[going, :, 1]
+        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
+        found |= moved < np.where(slow, SPECIAL, TOLERANCE)
+        going = ~found & np.isfinite(moved)
+        if not going.any():
             break
-        part = equations.rows(left)
+        slow = going & ((moved >= FAST * before) | (len(equations.along) > 1))
+        before = moved
     return Solution(z, found, tangent, equations.linear(z))
 
 
 class Start(NamedTuple):
-    """Where branches start, by rows.
-
-    The orbits z and the directions from there, the values of the parameter that are to be reached,
-    and the reasons for no branch, "" if there is one; the length of the first steps, and the
-    special orbits before z, if there are any.
+    """Where branches start, by rows: orbits, directions, the values to be reached, and the reasons
+    for no branch, "" if there is one; ``origin`` are the special orbits before z, if there are any.
     """
 
     equations: OrbitEquations
@@ -189,10 +158,7 @@ def unit(vectors: NDArray) -> NDArray:
 
 
 class Points(NamedTuple):
-    """One orbit of each row: orbits, tangents, tests on the way, and differences of halves.
-
-    Tests have the shape (rows, tests).
-    """
+    """One orbit of each row, with its tests (rows, tests), and differences of its halves."""
 
     z: NDArray
     tangents: NDArray
@@ -222,8 +188,7 @@ def _predicted(
 ) -> tuple:
     """Steps along the tangents; one that would leave its window ends there, at this parameter.
 
-    Returns the lengths of the steps, the predicted solutions, the normals of the planes of the
-    corrector, which steps end where the window ends, and the numbers of the parameters that do so.
+    Returns their lengths, ends and normals, which are the last ones, and their numbers in z.
     """
     low, high = window.swapaxes(0, 1)
     ahead = unit(here.tangents / units)
@@ -255,8 +220,7 @@ def march(
     """The accepted points of each branch, and why it ends: its window, or another reason.
 
     A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
-    too much. Where an impact or a release ends a branch, the multipliers beyond it tell nothing of
-    those before it: such a step has a point in between, just before the end.
+    too much. Those beyond an end tell nothing: such a step has a point in between, just before it.
     """
     equations = start.equations
     here = points_at(equations, start.z, start.direction, equations.linear(start.z))

@@ -1,7 +1,6 @@
 """Along what orbits change: a parameter, the frequency of a table, or a path of one's own.
 
-A path has one variable. At each of its values it gives a ball and the amplitude Λ of the table. The
-variable may be an array and complex: derivatives along a path are complex steps, as all others.
+The variable may be an array and complex: derivatives along a path are complex steps.
 """
 
 from collections.abc import Callable, Mapping
@@ -169,10 +168,7 @@ class ParameterPath(Path):
 
 
 def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
-    """The path that is meant by a name, or a path itself.
-
-    ValueError if neither the ball nor the table has such a parameter.
-    """
+    """The path of a name, or a path itself; ValueError if there is no such parameter."""
     allowed = ["amplitude", *ball.parameters, *table.parameters]
     if not isinstance(along, str):
         unknown = [name for name in getattr(along, "functions", ()) if name not in allowed]
@@ -195,8 +191,8 @@ def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
 def usual_range(path: Path, value: float, least: float, greatest: float) -> tuple[float, float]:
     """Where a curve through a value ends, within the limits of a parameter, if nothing is said.
 
-    A turn around a phase, which repeats itself; a size of a harmonic that is not positive from -10
-    to 10, or to ten times the size; and else from a tenth of a value to ten times, or to 10.
+    After a turn around a phase; else at a tenth of a value and at ten times, or at 10 if that is
+    more, and at as much below zero if the value is not positive.
     """
     if path.name.startswith("phase_"):
         return value - np.pi, value + np.pi

@@ -1,7 +1,4 @@
-"""Periodic orbits of a ball at an amplitude: the n-T orbit, all orbits, or the one near a guess.
-
-An n-T orbit of the paper has one impact in n periods of the table.
-"""
+"""Periodic orbits of a ball at an amplitude: the n-T orbit, all orbits, or the one near a guess."""
 
 from typing import Any
 
@@ -22,18 +19,12 @@ from bouncing_ball_beyond.search import (
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 
-def solved(equations: OrbitEquations, z: NDArray, what: str = "an orbit") -> PeriodicOrbit:
-    """The orbit near a guess, by Newton's method.
-
-    Raises
-    ------
-    OrbitNotFound
-        If it does not converge.
-    """
+def solved(equations: OrbitEquations, z: NDArray, what: str) -> PeriodicOrbit:
+    """The orbit near a guess, shape (N,); OrbitNotFound if Newton's method does not converge."""
     solution = newton(equations, z[np.newaxis], iterations=40)
     if not solution.found[0]:
         raise OrbitNotFound(f"{what} is not found: Newton's method does not converge")
-    return PeriodicOrbit(equations, first_turn(equations, solution.z)[0])
+    return equations.orbit(first_turn(equations, solution.z)[0])
 
 
 def orbit(
@@ -44,27 +35,17 @@ def orbit(
     side: str = "stable",
     table: Table = SINE,
 ) -> Any:
-    """The n-T orbit of a ball at the amplitude Λ of the table.
+    """The n-T orbit of a ball at the amplitude Λ of the table, with one impact in n periods.
 
     Parameters
     ----------
-    ball : Ball
-        Its parameters are numbers or arrays.
-    amplitude : array_like
-    n : array_like of int
-        The number of periods of the table between two impacts.
+    ball, amplitude, n
+        Numbers, or arrays: then there is a list of orbits, with the OrbitNotFound in place of one
+        that there is not.
     side : {"stable", "unstable"}
         The side of the saddle-node on which the orbit is: impacts after or before the phase at
         which the table rises fastest. A table that rises several times in a period has more orbits,
         which `orbits` lists.
-    table : Table
-        The waveform of the table, by default a sine.
-
-    Returns
-    -------
-    PeriodicOrbit, or a list of PeriodicOrbit and OrbitNotFound
-        A list if an argument is an array: its elements in order, with the reason for those that
-        have no orbit.
 
     Raises
     ------
@@ -91,10 +72,11 @@ def orbit(
     sign = 1 if side == "stable" else -1
     found, admissible = near_instants(equations, amplitudes.astype(float), sign)
     missing = np.flatnonzero(~admissible)
-    near = [found[i] for i in missing]
-    searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
-    for i, each in zip(missing, searched, strict=True):
-        found[i] = each
+    if missing.size:
+        near = [found[i] for i in missing]
+        searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
+        for i, each in zip(missing, searched, strict=True):
+            found[i] = each
     if shape:
         return found
     if isinstance(found[0], OrbitNotFound):
@@ -111,7 +93,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     found: list = [None] * len(near)
     admissible = np.zeros(len(near), bool)
     # With a number r and a sine the instants are the impacts, so that there are no others.
-    if near and not (equations.ball.simple and equations.table.compiled):
+    if not (equations.ball.simple and equations.table.compiled):
         found, admissible = shortest_contacts(equations, amplitude, sign)
     missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
@@ -142,7 +124,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
 
 
 def one_amplitude(amplitude: Any) -> float:
-    """The amplitude as a number; ValueError unless it is a positive one."""
+    """The amplitude as a positive number, or ValueError."""
     value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     if np.ndim(value):
         raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
@@ -165,21 +147,8 @@ def orbits(
 
     With one impact, the speeds at which a ball comes back are found at 96 phases, or at as many for
     each wave of the table, and from there all orbits. With several impacts this is a search:
-    Newton's method closes the motions of 2592 first impacts, and orbits may be missed.
-
-    Parameters
-    ----------
-    ball : Ball
-    amplitude : float
-        Λ.
-    impacts, periods : int
-    table : Table
-        The waveform of the table, by default a sine.
-
-    Returns
-    -------
-    list of PeriodicOrbit
-        In the order of the durations of their contacts, then of their first phases.
+    Newton's method closes the motions of 2592 first impacts, and orbits may be missed. The list is
+    in the order of the durations of the contacts, then of the first phases.
 
     Examples
     --------
@@ -194,7 +163,7 @@ def orbits(
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
     equations = OrbitEquations(ball, *counts, table=table)
     (z,) = all_orbits(equations, np.array([amplitude]))
-    found = [PeriodicOrbit(equations, row) for row in z[equations.admissible(z)]]
+    found = [equations.orbit(row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
 
 
@@ -206,24 +175,11 @@ def orbit_near(
     velocities: ArrayLike,
     table: Table = SINE,
 ) -> PeriodicOrbit:
-    """The periodic orbit near a guess: phases and velocities of the ball before its impacts.
+    """The periodic orbit near a guess: phases and absolute velocities before its impacts.
 
-    The number of periods follows from the velocities, because a flight lasts as long as its
-    velocity falls by.
-
-    Parameters
-    ----------
-    ball : Ball
-    amplitude : float
-    phases, velocities : array_like, shape (impacts,)
-        Velocities are absolute.
-    table : Table
-        The waveform of the table, by default a sine.
-
-    Raises
-    ------
-    OrbitNotFound
-        If Newton's method does not converge.
+    Both have the shape (impacts,). The number of periods follows from the velocities, because a
+    flight lasts as long as its velocity falls by. OrbitNotFound if Newton's method does not
+    converge.
     """
     check_ball(ball)
     amplitude = one_amplitude(amplitude)
@@ -245,5 +201,6 @@ def orbit_near(
         raise OrbitNotFound("the guess takes no time: its velocities are not those of flights")
     columns = [times[:-1], u, T] if ball.lasts else [times[:-1], u]
     z = np.append(np.stack(columns, axis=-1).ravel(), amplitude)
+    equations = OrbitEquations(ball, len(u), periods, table=table)
     what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"
-    return solved(OrbitEquations(ball, len(u), periods, table=table), z, what)
+    return solved(equations, z, what)

@@ -1,10 +1,4 @@
-"""Orbits, branches and curves as labelled datasets, and back from them and their files.
-
-A dataset has a row for each orbit, along the dimension ``point``, with the quantities of each
-impact along ``impact`` and those of the orbit beside them; special orbits are rows with a
-``kind``, at their place among the others. It also has all unknowns of the equations, so that
-`read_orbits` makes the same orbits of it, of a part of it, and of a netCDF file.
-"""
+"""Orbits, branches and curves as labelled datasets, and back from them and their files."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -79,14 +73,12 @@ Found = PeriodicOrbit | FollowedBranch | Sequence
 def to_dataset(found: Found) -> xr.Dataset:
     """The dataset of an orbit, of a branch or curve with its special orbits, or of several orbits.
 
-    The orbits of a list have the same number of impacts and balls of one kind; what is no orbit in
-    it, such as an `OrbitNotFound`, is left out. ``to_netcdf`` of the dataset writes a file. Its
-    attributes ``ball`` and ``table`` are those of the first orbit; parameters are variables.
+    It has a row for each orbit along ``point``, with quantities of its impacts along ``impact``;
+    special orbits have a ``kind``, and are at their places. Attributes are the ball and the table
+    of the first orbit, while parameters are variables. ``to_netcdf`` writes a file.
 
-    Raises
-    ------
-    ValueError
-        If the orbits do not fit into one dataset, or if there is none.
+    The orbits of a list have the same number of impacts and balls of one kind, or ValueError; what
+    is no orbit in it, such as an `OrbitNotFound`, is left out.
 
     Examples
     --------
@@ -182,13 +174,7 @@ def encoded(value: Any) -> Any:
 
 
 def decoded(values: dict[str, Any]) -> Any:
-    """What was encoded.
-
-    Raises
-    ------
-    ValueError
-        If a function is none of the named laws.
-    """
+    """What was encoded; ValueError if a function is none of the named laws."""
     if "function" in values:
         if not values["named"]:
             raise ValueError(f"the ball has a function, {values['function']}: give it as ball=")
@@ -200,26 +186,10 @@ def decoded(values: dict[str, Any]) -> Any:
 
 
 def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = None) -> Found:
-    """The orbits of a dataset or of its file.
+    """The orbit, branch, curve or list of orbits of which a dataset, or its netCDF file, was made.
 
-    Parameters
-    ----------
-    source : xarray.Dataset or path of a netCDF file
-    ball : Ball, optional
-        A ball with a function that was written by its user, which is not in the file; its
-        parameters are.
-    along : ParameterPath, optional
-        A path that was written by its user.
-
-    Returns
-    -------
-    PeriodicOrbit, RestOrbit, FollowedBranch, SpecialCurve, or list of PeriodicOrbit
-        What the dataset was made of.
-
-    Raises
-    ------
-    ValueError
-        If the dataset has no orbits, or if a ball or a path is missing.
+    A ball with a function of its user's, and a path of his, are not in the file and are given
+    again; ValueError if one is missing, or if the dataset has no orbits.
 
     Examples
     --------

@@ -1,7 +1,4 @@
-"""Where periodic orbits are: near those of instants, or near motions that come back.
-
-Rows are searched side by side.
-"""
+"""Where periodic orbits are: near those of instants, or near motions that come back."""
 
 from dataclasses import replace
 from typing import Any
@@ -45,17 +42,8 @@ def guess_of_instants(
 
     At the centroid of its force, which is at the phase ψ, an impact has the speed u with
     (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node, ψ is the phase at
-    which the table rises fastest.
-
-    Parameters
-    ----------
-    ball : Ball
-        With parameters of the shape (rows,) or numbers.
-    periods, amplitude : ndarray, shape (rows,)
-    side : {1, -1}
-        The side of the saddle-node: 1 for the orbits that are stable next to it.
-    table : Table
-        With numbers as its parameters.
+    which the table rises fastest. On the side 1 of it orbits are stable next to it, on -1 not.
+    Parameters of the ball and n have the shape (rows,) or none, the amplitude (rows,).
     """
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
@@ -182,11 +170,7 @@ def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tupl
 
 @np.errstate(all="ignore")
 def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
-    """Starts near all orbits with one impact, and their rows: impacts whose speed is the same after
-    m periods.
-
-    Orbits lie on the curves of such impacts, which are crossed at 96 phases.
-    """
+    """Starts near all orbits with one impact, and their rows: impacts whose speed comes back."""
     table = equations.table
     longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
     speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]

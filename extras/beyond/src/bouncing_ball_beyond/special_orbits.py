@@ -22,10 +22,8 @@ CUSP, GENERALIZED = (names[0] for names in DEGENERATE.values())
 
 
 class Crossings(NamedTuple):
-    """Steps in which a test changes its sign.
-
-    The row, the number of the step, the kind; the orbits at both ends of the step, the tangents and
-    the tests there, whose first axis is the end.
+    """Steps in which a test changes its sign: their rows, numbers and kinds, and the orbits,
+    tangents and tests at both ends, along the first axis.
     """
 
     row: NDArray
@@ -39,15 +37,7 @@ class Crossings(NamedTuple):
 def crossings_of(
     equations: OrbitEquations, row: NDArray, z: NDArray, slopes: NDArray, tests: NDArray
 ) -> Crossings:
-    """All steps in which a test changes its sign, of orbits that belong to rows of the equations.
-
-    Parameters
-    ----------
-    row : ndarray of int, shape (points,)
-    z, slopes : ndarray, shape (points, N)
-    tests : ndarray, shape (points, tests)
-        Those of `OrbitEquations.tests`.
-    """
+    """All steps in which a test changes its sign, of orbits (points, N) that belong to rows."""
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
     others = {

@@ -13,11 +13,8 @@ from bouncing_ball_beyond.march import Start, newton, tangents, unit
 from bouncing_ball_beyond.search import single
 
 NEAREST = 1e-9
-"""Relative distance from a period doubling below which doubled orbits are not told apart.
-
-At a distance ξ, rounding errors of the orbits are eps/ξ², and ξ² is proportional to the change of
-the parameter.
-"""
+"""Relative distance of the parameter from a period doubling below which doubled orbits are not told
+apart: it is proportional to ξ², and at a distance ξ their rounding errors are eps/ξ²."""
 
 
 class Task(NamedTuple):

@@ -19,7 +19,6 @@ from bouncing_ball import datasets, drawing, figures, restitution
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
-SCHEMATICS = figures.SCHEMATICS
 DOMAINS = ("fig08", "fig09", "fig15")
 PHASES = ("phase", "release_phase")
 
@@ -34,7 +33,7 @@ def reference(name):
 
 def data_of(name):
     """The datasets that a figure shows, to be changed."""
-    return [] if name in SCHEMATICS else [reference(name).copy(deep=True)]
+    return [reference(name).copy(deep=True)] if name in figures.PLOTS else []
 
 
 def laid_out(name, *data):
@@ -135,7 +134,7 @@ def test_labels(name, expected):
     assert set(expected) <= set(found)
 
 
-@pytest.mark.parametrize("name", [name for name in NAMES if name not in SCHEMATICS])
+@pytest.mark.parametrize("name", figures.PLOTS)
 def test_every_axis_has_a_name(name):
     for axes in of_reference(name).axes:
         # Panels with the same axis name it once, below or on the left.

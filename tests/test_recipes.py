@@ -123,7 +123,7 @@ def follow(folder: Path) -> None:
     insert(
         scripts / "apparent_restitution.py", '"fig13": fig13', code('"fig17": fig10').strip() + " "
     )
-    insert(figures, "SCHEMATICS = (", code("def fig17") + "\n\n")
+    insert(figures, "SCHEMATICS: ", code("def fig17") + "\n\n")
     insert(figures, '    "fig16": fig16,\n', '    "fig17": fig17,\n')
     # A curve.
     insert(

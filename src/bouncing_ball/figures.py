@@ -571,13 +571,11 @@ def fill_positive(axes: Axes, values: xr.DataArray, look: Look) -> None:
     axes.contour(*over, levels=[0], colors="black", linewidths=0.8)
 
 
-SCHEMATICS = ("fig01", "fig04")
+SCHEMATICS: Mapping[str, Callable[[], Figure]] = {"fig01": fig01, "fig04": fig04}
 """The figures of the models, which have no dataset."""
-FIGURES: Mapping[str, Callable[..., Figure]] = {
-    "fig01": fig01,
+PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig02": fig02,
     "fig03": fig03,
-    "fig04": fig04,
     "fig05": fig05,
     "fig06": fig05,
     "fig07": fig07,
@@ -592,6 +590,7 @@ FIGURES: Mapping[str, Callable[..., Figure]] = {
     "fig16": fig16,
     "validity_map": validity_map,
 }
+FIGURES: Mapping[str, Callable[..., Figure]] = {**SCHEMATICS, **PLOTS}
 
 
 def draw(name: str, *data: xr.Dataset) -> Figure:

@@ -43,7 +43,7 @@ WRITING: Code = (
 
 def figure(name: str) -> Product:
     """A figure, drawn from its dataset, if it has one."""
-    needs = () if name in figures.SCHEMATICS else (name,)
+    needs = (name,) if name in figures.PLOTS else ()
     return picture(
         name, needs, lambda data: figures.draw(name, *(data[need] for need in needs)), DRAWING
     )
@@ -59,9 +59,8 @@ def judge(data: Datasets, folder: Path) -> None:
     datasets.save(judged, path, title, record(data["claims"], "parameters"), code=[])
 
 
-DRAWN = [name for name in figures.FIGURES if name not in figures.SCHEMATICS]
 DECIDING = [name for claim in claims.CLAIMS for name in claim.datasets]
-STUDIES = list(dict.fromkeys([*DRAWN, *tables.TABLES, *DECIDING]))
+STUDIES = list(dict.fromkeys([*figures.PLOTS, *tables.TABLES, *DECIDING]))
 """The datasets that are computed from the models."""
 ALL = (*STUDIES, "claims")
 """All datasets. The claims follow from the others."""

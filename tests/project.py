@@ -1,5 +1,5 @@
-"""A small replication of two datasets, their claims, a table and a text, which is edited, run and
-compared as one does with the real one. Its files of code are read when it runs.
+"""A small replication of two datasets, heavy and light, their claims, a table and a text, which is
+edited, run and compared as one does with the real one. Its files of code are read when it runs.
 """
 
 import runpy
@@ -32,7 +32,7 @@ def heights(amplitude, printed):
 import xarray as xr
 
 LIMIT = 2.0
-CLAIMS = {"low": "fig02", "high": "fig14", "both": "fig02, fig14"}
+CLAIMS = {"low": "heavy", "high": "light", "both": "heavy, light"}
 
 def judge(data):
     heights = {name: max(data[each].max_height.max() for each in deciding.split(", "))
@@ -49,8 +49,8 @@ def judge(data):
     "config/config.yaml": """
 release: displacement
 stage:
-  fig02: { amplitude: [0.5, 1.0] }
-  fig14: { amplitude: [1.0, 1.5] }
+  heavy: { amplitude: [0.5, 1.0] }
+  light: { amplitude: [1.0, 1.5] }
 """,
     "config/printed.csv": "0.255\n",
     "README.md": "read me\n",
@@ -84,18 +84,18 @@ class Project:
             datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, [])
 
         def table(data):
-            greatest = float(data["fig02"].max_height.max())
+            greatest = float(data["heavy"].max_height.max())
             return f"{self.code('table')['HEADING']}\n{greatest:.3f}\n"
 
         def paper(data):
             template = (self.top / "templates/paper.md").read_text("utf-8")
             verdicts = ", ".join(data["claims"].verdict.values)
-            return template.format(float(data["fig14"].max_height.max()), verdicts)
+            return template.format(float(data["light"].max_height.max()), verdicts)
 
-        needs = ("fig02", "fig14")
+        needs = ("heavy", "light")
         return [
             Product(("figures/claims.nc",), needs, judge, ("src/judge.py",)),
-            text("figures/fig02.md", ("fig02",), table, ("src/table.py",)),
+            text("figures/heavy.md", ("heavy",), table, ("src/table.py",)),
             text("paper.md", (*needs, "claims"), paper, ("templates/paper.md",)),
         ]
 
@@ -105,13 +105,13 @@ class Project:
         printed = self.top / "config/printed.csv"
         study = self.top / "src/study.py"
         codes = {
-            "fig02": [study, self.top / "src/model.py"],
-            "fig14": [study, self.top / "src/model.py", printed],
+            "heavy": [study, self.top / "src/model.py"],
+            "light": [study, self.top / "src/model.py", printed],
         }
         for name, parameters in self.config["stage"].items():
             heights = self.code("study")["heights"](
                 np.array(parameters["amplitude"]) * self.code("model")["GRAVITY"],
-                printed.read_text() if name == "fig14" else "0",
+                printed.read_text() if name == "light" else "0",
             )
             known = {**parameters, "release": self.config["release"]}
             path = self.results / "figures" / f"{name}.nc"

@@ -63,7 +63,7 @@ def draw(data):
     with drawing.style():
         figure = Figure(figsize=(1.2, 1.0), dpi=60)
         axes = figure.add_subplot()
-        heights = data["fig14"].max_height
+        heights = data["light"].max_height
         axes.plot(heights.frequency_ratio, heights, **STYLE)
         axes.plot(heights.frequency_ratio, 4 - 0.2 * heights, "--", color="black")
         axes.plot([2, 3], [3, 3], "o", color="black")
@@ -73,18 +73,18 @@ def draw(data):
 
 def article(data):
     """A text with numbers of two datasets."""
-    threshold = float(data["fig14"].error_threshold)
+    threshold = float(data["light"].error_threshold)
     verdict = ", ".join(data["claims"].verdict.values)
     return f"The threshold is {threshold:.2f}.\nThe verdicts are {verdict}.\n"
 
 
-PICTURE = artifacts.picture("fig14", ("fig14",), draw, ())
-PAPER = artifacts.text("paper.md", ("fig14", "claims"), article)
+PICTURE = artifacts.picture("light", ("light",), draw, ())
+PAPER = artifacts.text("paper.md", ("light", "claims"), article)
 
 
 def data_of(folder):
     """The datasets of a folder that can be read."""
-    return artifacts.read_side("", folder, ["fig14", "claims"]).data
+    return artifacts.read_side("", folder, ["light", "claims"]).data
 
 
 @pytest.fixture(scope="module")
@@ -95,7 +95,7 @@ def original(tmp_path_factory):
         (folder / name).write_text(f"# {name}\n")
     (folder / "figures").mkdir()
     code = [folder / "study.py"]
-    datasets.save(heights(), folder / "figures" / "fig14.nc", "Figure 14", PARAMETERS, code)
+    datasets.save(heights(), folder / "figures" / "light.nc", "Light", PARAMETERS, code)
     datasets.save(verdicts(), folder / "figures" / "claims.nc", "Claims", {}, code)
     for product in (PICTURE, PAPER):
         product.make(data_of(folder), folder)
@@ -110,7 +110,7 @@ class Record:
         self.results = folder / "results"
         for place in (self.reference, self.results):
             shutil.copytree(original, place, ignore=shutil.ignore_patterns(*without))
-        self.config = {"release": "displacement", "stage": {"fig14": PARAMETERS}}
+        self.config = {"release": "displacement", "stage": {"light": PARAMETERS}}
         self.products = [PAPER]
 
     def report(self, *names):
@@ -125,7 +125,7 @@ class Record:
         report = self.report(*names)
         return "\n".join(finding.line for finding in report.findings)
 
-    def edit(self, change, name="fig14", side="results"):
+    def edit(self, change, name="light", side="results"):
         """Rewrite a dataset as `change` returns it."""
         path = getattr(self, side) / "figures" / f"{name}.nc"
         changed = change(datasets.read(path))
@@ -196,7 +196,7 @@ def test_rounding_and_other_versions_of_the_code_of_the_reference_are_no_differe
 
 
 def test_line_ends_of_windows_are_no_difference(drawn):
-    for file in ("paper.md", "figures/fig14.svg"):
+    for file in ("paper.md", "figures/light.svg"):
         path = drawn.reference / file
         path.write_bytes(path.read_bytes().replace(b"\n", b"\r\n"))
     assert drawn.lines() == ""
@@ -248,7 +248,7 @@ DATASET_LIES = {
     ),
     "an attribute of the dataset": (
         lambda data: data.assign_attrs(title="x"),
-        "title Figure 14 -> x",
+        "title Light -> x",
     ),
     "a new variable": (lambda data: data.assign(n=1), "variables: new 'n'"),
     "a missing variable": (lambda data: data.drop_vars("impacts"), "variables: without 'impacts'"),
@@ -279,7 +279,7 @@ DATASET_LIES = {
 def test_a_changed_dataset_is_different(record, lie):
     change, said = DATASET_LIES[lie]
     record.edit(change)
-    assert f"fig14: {said}" in record.lines("fig14")
+    assert f"light: {said}" in record.lines("light")
 
 
 def test_packed_values_are_different(record):
@@ -292,7 +292,7 @@ def test_packed_values_are_different(record):
 
 
 def test_a_hidden_group_is_different(record):
-    with netCDF4.Dataset(record.results / "figures" / "fig14.nc", "a") as file:
+    with netCDF4.Dataset(record.results / "figures" / "light.nc", "a") as file:
         file.createGroup("hidden")
     words = "it has the format NETCDF4 with groups or unlimited dimensions: hidden"
     assert f"cannot be read: ValueError: {words}" in record.lines()
@@ -311,17 +311,17 @@ def test_a_changed_verdict_comes_first(record):
 
 
 def test_a_damaged_dataset_is_one_line(record):
-    (record.results / "figures" / "fig14.nc").write_bytes(b"no netCDF")
-    assert "figures/fig14.nc in the results cannot be read" in record.lines()
+    (record.results / "figures" / "light.nc").write_bytes(b"no netCDF")
+    assert "figures/light.nc in the results cannot be read" in record.lines()
 
 
 # Results of something else
 
 
 def test_results_of_other_parameters_are_stale(record):
-    record.config["stage"]["fig14"] = PARAMETERS | {"restitution": 0.7}
+    record.config["stage"]["light"] = PARAMETERS | {"restitution": 0.7}
     assert record.report().lines[0] == (
-        "fig14: stale: the configuration is another than it was made with: restitution 0.65 -> 0.7"
+        "light: stale: the configuration is another than it was made with: restitution 0.65 -> 0.7"
     )
 
 
@@ -332,19 +332,19 @@ def of_other_code(data):
 
 def test_results_of_other_code_are_stale(record):
     record.edit(of_other_code)
-    line = record.lines("fig14").splitlines()[0]
-    assert line.startswith("fig14: stale: it was made by other code than today's: ")
+    line = record.lines("light").splitlines()[0]
+    assert line.startswith("light: stale: it was made by other code than today's: ")
     assert line.endswith("/study.py; remove it, and run again")
 
 
 def test_only_a_changed_parameter_is_a_difference(record):
     record.edit(lambda data: data.assign_attrs(parameters="{}"))
-    assert "fig14: parameters.restitution 0.65 -> absent" in record.lines("fig14")
+    assert "light: parameters.restitution 0.65 -> absent" in record.lines("light")
 
 
 def test_a_name_that_is_not_compared_is_refused(record):
-    with pytest.raises(ValueError, match=r"^fig17: no file of that name .* are claims, fig14, p"):
-        record.report("fig17", "fig14")
+    with pytest.raises(ValueError, match=r"^fig17: no file of that name .* are claims, light, p"):
+        record.report("fig17", "light")
 
 
 def test_results_that_are_the_reference_are_refused(record):
@@ -360,36 +360,36 @@ def test_results_that_are_the_reference_are_refused(record):
 
 
 def test_a_figure_without_a_file_in_the_reference_is_a_new_one(drawn):
-    for path in (drawn.reference / "figures").glob("fig14.*"):
+    for path in (drawn.reference / "figures").glob("light.*"):
         path.unlink()
     lines = drawn.lines()
-    words = "figures/fig14.nc in the reference is missing; if it is new, commit, then accept it"
-    assert lines.splitlines()[0] == f"fig14: {words}"
+    words = "figures/light.nc in the reference is missing; if it is new, commit, then accept it"
+    assert lines.splitlines()[0] == f"light: {words}"
 
 
 def test_a_result_that_is_linked_to_the_reference_is_refused(record):
-    path = record.results / "figures" / "fig14.nc"
+    path = record.results / "figures" / "light.nc"
     path.unlink()
-    os.link(record.reference / "figures" / "fig14.nc", path)
-    with pytest.raises(ValueError, match=r"fig14.nc is a part of the reference"):
+    os.link(record.reference / "figures" / "light.nc", path)
+    with pytest.raises(ValueError, match=r"light.nc is a part of the reference"):
         record.report()
 
 
 @pytest.mark.parametrize("side", ["reference", "results"])
 def test_missing_and_unexpected_files_are_different(drawn, side):
     folder = getattr(drawn, side)
-    (folder / "figures" / "fig14.svg").unlink()
+    (folder / "figures" / "light.svg").unlink()
     (folder / "figures" / "fig17.png").write_bytes(b"")
     (folder / "figures" / ".DS_Store").write_bytes(b"")
     lines = drawn.lines()
-    assert f"figures/fig14.svg in the {side} is missing" in lines
+    assert f"figures/light.svg in the {side} is missing" in lines
     assert f"figures/fig17.png in the {side} is made by no rule" in lines
     assert "DS_Store" not in lines
 
 
 def test_only_what_is_named_is_compared(record):
     record.edit(scaled("found", 2), "claims")
-    assert record.lines("fig14") == ""
+    assert record.lines("light") == ""
     assert "paper" not in record.lines("claims")
 
 
@@ -401,10 +401,10 @@ WORDS = "{} in the {} is not what today's code makes of its data: "
 @pytest.mark.parametrize("side", ["reference", "results"])
 def test_edited_texts_and_pictures_are_different(drawn, side):
     drawn.rewrite("paper.md", "82.18", "82.19", side)
-    drawn.rewrite("figures/fig14.svg", "stroke-width: 1.2", "stroke-width: 1.21", side)
+    drawn.rewrite("figures/light.svg", "stroke-width: 1.2", "stroke-width: 1.21", side)
     lines = drawn.lines()
     assert f"paper: {WORDS.format('paper.md', side)}" in lines
-    assert f"fig14: {WORDS.format('figures/fig14.svg', side)}" in lines
+    assert f"light: {WORDS.format('figures/light.svg', side)}" in lines
     # What is wrong in the results alone has no cause in the code.
     assert ("changes of the code are unknown" in lines) == (side == "reference")
 
@@ -440,10 +440,10 @@ SVG_LIES = {
 
 @pytest.mark.parametrize("lie", SVG_LIES)
 def test_an_edited_svg_is_different(original, tmp_path, lie):
-    made = original / "figures" / "fig14.svg"
+    made = original / "figures" / "light.svg"
     edited, count = re.subn(*SVG_LIES[lie], made.read_text(encoding="utf-8"), count=1)
     assert count == 1
-    path = tmp_path / "fig14.svg"
+    path = tmp_path / "light.svg"
     path.write_text(edited, encoding="utf-8")
     assert file_differences(made, made) == []
     assert file_differences(made, path)[0].kind == "picture"
@@ -461,8 +461,8 @@ def one_pixel(pixels):
 
 @pytest.mark.parametrize("change", [one_grey_level, one_pixel, np.flipud])
 def test_edited_pixels_are_different(original, tmp_path, change):
-    made = original / "figures" / "fig14.png"
-    path = tmp_path / "fig14.png"
+    made = original / "figures" / "light.png"
+    path = tmp_path / "light.png"
     with Image.open(made) as image:
         Image.fromarray(change(np.asarray(image))).save(path)
     assert file_differences(made, made) == []
@@ -472,8 +472,8 @@ def test_edited_pixels_are_different(original, tmp_path, change):
 
 
 def test_a_png_with_a_second_frame_is_different(original, tmp_path):
-    made = original / "figures" / "fig14.png"
-    path = tmp_path / "fig14.png"
+    made = original / "figures" / "light.png"
+    path = tmp_path / "light.png"
     with Image.open(made) as image:
         black = Image.new("RGBA", image.size, "black")
         image.save(path, save_all=True, append_images=[black], default_image=False)
@@ -493,13 +493,13 @@ def test_the_first_line_on_a_picture_says_which_words_or_which_part_changed(draw
         figure.axes[0].lines[0].set_linewidth(3)
         return figure
 
-    words = f"fig14: {WORDS.format('figures/fig14.svg', 'reference')}"
+    words = f"light: {WORDS.format('figures/light.svg', 'reference')}"
     for changed, said in (
         (labelled, "words: new 'rate', without 'ratio'"),
         (wider, "line2d_1, line "),
     ):
-        drawn.products = [artifacts.picture("fig14", ("fig14",), changed, ()), PAPER]
-        assert drawn.report("fig14").lines[0].startswith(words + said)
+        drawn.products = [artifacts.picture("light", ("light",), changed, ()), PAPER]
+        assert drawn.report("light").lines[0].startswith(words + said)
 
 
 def test_a_picture_that_is_older_than_its_dataset_is_different(drawn):
@@ -507,7 +507,7 @@ def test_a_picture_that_is_older_than_its_dataset_is_different(drawn):
     drawn.edit(scaled("max_height", 1.01), side="reference")
     PICTURE.make(data_of(drawn.reference), drawn.reference)
     lines = drawn.lines()
-    assert WORDS.format("figures/fig14.svg", "results") in lines
+    assert WORDS.format("figures/light.svg", "results") in lines
     assert "in the reference" not in lines
 
 
@@ -517,7 +517,7 @@ def test_code_that_cannot_draw_is_one_line(drawn):
         drawn.edit(lambda data: data.drop_vars("max_height"), side=side)
     lines = drawn.lines().splitlines()
     (line,) = [each for each in lines if not each.startswith("paper")]
-    assert line.startswith("fig14: today's code cannot make it of the dataset in the reference: ")
+    assert line.startswith("light: today's code cannot make it of the dataset in the reference: ")
 
 
 # Another matplotlib
@@ -532,9 +532,9 @@ def other(package, version):
 @pytest.mark.parametrize("side", ["reference", "results"])
 def test_pictures_of_another_matplotlib_are_not_compared_and_this_is_said(drawn, side):
     """The true other matplotlib is that of `make lowest`."""
-    for name in ("fig14", "claims"):
+    for name in ("light", "claims"):
         drawn.edit(other("matplotlib", "3.10.0"), name, side)
-    drawn.rewrite("figures/fig14.svg", "stroke: #0072b2", "stroke: #c77c00", side)
+    drawn.rewrite("figures/light.svg", "stroke: #0072b2", "stroke: #c77c00", side)
     report = drawn.report()
     today = matplotlib.__version__
     assert report.lines == [
@@ -554,20 +554,20 @@ def test_libraries_of_other_versions_are_said(record):
         f"Other versions in the reference: numpy 2.1.0 (today {today})."
     ]
     record.edit(scaled("error_threshold", 2, ()))
-    assert f"; other versions: numpy 2.1.0 -> {today}" in record.report("fig14").lines[0]
+    assert f"; other versions: numpy 2.1.0 -> {today}" in record.report("light").lines[0]
 
 
 # Files of other kinds
 
 
 def test_a_pipe_among_the_results_is_named_and_not_read(record):
-    path = record.results / "figures" / "fig14.nc"
+    path = record.results / "figures" / "light.nc"
     path.unlink()
     os.mkfifo(path)
-    assert record.report().lines[0] == "fig14: figures/fig14.nc in the results is no regular file"
+    assert record.report().lines[0] == "light: figures/light.nc in the results is no regular file"
 
 
-@pytest.mark.parametrize("file", ["paper.md", "figures/fig14.svg"])
+@pytest.mark.parametrize("file", ["paper.md", "figures/light.svg"])
 def test_a_lone_carriage_return_is_a_difference(drawn, file):
     path = drawn.results / file
     path.write_bytes(path.read_bytes().replace(b"\n", b"\r", 1))
@@ -576,9 +576,9 @@ def test_a_lone_carriage_return_is_a_difference(drawn, file):
 
 def test_a_file_that_cannot_be_locked_is_said(record):
     """As all files of a file system without locks."""
-    with (record.results / "figures" / "fig14.nc").open("rb") as file:
+    with (record.results / "figures" / "light.nc").open("rb") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
-        line = record.lines("fig14").splitlines()[0]
+        line = record.lines("light").splitlines()[0]
     assert line.endswith("if the file system has no locks, set HDF5_USE_FILE_LOCKING=FALSE")
 
 
@@ -623,8 +623,8 @@ def test_a_dataset_says_how_it_was_made(record, side, change, said):
         return data
 
     record.edit(changed, side=side)
-    lines = record.lines("fig14")
-    assert lines.startswith(f"fig14: figures/fig14.nc in the {side} cannot be read: ")
+    lines = record.lines("light")
+    assert lines.startswith(f"light: figures/light.nc in the {side} cannot be read: ")
     assert said in lines
 
 
@@ -639,25 +639,25 @@ PNG_CHUNKS = {
 @pytest.mark.parametrize("lie", PNG_CHUNKS)
 def test_another_chunk_of_a_png_is_different(original, tmp_path, lie):
     kind, content, place = PNG_CHUNKS[lie]
-    data = (original / "figures" / "fig14.png").read_bytes()
+    data = (original / "figures" / "light.png").read_bytes()
     chunk = len(content).to_bytes(4, "big") + kind + content
     chunk += zlib.crc32(kind + content).to_bytes(4, "big")
-    path = tmp_path / "fig14.png"
+    path = tmp_path / "light.png"
     place = place or len(data)
     path.write_bytes(data[:place] + chunk + data[place:])
-    assert file_differences(original / "figures" / "fig14.png", path) != []
+    assert file_differences(original / "figures" / "light.png", path) != []
     path.write_bytes(data + b"anything")
-    assert file_differences(original / "figures" / "fig14.png", path) != []
+    assert file_differences(original / "figures" / "light.png", path) != []
 
 
 def test_a_damaged_chunk_of_a_png_is_different(original, tmp_path):
     """Of the pixels, which are read all the same."""
-    made = original / "figures" / "fig14.png"
+    made = original / "figures" / "light.png"
     data = bytearray(made.read_bytes())
     start = data.index(b"IDAT")
     data[start + 4 + int.from_bytes(data[start - 4 : start], "big")] ^= 1
-    (tmp_path / "fig14.png").write_bytes(data)
-    (finding,) = file_differences(made, tmp_path / "fig14.png")
+    (tmp_path / "light.png").write_bytes(data)
+    (finding,) = file_differences(made, tmp_path / "light.png")
     assert finding.text.startswith("it cannot be read: ") and "IDAT" in finding.text
 
 
@@ -668,7 +668,7 @@ def test_the_page_has_all_findings_and_needs_no_other_file(drawn):
     drawn.edit(scaled("error_threshold", 1.01, ()))
     PICTURE.make(data_of(drawn.results), drawn.results)
     PAPER.make(data_of(drawn.results), drawn.results)
-    drawn.rewrite("figures/fig14.svg", "#0072b2", "<&>", "reference")
+    drawn.rewrite("figures/light.svg", "#0072b2", "<&>", "reference")
     page = compare.page(drawn.report())
     assert "Numbers beyond their tolerance" in page
     assert "error_threshold is 83, the reference has 82.18" in page
@@ -748,7 +748,7 @@ def test_a_refused_name_is_the_message_and_the_log_and_nothing_else(run, task):
     status, printed, log = run(task, "fig17")
     assert f"{status}\n" == log and printed == ""
     assert (
-        log == "fig17: no file of that name is compared; allowed are claims, fig02, fig14, paper\n"
+        log == "fig17: no file of that name is compared; allowed are claims, heavy, light, paper\n"
     )
 
 

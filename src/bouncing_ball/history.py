@@ -13,7 +13,7 @@ import re
 import subprocess
 from collections.abc import Collection, Iterable
 from functools import cached_property
-from pathlib import Path
+from pathlib import Path, PurePath
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 """The checkout that this file is in."""
@@ -69,12 +69,18 @@ class History:
         """Those of some files that are inside the checkout."""
         return [name for name in contained(files, self.top) if not os.path.isabs(name)]
 
-    def uncommitted(self, files: Iterable[str | Path]) -> set[str]:
-        """Files, or files in some folders, that are not as in the last commit, or not in git."""
-        names = self.names(files)
-        status = ("status", "--porcelain", "--untracked-files=all", "--no-renames", "--")
-        lines = self.ask(*status, *names) if names else None
+    @cached_property
+    def edited(self) -> set[str]:
+        """Files that are not as in the last commit, or not in git."""
+        lines = self.ask("status", "--porcelain", "--untracked-files=all", "--no-renames")
         return {line[3:].strip('"') for line in lines or ()}
+
+    def uncommitted(self, files: Iterable[str | Path]) -> set[str]:
+        """Those of some files, or of the files in some folders, that are `edited`."""
+        names = self.names(files)
+        return {
+            each for each in self.edited if any(PurePath(each).is_relative_to(one) for one in names)
+        }
 
     def since(self, commit: str, files: Iterable[str | Path]) -> list[str] | None:
         """Files that the last commit has otherwise than another one; none if that is unknown."""

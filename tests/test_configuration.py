@@ -332,7 +332,7 @@ def refused(*arguments) -> str:
 def test_a_broken_file_is_named_with_its_line_and_what_is_allowed(tmp_path, content, said):
     file = tmp_path / "mine.yaml"
     file.write_bytes(content)
-    line = refused("fig14", "--configfile", file, "--cores", "1")
+    line = refused("all", "--configfile", file, "--cores", "1")
     assert line.startswith(f"configuration: {file}") and said in line
     assert line.isprintable()
 
@@ -354,7 +354,7 @@ def test_brackets_without_an_end_are_refused(tmp_path):
     assert "\n" not in line
 
 
-@pytest.mark.parametrize("file", ["", ".", "absent.yaml", "fig14"])
+@pytest.mark.parametrize("file", ["", ".", "absent.yaml", "all"])
 def test_what_is_no_file_is_refused(file):
     line = refused("--cores", "2", "--configfile", file)
     reason = os.strerror(errno.EISDIR if os.path.isdir(file or ".") else errno.ENOENT)
@@ -376,13 +376,13 @@ def test_a_pipe_or_a_device_is_no_file_of_a_configuration(file):
 @pytest.mark.parametrize("entry", ["largest_step", "=3", "a=3", "3=a", "\x1b[31mred", ""])
 @pytest.mark.parametrize("option", ["--config", "-C"])
 def test_a_value_without_a_key_is_refused(option, entry):
-    line = refused("fig14", option, "release=force", entry)
+    line = refused("all", option, "release=force", entry)
     shown = entry.replace("\x1b", r"\x1b")
     assert line == f"configuration: --config {shown}: allowed: KEY=VALUE, as in largest_step=0.2"
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["fig14"], ["-C", "release=force"], ["--config", "release=", "--cores", "2"]]
+    "arguments", [[], ["all"], ["-C", "release=force"], ["--config", "release=", "--cores", "2"]]
 )
 def test_other_command_lines_are_left_to_snakemake(arguments):
     CHECKS["refuse_command"](arguments)
@@ -471,13 +471,13 @@ def test_a_user_without_a_name_is_told_what_to_set(monkeypatch):
     for name in ("LOGNAME", "USER", "LNAME", "USERNAME"):
         monkeypatch.delenv(name, raising=False)
     line = f"The user {os.getuid()} has no name on this machine: set USER to any name"
-    assert refused("fig14") == line
+    assert refused("all") == line
     monkeypatch.setenv("USER", "anybody")
-    CHECKS["refuse_command"](["fig14"])
+    CHECKS["refuse_command"](["all"])
     # Its home folder is then known by HOME only.
     monkeypatch.delenv("HOME")
     line = f"The user {os.getuid()} has no home folder: set HOME to any folder, be it /"
-    assert refused("fig14") == line
+    assert refused("all") == line
 
 
 @pytest.mark.parametrize("variable, folder", [("HOME", "file/.cache"), ("XDG_CACHE_HOME", "file")])
@@ -490,9 +490,9 @@ def test_a_home_that_cannot_be_written_to_is_told_what_to_set(
     monkeypatch.setenv(variable, str(tmp_path / "file"))
     reason = os.strerror(errno.ENOTDIR if variable == "HOME" else errno.EEXIST)
     line = f"{tmp_path / folder}: {reason}; set XDG_CACHE_HOME to a folder that can be written to"
-    assert refused("fig14") == line
+    assert refused("all") == line
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    CHECKS["refuse_command"](["fig14"])
+    CHECKS["refuse_command"](["all"])
 
 
 def no_place(folder: Path) -> str:
@@ -542,7 +542,7 @@ def test_other_names_of_folders_are_good(tmp_path):
     CHECKS["refuse_place"](tmp_path / 'ünï co:de [1] 100% st*r\'s "x"')
 
 
-@pytest.mark.parametrize("file", ["results/paper.md", "results/figures/fig14.nc"])
+@pytest.mark.parametrize("file", ["results/paper.md", "results/figures/any.nc"])
 def test_a_pipe_among_the_results_is_refused(file, tmp_path):
     Path("results/figures").mkdir(parents=True)
     os.mkfifo(file)

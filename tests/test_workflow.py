@@ -85,7 +85,7 @@ def test_a_stage_makes_its_datasets_and_pictures(stubs):
     "names, rules",
     [
         (["fig01"], {"schematics"}),
-        (["fig14"], {"compute_error_thresholds", "error_thresholds"}),
+        (["fig11"], {"compute_permanent_contact", "permanent_contact"}),
         (
             ["table1", "three_balls", "readings"],
             {"compute_continuation", "compute_restitution_model", "compute_readings", "table"},
@@ -120,7 +120,7 @@ def test_the_comparison_knows_what_else_is_requested(stubs):
         (block,) = re.findall(rf"^(?:local)?rule {rule}:\n +input: (.*)", plan, re.MULTILINE)
         return {file for file in block.split(", ") if file.startswith("results/")}
 
-    assert inputs("diff", "fig14") == {f"results/{file}" for file in files("fig14")}
+    assert inputs("diff", "fig11") == {f"results/{file}" for file in files("fig11")}
     both = files("fig02") | files("fig03") | files("three_balls") | files("fig01")
     assert inputs("accept", "restitution_model", "fig01") == {f"results/{file}" for file in both}
     assert len(inputs("diff")) == len(set().union(*map(files, [*FIGURES, *DATASETS]))) + 4
@@ -128,7 +128,7 @@ def test_the_comparison_knows_what_else_is_requested(stubs):
 
 def test_a_comparison_and_an_acceptance_are_two_commands(stubs):
     line = "diff and accept are two commands: compare, look at the page, then accept"
-    assert stubs.run("--dry-run", "fig14", "accept", "diff")[0] == line
+    assert stubs.run("--dry-run", "fig11", "accept", "diff")[0] == line
 
 
 # Reruns

@@ -3,6 +3,7 @@
 import subprocess
 import sys
 from functools import cache
+from io import BytesIO
 from itertools import combinations, pairwise
 from pathlib import Path
 
@@ -367,7 +368,7 @@ def test_the_frequency_ratios_of_the_poincare_map_have_lines_to_their_points():
 
 def test_the_stiffest_contact_of_the_poincare_map_has_its_own_name_if_no_other_is_beside_it():
     (data,) = data_of("fig13")
-    figure = laid_out("fig13", data.isel(frequency_ratio=data.frequency_ratio <= 10.001))
+    figure = figures.draw("fig13", data.isel(frequency_ratio=data.frequency_ratio <= 10.001))
     names = [text.get_text() for text in figure.axes[0].texts if text.get_text()]
     assert names == 2 * ["$\\varpi=1$", "$\\varpi=2$", "$\\varpi=5$", "$\\varpi=10$"]
 
@@ -437,7 +438,7 @@ def test_inadmissible_orbits_are_dotted_and_grazing_is_marked():
     kinds = data.special_kind.astype(object)
     kinds[2, 0] = "grazing"
     data["special_kind"] = kinds
-    figure = laid_out("fig09", data)
+    figure = figures.draw("fig09", data)
     dotted = lines_of(figure, "inadmissible")
     assert [len(line.get_xdata()) for line in dotted] == [101, 101]
     assert {line.get_marker() for line in lines_of(figure, "grazing")} == {"^"}
@@ -454,10 +455,10 @@ def test_no_threshold(name, threshold):
 
 def test_another_tolerance_and_release_have_no_printed_value():
     (data,) = data_of("fig16")
-    found = words(laid_out("fig16", with_parameters(data, tolerance=0.05)))
+    found = words(figures.draw("fig16", with_parameters(data, tolerance=0.05)))
     assert "tolerance 5 %" in found
     assert not any("printed" in text for text in found)
-    force = words(laid_out("fig16", with_parameters(data, release="force")))
+    force = words(figures.draw("fig16", with_parameters(data, release="force")))
     assert r"spring-damper, $\Lambda_F$" in force
     assert not any("printed" in text or r"\sqrt" in text for text in force)
 
@@ -473,14 +474,14 @@ def test_a_case_without_orbits():
     (data,) = data_of("fig10")
     for variable in ("phase", "bounce_velocity"):
         data[variable][0] = np.nan
-    figure = laid_out("fig10", data)
+    figure = figures.draw("fig10", data)
     assert "$\\Lambda=1.1$ (no orbit)" in words(figure)
     assert "$\\Lambda=1$" in figure.axes[1].get_ylabel()
 
 
 def test_one_case():
     (data,) = data_of("fig05")
-    found = words(laid_out("fig05", data.isel(case=[1])))
+    found = words(figures.draw("fig05", data.isel(case=[1])))
     assert {"$n=1$, $r=0.85$, $\\Lambda=1$", "spring-damper model"} <= set(found)
 
 
@@ -493,7 +494,7 @@ def test_several_cases_of_the_poincare_map():
     assert {"$\\Lambda=1$", "$\\Lambda=1.2$"} <= set(words(figure))
     assert_readable(figure)
     nothing = data.assign(phase=np.nan * data.phase, release_phase=np.nan * data.phase)
-    assert "$n=1$, $r=0.65$, $\\Lambda=1$" in words(laid_out("fig13", nothing))
+    assert "$n=1$, $r=0.65$, $\\Lambda=1$" in words(figures.draw("fig13", nothing))
 
 
 # Files
@@ -523,14 +524,21 @@ def saved(folder, name, commit="abc123", settings=None):
     return [path.read_bytes() for path in paths]
 
 
-@pytest.mark.parametrize("name", ["fig04", "fig08"])
-def test_settings_of_the_user_change_no_byte(tmp_path, name):
-    assert saved(tmp_path / "usual", name) == saved(tmp_path / "other", name, settings=SETTINGS)
+@pytest.fixture(scope="module")
+def usual(tmp_path_factory):
+    """The bytes of both pictures of some figures, with the settings of matplotlib."""
+    folder = tmp_path_factory.mktemp("usual")
+    return {name: saved(folder, name) for name in ("fig04", "fig11")}
 
 
-def test_pictures_name_the_commit_and_no_date(tmp_path):
-    png, svg = saved(tmp_path, "fig11")
-    with Image.open(tmp_path / "fig11.png") as picture:
+@pytest.mark.parametrize("name", ["fig04", "fig11"])
+def test_settings_of_the_user_change_no_byte(tmp_path, name, usual):
+    assert saved(tmp_path, name, settings=SETTINGS) == usual[name]
+
+
+def test_pictures_name_the_commit_and_no_date(tmp_path, usual):
+    png, svg = usual["fig11"]
+    with Image.open(BytesIO(png)) as picture:
         assert picture.text == {"Description": "drawn at commit abc123"}
         assert picture.width == 1050
     assert b"drawn at commit abc123" in svg

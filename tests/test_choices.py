@@ -6,9 +6,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.reference import reference
 
 from bouncing_ball.claims import CLAIMS
-from bouncing_ball.datasets import printed_table, read
+from bouncing_ball.datasets import printed_table
 
 ROOT = Path(__file__).parents[1]
 
@@ -25,30 +26,25 @@ def study():
             sys.path.remove(folder)
 
 
-@pytest.fixture(scope="module")
-def reference():
-    return {path.stem: read(path) for path in (ROOT / "figures").glob("*.nc")}
-
-
 @pytest.mark.long
-def test_the_result_in_the_repository_is_that_of_the_study(study, reference):
-    found = study.changed_verdicts(reference, printed_table(study.PRINTED))
+def test_the_result_in_the_repository_is_that_of_the_study(study):
+    found = study.changed_verdicts(reference(), printed_table(study.PRINTED))
     with open(study.RESULT, encoding="utf-8", newline="") as file:
         assert list(csv.DictReader(file)) == found
 
 
-def test_the_parameters_of_the_figures_change_no_verdict(study, reference):
+def test_the_parameters_of_the_figures_change_no_verdict(study):
     """With fewer points, as those of other choices have."""
     printed = printed_table(study.PRINTED)
     for name in ("fig05", "fig06", "fig10"):
-        axes = study.other_axes(reference[name], study.ALONG_RATIO[name], [1.0], [1000.0])
+        axes = study.other_axes(reference()[name], study.ALONG_RATIO[name], [1.0], [1000.0])
         for _, same in axes:
-            changed = study.verdicts({**reference, name: same}, printed, {name})
-            assert changed == study.verdicts(reference, printed, {name})
+            changed = study.verdicts({**reference(), name: same}, printed, {name})
+            assert changed == study.verdicts(reference(), printed, {name})
 
 
-def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it(study, reference):
-    judged = study.verdicts(reference, printed_table(study.PRINTED), {"fig12"})
+def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it(study):
+    judged = study.verdicts(reference(), printed_table(study.PRINTED), {"fig12"})
     assert [name for name, _ in judged] == [
         claim.name for claim in CLAIMS if "fig12" in claim.datasets
     ]

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from tests.reference import reference
 
 from bouncing_ball import pages, tables
 
@@ -16,7 +17,19 @@ LINKS = [("The article", "paper.md")]
 @pytest.fixture(scope="module")
 def data() -> dict[str, xr.Dataset]:
     """All datasets of the reference by name."""
-    return {path.stem: xr.load_dataset(path) for path in (ROOT / "figures").glob("*.nc")}
+    return reference()
+
+
+@pytest.fixture(scope="module")
+def listed(data) -> str:
+    """The list of figures."""
+    return pages.filled_in("md", data)
+
+
+@pytest.fixture(scope="module")
+def text(data) -> str:
+    """The page."""
+    return pages.filled_in("html", data, links=LINKS)
 
 
 class Page(HTMLParser):
@@ -47,12 +60,11 @@ class Page(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def page(data) -> Page:
-    return Page(pages.filled_in("html", data, links=LINKS))
+def page(text) -> Page:
+    return Page(text)
 
 
-def test_the_page_and_the_list_have_the_same_claims(data, page):
-    listed = pages.filled_in("md", data)
+def test_the_page_and_the_list_have_the_same_claims(data, listed, page):
     rows = re.findall(
         r"^\| ([^|]*?) \| ([^|]*?) \| (?:\*(.*?)\*)? ?\|$", listed, flags=re.MULTILINE
     )
@@ -90,15 +102,13 @@ def test_every_figure_has_its_picture_its_caption_and_its_data(page):
     assert anchors <= {*page.places["id"]}
 
 
-def test_the_page_needs_no_network_and_fits_a_telephone(data):
-    text = pages.filled_in("html", data, links=LINKS)
+def test_the_page_needs_no_network_and_fits_a_telephone(text):
     assert "http" not in text and "<script" not in text and "@import" not in text
     assert '<meta name="viewport" content="width=device-width, initial-scale=1">' in text
     assert "@media print" in text
 
 
-def test_the_answer_is_the_first_sentence_of_both(data, page):
-    listed = pages.filled_in("md", data)
+def test_the_answer_is_the_first_sentence_of_both(listed, page):
     answer = next(text for text in page.texts if text.startswith("From a frequency ratio"))
     assert listed.split("\n\n")[1] == answer
     assert answer.count(". ") == 0

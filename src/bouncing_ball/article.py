@@ -8,7 +8,7 @@ dataset does not have, because it was computed with other parameters, is a dash.
 
 from collections.abc import Iterable
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +28,9 @@ STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
 
 
+@cache
 def environment(templates: Path) -> jinja2.Environment:
-    """What reads the templates of a folder, with what they can do with a number."""
+    """What reads the templates of a folder, each once, with what they can do with a number."""
     found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,

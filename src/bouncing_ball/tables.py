@@ -34,7 +34,8 @@ def comma_separated(rows: list[list[str]]) -> str:
 
 def number(value: xr.DataArray | float, form: str, none: str = "–") -> str:
     """A number in a format; `none` if it is NaN or infinite."""
-    return f"{float(value):{form}}" if np.isfinite(value) else none
+    plain = float(value)
+    return f"{plain:{form}}" if np.isfinite(plain) else none
 
 
 def distance_text(units: float, share: float) -> str:
@@ -110,8 +111,9 @@ def readings(data: xr.Dataset) -> list[list[str]]:
     for line in each(data, "reading"):
         agrees = line["agrees"].values
         ends = [agrees[np.equal(row_of, row)] for row in rows]
+        others = line[["found", "deviation_units"]].sel(number=single)
         numbers = []
-        for text, one in zip(printed, each(line.sel(number=single), "number"), strict=True):
+        for text, one in zip(printed, each(others, "number"), strict=True):
             value = computed_text(float(one["found"]), text)
             units = number(one["deviation_units"], "+.2f")
             numbers.append(value if value == units else f"{value} ({units})")
@@ -166,9 +168,11 @@ def claims_of(data: xr.Dataset, group: str) -> list[dict]:
     Besides, `computed` and `distance` have the number found beside a printed one as texts, and
     `notes` the reason for the verdict and the remark.
     """
+    of_group = data.isel(claim=data["group"].values == group)
+    columns = {str(name): of_group[name].values.tolist() for name in of_group.variables}
     rows = []
-    for claim in each(data.isel(claim=data["group"].values == group), "claim"):
-        row = {name: claim[name].item() for name in claim.variables}
+    for values in zip(*columns.values(), strict=True):
+        row = dict(zip(columns, values, strict=True))
         printed = row["printed_text"]
         row["computed"] = computed_text(row["found"], printed) if printed else ""
         row["distance"] = distance_text(row["deviation_units"], row["deviation"])

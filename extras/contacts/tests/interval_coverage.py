@@ -13,6 +13,7 @@ shown, and how often both hold the true r.
 
 import math
 import sys
+from dataclasses import astuple
 from functools import partial
 
 import numpy as np
@@ -459,76 +460,80 @@ KINDS = [
 ]
 
 
+def answer(kind, rng):
+    """Return the answers, with scatter and without, to one recording of a kind; and what is true.
+
+    The last ones are whether it scatters, ln r, and whether the true law is rejected.
+    """
+    _, r, law, make, *stated = kind
+    scatter = make.keywords["scatter"]
+    if scatter is None:
+        scatter = PUBLISHED * math.exp(WIDTH * rng.normal())
+    recording = make(rng, r, scatter=scatter)
+    # Flights of no duration are refused.
+    while np.min(np.concatenate(recording.chains)) <= 0:
+        recording = make(rng, r, scatter=scatter)
+    impacts = impacts_of(recording)
+    known = stated[0] if stated else recording.uncertainty
+    at = math.exp(float(np.mean(np.log(impacts.speed))))
+    curves = curves_of(impacts, known, at, rounding_of(recording))
+    judged = judge(impacts, curves, at) if law else []
+    is_rejected = any(each.law == law and each.probability < 0.005 for each in judged)
+    truth = math.log(float(np.squeeze(r(at))))
+    return *estimates(impacts, curves), scatter > 0, truth, is_rejected
+
+
 def study(kind, recordings, seed):
     """Return the numbers of a kind: held, half width, times wider than needed, law rejected."""
-    name, r, law, make, *stated = kind
     rng = np.random.default_rng(seed)
-    held = 0
-    rejected = 0
-    widths = []
-    missed = []
-    for _ in range(recordings):
-        scatter = make.keywords["scatter"]
-        if scatter is None:
-            scatter = PUBLISHED * math.exp(WIDTH * rng.normal())
-        recording = make(rng, r, scatter=scatter)
-        # Flights of no duration are refused.
-        while np.min(np.concatenate(recording.chains)) <= 0:
-            recording = make(rng, r, scatter=scatter)
-        impacts = impacts_of(recording)
-        known = stated[0] if stated else recording.uncertainty
-        at = math.exp(float(np.mean(np.log(impacts.speed))))
-        curves = curves_of(impacts, known, at, rounding_of(recording))
-        scattering, still = estimates(impacts, curves)
-        found = scattering if scatter or still is None else still
-        truth = math.log(float(np.squeeze(r(at))))
-        held += found.low <= truth <= found.high
-        widths.append((found.high - found.low) / 2)
-        missed.append(abs(found.value - truth))
-        if law is not None:
-            judged = judge(impacts, curves, at)
-            rejected += any(each.law == law and each.probability < 0.005 for each in judged)
-    wider = 1 / np.quantile(np.divide(missed, widths), 0.95)
-    return held, np.median(widths) * math.exp(truth), wider, rejected
+    answers = [answer(kind, rng) for _ in range(recordings)]
+    found = [first if scatters else still or first for first, still, scatters, *_ in answers]
+    value, low, high, _ = np.array([astuple(each) for each in found]).T
+    truth, rejected = np.array([each[3:] for each in answers]).T
+    held = int(np.sum((low <= truth) & (truth <= high)))
+    widths = (high - low) / 2
+    wider = 1 / np.quantile(np.abs(value - truth) / widths, 0.95)
+    return held, np.median(widths) * math.exp(truth[-1]), wider, int(np.sum(rejected))
 
 
-# Name, true r, recording, resolution. The scatter of ln r is that of r, divided by r.
+# As above. The scatter of ln r is that of r, divided by r.
 BOTH = [
     (
         "7 impacts heard to 0.3 ms, scatter 0.01, resolution stated",
         partial(FLAT, 0.8),
+        None,
         partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
         3e-4,
     ),
     (
         "the same, resolution not stated",
         partial(FLAT, 0.8),
-        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
         None,
+        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
     ),
     (
         "6 impacts heard to 0.3 ms, r = 0.6, scatter 0.02",
         partial(FLAT, 0.6),
-        partial(flights, impacts=6, error=3e-4, scatter=0.033, start=3.75),
         None,
+        partial(flights, impacts=6, error=3e-4, scatter=0.033, start=3.75),
     ),
     (
         "4 impacts heard to 0.1 ms, r = 0.85, scatter 0.01",
         partial(FLAT, 0.85),
-        partial(flights, impacts=4, error=1e-4, scatter=0.0118, start=3.75),
         None,
+        partial(flights, impacts=4, error=1e-4, scatter=0.0118, start=3.75),
     ),
     (
         "7 impacts heard to 1 ms, no scatter, v^-0.1",
         partial(power, 0.8, -0.1),
-        partial(flights, impacts=7, error=1e-3, scatter=0, start=3.35),
         None,
+        partial(flights, impacts=7, error=1e-3, scatter=0, start=3.35),
     ),
     (
         "5 impacts heard to 1 ms, r = 0.9, no scatter",
         partial(FLAT, 0.9),
-        partial(flights, impacts=5, error=1e-3, scatter=0, start=2.8),
         None,
+        partial(flights, impacts=5, error=1e-3, scatter=0, start=2.8),
     ),
 ]
 
@@ -536,20 +541,16 @@ BOTH = [
 def both(recordings):
     print("| recording | second interval shown | it holds r | first one holds r |")
     print("| --- | --- | --- | --- |")
-    for name, r, make, known in BOTH:
+    for kind in BOTH:
         rng = np.random.default_rng(900)
         first = []
         second = []
         for _ in range(recordings):
-            impacts = impacts_of(make(rng, r))
-            at = math.exp(float(np.mean(np.log(impacts.speed))))
-            curves = curves_of(impacts, known, at)
-            scattering, still = estimates(impacts, curves)
-            truth = math.log(float(np.squeeze(r(at))))
+            scattering, still, _, truth, _ = answer(kind, rng)
             first.append(scattering.low <= truth <= scattering.high)
             if still is not None:
                 second.append(still.low <= truth <= still.high)
-        print(f"| {name} | {len(second)} | {sum(second)} | {sum(first)} |", flush=True)
+        print(f"| {kind[0]} | {len(second)} | {sum(second)} | {sum(first)} |", flush=True)
 
 
 def main():

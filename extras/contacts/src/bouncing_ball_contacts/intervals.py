@@ -64,6 +64,8 @@ _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
+# Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
+_ARITHMETIC = 1e-12
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 
@@ -77,15 +79,12 @@ class Impacts:
 
     ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
     heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
-    ``arithmetic`` has the errors of ln r if numbers of the size of the sum of readings, as times
-    are, have errors of 2⁻⁵² of it, which do not cancel.
     """
 
     speed: Array
     log_r: Array
     readings: Array
     usual: float
-    arithmetic: Array
 
     @property
     def restitution(self) -> Array:
@@ -138,9 +137,7 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
     readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
-    size = sum(float(values.sum()) for values in chains)
-    arithmetic = np.finfo(float).eps * size * np.linalg.norm(readings, axis=1)
-    return Impacts(before, np.log(after / before), readings, KINDS[kind][1], arithmetic)
+    return Impacts(before, np.log(after / before), readings, KINDS[kind][1])
 
 
 def without_contacts(recording: Recording, lasts: float) -> Recording:
@@ -268,14 +265,9 @@ def curves_of(
     ratio = np.exp(np.arange(-3.5, most, 0.25 if known is None else step))
     # Readings that are nearly redundant have eigenvalues of about 0.
     variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
-    if known is None:
-        unrounded = np.exp(np.arange(-7.0, 7.0, step))
-        rounded = rounding / math.sqrt(12) / impacts.usual
-        sizes = error * np.hypot(unrounded, rounded)
-    else:
-        rounded = 0.0
-        unrounded = np.ones(1)
-        sizes = np.array([error])
+    unrounded = np.exp(np.arange(-7.0, 7.0, step)) if known is None else np.ones(1)
+    rounded = max(rounding / math.sqrt(12), _ARITHMETIC) / impacts.usual
+    sizes = error * np.hypot(unrounded, rounded)
     scatter = np.outer(ratio, sizes)
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
@@ -363,7 +355,7 @@ def without_scatter(impacts: Impacts, curves: Curves) -> float:
         # Two impacts leave no deviations, which any number of degrees of freedom allows.
         return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
     # A single deviation has no pattern, and neither have errors of the arithmetic.
-    if len(squares) < 2 or squares.sum() <= np.sum(impacts.arithmetic**2):
+    if len(squares) < 2 or squares.sum() <= curves.rounded**2 * eigenvalues.sum():
         return 1.0
     factors = 1 - statistic / squares.sum() * eigenvalues
     # The integrand is smooth in ln u, and vanishes on both sides.

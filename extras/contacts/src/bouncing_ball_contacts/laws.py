@@ -189,10 +189,8 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
     left_over = [deviations(1 / curves.variances, each, y)[0] for each in columns]
     squares = np.sum(np.concatenate(left_over, axis=1) ** 2, axis=(2, 3))
     nearest = np.min(squares, axis=1)
-    # Rounded readings may be alike by chance, and leave a curve less than their own errors and
-    # those of the arithmetic.
-    errors = curves.rounded**2 * curves.variances[0] + curves.basis.T**2 @ impacts.arithmetic**2
-    left = np.mean(errors / curves.variances[:-1], axis=1)
+    # Rounded readings may be alike by chance, and leave a curve less than their own errors.
+    left = np.mean(curves.rounded**2 * curves.variances[0] / curves.variances[:-1], axis=1)
     nearest[:-1] = np.maximum(nearest[:-1], max(len(x) - 3, 1) * left)
     found = [_judged(name, impacts, curves, at, weights, nearest) for name in LAWS]
     is_any_rejected = any(each.probability < REJECTED for each in found)

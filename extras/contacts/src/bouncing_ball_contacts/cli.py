@@ -106,6 +106,8 @@ def _values(found: Any) -> dict[str, Any]:
 
 def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None) -> None:
     if not as_json:
+        if isinstance(found, dict):
+            found = "\n\n".join(f"{name}\n{each}" for name, each in found.items())
         click.echo("\n\n".join(str(each) for each in (found, written) if each is not None))
         return
     values = _values(found)
@@ -246,16 +248,6 @@ def _lines(text: str | None) -> tuple[int, ...]:
         raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
 
 
-def _print_balls(found: dict[str, Any], engine: str | None, as_json: bool) -> None:
-    """Print one result for each of several balls."""
-    if engine is not None:
-        raise Refused(f"the file has {', '.join(found)}: a contact is written for one, --ball")
-    if as_json:
-        _print(found, as_json)
-        return
-    click.echo("\n\n".join(f"{name}\n{each}" for name, each in found.items()))
-
-
 @main.command(
     "fit",
     params=[
@@ -306,7 +298,9 @@ def fit_command(
     balls = read("/dev/stdin" if recording == "-" else recording, _lines(leave_out), ball)
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     if len(fits) > 1:
-        _print_balls(fits, engine, as_json)
+        if engine is not None:
+            raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
+        _print(fits, as_json)
         return
     found = next(iter(fits.values()))
     contact = {

@@ -307,7 +307,9 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     y = columns[1].numbers[is_there]
     lines = table.lines[is_there]
     if len(t) <= 2 * _FEWEST:
-        raise Refused(f"{table.name}: {len(t)} lines of a track are too few")
+        raise Refused(
+            f"{table.name}: {len(t)} lines of a track are too few; tops are one column, height"
+        )
     steps = np.diff(t)
     table.refuse(steps < 0, "the time is not after the one before: sort the lines", lines=lines[1:])
     gap = steps > 20 * np.mean(steps)

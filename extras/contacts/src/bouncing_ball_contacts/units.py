@@ -46,7 +46,7 @@ _COMMON = {
     "": {"": 1.0, "%": 1e-2},
 }
 # Of texts that pint reads as something else: gr is its grain of 65 mg, and Ms are 10⁶ s.
-_MISSPELT = {"gr": "g", "gm": "g", "kgs": "kg"}
+_MISSPELT = {"kg": {"gr": "g", "gm": "g", "kgs": "kg"}}
 _EXAMPLES = {
     "kg": "50 g",
     "m": "2 mm",
@@ -120,10 +120,10 @@ def _typed(name: str, text: str, unit: str, wanted: str) -> Any:
     common = {"": 1.0, **_COMMON.get(unit, {})}
     if typed in common:
         return number * common[typed]
-    near = _MISSPELT.get(typed.lower(), typed.lower())
-    for meant in common:
-        if meant.lower() == near:
-            raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {meant!r}?")
+    meant = {each.lower(): each for each in common} | _MISSPELT.get(unit, {})
+    if typed.lower() in meant:
+        is_it = meant[typed.lower()]
+        raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {is_it!r}?")
     import pint
 
     try:
@@ -198,17 +198,15 @@ def show(value: float, unit: str, digits: int = 3) -> str:
     A power of ten is only shown above a million of the largest prefix.
     """
     if unit == "kg":
-        value = value * 1000
-        unit = "g"
+        return show(1000 * value, "g", digits)
     if not math.isfinite(value):
         return "–"
     # Less than a thousandth of the least prefix is rounding.
-    if abs(value) < 1e-12:
-        return f"0 {unit}".strip()
+    rounded = float(f"{value:.{digits}g}") if abs(value) >= 1e-12 else 0.0
     power = 0
-    if unit not in _UNPREFIXED:
-        order = math.floor(math.log10(abs(float(f"{value:.{digits}g}"))) / 3)
+    if rounded and unit not in _UNPREFIXED:
+        order = math.floor(math.log10(abs(rounded)) / 3)
         power = max(-9, min(3 * order, _GREATEST.get(unit, 9)))
-    scaled = float(f"{value / 10.0**power:.{digits}g}")
+    scaled = float(f"{rounded / 10.0**power:.{digits}g}")
     text = f"{scaled:.0f}" if 100 <= abs(scaled) < 1e6 else f"{scaled:.{digits}g}"
     return f"{text} {_PREFIXES[power]}{unit}".strip()

@@ -55,7 +55,7 @@ def rounded(rng, r, impacts, digits, scatter):
     found = flights(rng, r, impacts, 0.0, scatter)
     times = np.concatenate([[0.0], np.cumsum(found.chains[0])]) + rng.uniform(0, digits)
     rounded_times = np.round(times / digits) * digits
-    return Recording("flights", "flights", (np.diff(rounded_times),), are_times=True)
+    return Recording("flights", "flights", (np.diff(rounded_times),), are_times=True, digit=digits)
 
 
 def tops(rng, r, impacts, error, scatter):

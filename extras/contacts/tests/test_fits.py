@@ -13,7 +13,7 @@ from scipy.special import chdtrc
 from bouncing_ball_contacts import Refused, design, fit
 from bouncing_ball_contacts.intervals import curves_of, estimates, impacts_of, without_scatter
 from bouncing_ball_contacts.laws import LAWS, ContactLaw, judge
-from bouncing_ball_contacts.recordings import Recording, read, rounding_of
+from bouncing_ball_contacts.recordings import Recording, rounding_of
 
 SPEC = importlib.util.spec_from_file_location(
     "interval_coverage", Path(__file__).with_name("interval_coverage.py")
@@ -149,82 +149,27 @@ def test_two_impacts_do_not_say_that_nothing_scatters():
     assert scattering.high - scattering.low > 0.03
 
 
-HEARD = np.array([0.0, 0.731, 1.307, 1.761, 2.118])
-
-
-@pytest.mark.parametrize(
-    ("times", "frame"),
-    [
-        (np.round(HEARD * 120) / 120, 1 / 120),
-        (np.round(np.round(HEARD * 60) / 60, 4), 1 / 60),
-        (np.round(HEARD, 2), 0.01),
-        (HEARD + [0.0, 2e-4, 4e-4, 1e-4, 3e-4], 0.0),
-        (np.array([0.0, 0.75, 1.35]), 0.0),
-        # Flights of a lively ball that are all near 0.4 s, and short ones that are all near 0.
-        (np.cumsum([0.0, 0.4045, 0.4013, 0.3981, 0.395]), 0.0),
-        (np.cumsum([0.0, 0.00491, 0.00443, 0.00405, 0.00367]), 0.0),
-    ],
-)
-def test_times_of_a_film_are_multiples_of_a_frame(times, frame):
-    found = fit({"time (s)": times.tolist()})
-    assert rounding_of(found.recording) == pytest.approx(frame)
-    assert any("multiples" in note for note in found.notes) == (frame > 0)
-    # A resolution that is given takes the place of the frame.
-    stated = fit({"time (s)": times.tolist()}, resolution="1 ms")
-    assert not any("multiples" in note for note in stated.notes)
-    # Intervals may have been rounded one by one.
-    assert rounding_of(fit({"interval (s)": np.diff(times).tolist()}).recording) == 0
-
-
-def test_a_frame_rate_in_a_file_is_that_of_its_frames(tmp_path):
-    path = tmp_path / "film.csv"
-    path.write_text(
-        "# frame rate: 48\ntime\n" + "".join(f"{n / 48:.4f}\n" for n in (0, 35, 63, 85))
-    )
-    assert rounding_of(fit(path).recording) == pytest.approx(1 / 48)
-
-
-def touches(rng):
-    """Return six touches of a ball, heard without errors, the last flights of some 0.1 s."""
-    r = rng.uniform(0.75, 0.85)
-    flights = rng.uniform(0.6, 0.9) * np.cumprod(np.exp(0.008 * rng.normal(size=6)) * r)
-    return rng.uniform(0, 2) + np.insert(np.cumsum(flights), 0, 0.0)
-
-
-def printed(times):
-    return read({"time (s)": [f"{each:.3f}" for each in times]})[""]
-
-
-@pytest.mark.parametrize("rate", [24, 25, 29.97, 30, 60, 120])
-def test_frames_are_recognised_in_times_that_are_printed_to_a_millisecond(rate):
-    """Those of 60 frames a second were in 9 of 10 recordings, and those of 120 in 1 of 5."""
-    rng = np.random.default_rng(11)
-    found = [rounding_of(printed(np.round(touches(rng) * rate) / rate)) for _ in range(60)]
-    # All frames may be even ones by chance, in one of 64 recordings.
-    assert np.sum(np.isclose(found, 1 / rate, rtol=2e-3)) >= 54
-    assert min(found) > 0.9 / rate
-
-
-def test_times_that_are_heard_are_not_those_of_frames():
-    """Each of the frames is found by chance in fewer than one recording in 1000."""
-    rng = np.random.default_rng(12)
-    found = [rounding_of(printed(touches(rng))) for _ in range(300)]
-    assert np.sum(np.array(found) > 1.01e-3) <= 3
-    assert max(found) < 0.05 and min(found) > 0.99e-3
-
-
-def test_a_film_of_30_frames_a_second_is_read():
+def test_a_film_of_30_frames_a_second_is_read(tmp_path):
     """Of 200 recordings 16 were refused, as if an impact were missing."""
-    flights = [20, 18, 16, 14, 12, 10, 8, 5, 6, 3]
-    times = np.insert(np.cumsum(flights), 0, 0) / 30
-    assert len(fit({"time (s)": [f"{each:.3f}" for each in times]}).impacts.speed) == 9
-    rng = np.random.default_rng(13)
-    for _ in range(100):
-        printed(np.round(touches(rng) * 30) / 30)
+    path = tmp_path / "film.csv"
+    flights = np.array([20, 18, 16, 14, 12, 10, 8, 5, 6, 3])
+
+    def written(head, flights):
+        times = np.insert(np.cumsum(flights), 0, 0) / 30
+        path.write_text(head + "time\n" + "".join(f"{each:.3f}\n" for each in times))
+        return fit(path)
+
+    found = written("# frame rate: 30\n", flights)
+    assert rounding_of(found.recording) == pytest.approx(1 / 30)
+    assert any("multiples of 33.33 ms" in note for note in found.notes)
+    # A resolution that is given takes the place of the frame.
+    assert not any("multiples" in note for note in fit(path, resolution="1 ms").notes)
+    with pytest.raises(Refused, match="follows one of .* need a line such as # frame rate: 30"):
+        written("", flights)
     # By more than two frames no rounding lets a flight grow.
-    longer = np.insert(np.cumsum([20, 18, 16, 14, 12, 10, 8, 5, 8, 3]), 0, 0) / 30
-    with pytest.raises(Refused, match="line 11: a flight of 0.267 s follows one of 0.166"):
-        printed(longer)
+    flights[-2] = 8
+    with pytest.raises(Refused, match="line 12: a flight of 0.267 s follows one of 0.166"):
+        written("# frame rate: 30\n", flights)
 
 
 @pytest.mark.parametrize("kind", ["times", "intervals", "heights"])

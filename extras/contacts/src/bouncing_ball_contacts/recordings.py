@@ -45,11 +45,6 @@ _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 _GROWTH = 1.02
 # Flights of a track have at least so many positions, without those beside an impact.
 _FEWEST = 4
-# Seconds of which times may be multiples, the longest first: frames of cameras, also of those whose
-# rate is 29.97 in place of 30, and decimals.
-_FRAMES = np.outer(1 / np.array([10.0, 24, 25, 30, 50, 60, 100, 120, 240]), [1, 1.001]).ravel()
-# Times are taken as those of frames if so few others are multiples by chance.
-_CHANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -81,43 +76,15 @@ class Recording:
     notes: tuple[str, ...] = ()
 
 
-def _frame_of(recording: Recording) -> float:
-    """Return the longest frame in s of which all times are multiples, or 0.
-
-    It is that of the frame rate, if the file has one. Within frames the times of a recording may
-    spread over w, which is 1/20 or the digit with which they are written. By chance those of n
-    different flights do so with the probability (n + 1) wⁿ, or wⁿ if frames have all their digits.
-    Flights of one ball may be alike, and say nothing new. Intervals may have been rounded one by
-    one, with errors that do not cancel.
-    """
-    if not recording.are_times:
-        return 0.0
-    rate = recording.head.get("frame rate")
-    frames = _FRAMES if rate is None else np.array([1 / positive("frame rate", rate, "Hz")])
-    share = np.maximum(0.05, recording.digit / frames)
-    # Numbers of a computer have errors of 1e-16.
-    digits = frames / (recording.digit or 1e-12)
-    are_written = np.abs(digits - np.round(digits)) < 1e-9 * digits
-    within = np.where(are_written, 0.05, share)
-    counts = np.round(np.concatenate(recording.chains) / frames[:, None])
-    are_multiples = np.all(counts > 0, axis=1)
-    chance = share ** [len(np.unique(each)) for each in counts]
-    for flights in recording.chains:
-        times = np.insert(flights, 0, 0.0) / frames[:, None]
-        spread = np.ptp(np.cumsum(times - np.round(times), axis=1), axis=1)
-        are_multiples &= spread < within + 1e-9
-        chance *= np.where(are_written, 1, times.shape[1])
-    are_frames = are_multiples & ((chance < _CHANCE) | (rate is not None))
-    return float(next(iter(frames[are_frames]), 0.0))
-
-
 def rounding_of(recording: Recording) -> float:
-    """Return the frame or the last digit of the readings in SI units, or 0.
+    """Return the frame of a film's times or the last digit of the readings in SI units, or 0.
 
     Three readings are needed for a digit, because numbers lose zeros at their end.
     """
+    if recording.are_times and "frame rate" in recording.head:
+        return 1 / positive("frame rate", recording.head["frame rate"], "Hz")
     has_digit = sum(map(len, recording.chains)) >= 3
-    return max(_frame_of(recording), recording.digit * has_digit)
+    return recording.digit * has_digit
 
 
 # Numbers to series.
@@ -221,7 +188,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
             f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
-            "release, or another recording begins (leave an empty line, or --leave-out its line)",
+            "release, or another recording begins (leave an empty line, or --leave-out its line); "
+            "times of a film need a line such as # frame rate: 30",
             values[1:],
             values[:-1],
             lines=lines[1:],

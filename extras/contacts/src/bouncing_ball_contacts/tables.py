@@ -196,7 +196,7 @@ def _columns_as_text(columns: Mapping[str, Any]) -> str:
         cells = np.asarray(getattr(column, "magnitude", column), dtype=object)
         if cells.ndim != 1:
             raise Refused("columns have one number in each cell: {'time (s)': [0.45, 1.17, 1.75]}")
-        texts.append([heading + unit, *("" if cell is None else str(cell) for cell in cells)])
+        texts.append([f"{heading}{unit}", *("" if cell is None else str(cell) for cell in cells)])
     sizes = {len(each) - 1: None for each in texts}
     if len(sizes) > 1:
         raise Refused(f"columns differ in length: {', '.join(map(str, sizes))} cells")

@@ -125,8 +125,9 @@ def correct(
     with np.errstate(all="ignore"):
         for _ in range(iterations):
             value, gradient = condition(family, y)
-            values = np.concatenate([family.equations(y), value[np.newaxis]])
-            matrix = np.concatenate([family.jacobian(y), gradient[np.newaxis]])
+            end = family.contact_end(y)
+            values = np.concatenate([family.equations(y, end), value[np.newaxis]])
+            matrix = np.concatenate([family.jacobian(y, end), gradient[np.newaxis]])
             step = _solve(matrix, values)
             y = y - step
             small = np.max(np.abs(step), axis=0) < tolerance * (1 + np.max(np.abs(y), axis=0))
@@ -140,9 +141,13 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
     """Solve systems whose axes come first; NaN for those whose matrix is singular."""
     rows = np.moveaxis(matrix, (0, 1), (-2, -1))
     columns = np.moveaxis(values, 0, -1)[..., np.newaxis]
-    singular = np.linalg.det(rows) == 0
-    rows = np.where(singular[..., np.newaxis, np.newaxis], np.nan, rows)
-    return np.moveaxis(np.linalg.solve(rows, columns)[..., 0], -1, 0)
+    try:
+        found = np.linalg.solve(rows, columns)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(rows) == 0
+        rows = np.where(singular[..., np.newaxis, np.newaxis], np.nan, rows)
+        found = np.linalg.solve(rows, columns)
+    return np.moveaxis(found[..., 0], -1, 0)
 
 
 def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:

@@ -85,16 +85,17 @@ class Family:
             ),
         )
 
-    def equations(self, y: NDArray) -> NDArray:
+    def equations(self, y: NDArray, end: ContactEnd | None = None) -> NDArray:
         """The defects of the three equations of an orbit, shape (3, ...).
 
         They are the release, ϖ(δ + κδ′) = 0 (Eq. 23), the landing at δ = 0 after the flight L
         (Eqs. 19 and 25), and the velocity there, z′_b - L = z′_i (Eqs. 20, 26 and 27). The landing
         is divided by L, and δ at the release is replaced by -κδ′, so that the equations are regular
-        also where the flight vanishes and the orbit becomes permanent contact.
+        also where the flight vanishes and the orbit becomes permanent contact. The end of the
+        contact is computed unless it is given.
         """
         x, impact_height, _ = self.start(y)
-        end = self.contact_end(y)
+        end = end or self.contact_end(y)
         lag = self.contact.lag
         flight = end.flight
         # (w_b - w_i)/L, where the phases of the table differ by -L up to whole turns.
@@ -112,10 +113,13 @@ class Family:
             )
         )
 
-    def jacobian(self, y: NDArray) -> NDArray:
-        """Derivatives of the defects by the four numbers of an orbit, shape (3, 4, ...)."""
+    def jacobian(self, y: NDArray, end: ContactEnd | None = None) -> NDArray:
+        """Derivatives of the defects by the four numbers of an orbit, shape (3, 4, ...).
+
+        The end of the contact is computed unless it is given.
+        """
         x, impact_height, _ = self.start(y)
-        end = self.contact_end(y)
+        end = end or self.contact_end(y)
         lag = self.contact.lag
         ratio = self.contact.frequency_ratio
         flight = end.flight

@@ -208,6 +208,10 @@ def test_where_there_are_no_orbits_the_list_is_empty(ball, impacts, periods):
     assert orbits(ball, impacts=impacts, periods=periods, amplitude=0.5) == []
 
 
+def test_where_a_contact_law_has_no_orbit_the_list_is_empty():
+    assert orbits(tsuji(stiffness=3.0, damping=1.5), amplitude=0.3) == []
+
+
 def test_orbits_with_several_impacts_are_found_by_their_number():
     found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
     heights = [(round(each.max_height, 3), each.stable) for each in found]

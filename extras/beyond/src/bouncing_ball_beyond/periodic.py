@@ -162,7 +162,9 @@ def orbits(
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
     equations = OrbitEquations(ball, *counts, table=table)
-    (z,) = all_orbits(equations, np.array([amplitude]))
+    z = all_orbits(equations, amplitude)
+    if not len(z):
+        return []
     found = [equations.orbit(row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
 

@@ -11,9 +11,6 @@ from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrb
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
-TOGETHER = 16
-"""Rows whose orbits are searched for at a time, with 3072 impacts each."""
-
 
 def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
     """A ball and further numbers as rows of one length, and the shape which these had."""
@@ -100,8 +97,9 @@ def shortest_contacts(
     One for each row, if possible one that a ball follows, or None; and which of them it follows.
     """
     found: list[PeriodicOrbit | None] = []
-    for i, z in enumerate(all_orbits(equations, amplitude)):
-        orbits = [single(equations, i).orbit(row) for row in z]
+    for i, each in enumerate(amplitude):
+        alone = single(equations, i)
+        orbits = [alone.orbit(z) for z in all_orbits(alone, float(each))]
         on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
         on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
         found.append(on_side[0] if on_side else None)
@@ -119,101 +117,52 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def all_orbits(equations: OrbitEquations, amplitude: NDArray) -> list[NDArray]:
-    """Solutions of the equations at the amplitudes of rows, also those no ball follows.
-
-    An array of the shape (orbits, N) for each row; with several impacts there is one row.
-    """
-    found = []
-    for first in range(0, len(amplitude), TOGETHER):
-        block = np.arange(first, min(first + TOGETHER, len(amplitude)))
-        part = equations.rows(block)
-        nearby = _returns if part.impacts == 1 else _motions
-        starts, row = nearby(part, amplitude[block])
-        good = np.isfinite(starts).all(axis=1)
-        z, row = _solutions_near(part, starts[good], row[good])
-        z, row = _motions_among(part, z, row)
-        each = [_distinct(part.rows(i), z[row == i]) for i in range(len(block))]
-        row = np.repeat(np.arange(len(block)), [len(z) for z in each])
-        # Some starts lead to orbits many periods later, at times with fewer digits.
-        z = newton(part.rows(row), np.concatenate(each)).z if len(row) else np.concatenate(each)
-        found += [z[row == i] for i in range(len(block))]
-    return found
-
-
-def _solutions_near(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
-    """The solutions to which Newton's method leads from starts of rows, and their rows.
-
-    Where impacts become much faster or longer than all of those at the starts, it is lost.
-    """
-
-    def sizes(z: NDArray) -> NDArray:
-        x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
-        return np.abs(x[..., 1:]).max(axis=1)
-
-    largest = np.zeros((row.max(initial=0) + 1, equations.unknowns - 1))
-    np.maximum.at(largest, row, 2 * sizes(z))
-    found = [z[:0]]
-    rows = [row[:0]]
-    for _ in range(30):
-        if not len(z):
-            break
-        solution = newton(equations.rows(row), z, iterations=1)
-        found.append(solution.z[solution.found])
-        rows.append(row[solution.found])
-        z = solution.z
-        inside = np.isfinite(z).all(axis=1) & (sizes(z) <= largest[row]).all(axis=1)
-        z = z[inside & ~solution.found]
-        row = row[inside & ~solution.found]
-    return np.concatenate(found), np.concatenate(rows)
+def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Orbits of one ball, also those it does not follow, shape (orbits, N)."""
+    z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
+    z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
+    x, _, _ = equations.split(z)
+    z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
+    z = z[(equations.ends(z).flight > 0).all(axis=1)]
+    if not len(z):
+        return z
+    # Some starts lead to orbits many periods later, at times with fewer digits.
+    return newton(equations, _distinct(equations, z)).z
 
 
 @np.errstate(all="ignore")
-def _returns(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
-    """Starts near all orbits with one impact, and their rows: impacts whose speed comes back."""
+def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Starts near all orbits with one impact: impacts at many phases whose speed comes back."""
     table = equations.table
     longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
-    speeds = np.geomspace(1e-3, longest, 32, axis=-1)[:, np.newaxis]
-    phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)[:, np.newaxis]
-    tau, u = np.broadcast_arrays(phases, speeds)
-
-    def impacts(tau: NDArray, u: NDArray, row: NDArray) -> NDArray:
-        columns = [tau, u, amplitude[row]]
-        ball = equations.ball.rows(row)
-        if ball.lasts:
-            # Contacts of an orbit are shorter than its period.
-            periods = np.broadcast_to(equations.periods, len(amplitude))[row]
-            columns.insert(2, ball.first_release(*columns, periods=periods, table=table))
-        return np.stack(columns, axis=-1)
-
-    row = np.repeat(np.arange(len(amplitude)), tau[0].size)
-    some = np.arange(tau.size).reshape(tau.shape)[:, ::4, ::4].ravel()
-    if not np.isfinite(impacts(tau.flat[some], u.flat[some], row[some])).any(axis=0).all():
-        # Balls that never leave the table take long to follow.
-        return np.zeros((0, equations.length)), row[:0]
-    z = impacts(tau.ravel(), u.ravel(), row)
-    change = equations.rows(row).legs(z)[:, 0, -1].reshape(tau.shape)
-    row, at, number = np.nonzero(change[..., :-1] * change[..., 1:] < 0)
-    low = change[row, at, number]
-    part = low / (low - change[row, at, number + 1])
-    between = u[row, at, number] + part * np.diff(u)[row, at, number]
-    return impacts(tau[row, at, 0], between, row), row
+    phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)
+    speeds = np.geomspace(1e-3, longest, 32)
+    tau, u = np.meshgrid(phases, speeds, indexing="ij")
+    columns = [tau.ravel(), u.ravel(), np.full(tau.size, amplitude)]
+    if equations.ball.lasts:
+        # Contacts of an orbit are shorter than its period.
+        T = equations.ball.first_release(*columns, periods=equations.periods, table=table)
+        columns.insert(2, T)
+    z = np.stack(columns, axis=-1)
+    change = equations.legs(z)[:, 0, -1].reshape(tau.shape)
+    at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
+    share = change[:, :-1][at] / (change[:, :-1] - change[:, 1:])[at]
+    z = z.reshape(*tau.shape, -1)
+    return z[:, :-1][at] + share[:, np.newaxis] * np.diff(z, axis=1)[at]
 
 
-def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
     # The simulation is not needed by orbits with one impact.
     from bouncing_ball_beyond.simulation import Balls, follow
 
-    k = equations.impacts
     turn = 2 * np.pi
-    (amplitude,) = amplitude
-    fastest = 1.1 * np.pi * int(equations.periods) + amplitude * equations.table.bounds[1]
+    fastest = 1.1 * np.pi * equations.periods + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
     none = np.zeros(tau.size)
     first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel(), equations.table)
-    record, going, after = follow(first, k)
+    record, going, after = follow(first, equations.impacts)
     turns, phase, speed, T, *_ = np.moveaxis(record[..., going], 1, 0)
     times = turn * turns + phase
     length = turn * after.turns + after.phase - times[0]
@@ -221,16 +170,29 @@ def _motions(equations: OrbitEquations, amplitude: NDArray) -> tuple[NDArray, ND
     columns = [times, speed, T][: equations.unknowns]
     x = np.stack(columns, axis=-1)[:, near].swapaxes(0, 1)
     x = x.reshape(len(x), equations.size)
-    return np.column_stack([x, np.full(len(x), amplitude)]), np.zeros(len(x), int)
+    return np.column_stack([x, np.full(len(x), amplitude)])
 
 
-def _motions_among(equations: OrbitEquations, z: NDArray, row: NDArray) -> tuple[NDArray, NDArray]:
-    """The solutions whose impacts and flights last, and their rows."""
-    x = z[:, : equations.size].reshape(len(z), equations.impacts, equations.unknowns)
-    good = x[..., 2:].min(axis=(1, 2), initial=np.inf) >= 0
-    good &= (x[..., 1] > 0).all(axis=1)
-    good[good] &= (equations.rows(row[good]).ends(z[good]).flight > 0).all(axis=1)
-    return z[good], row[good]
+def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
+    """The solutions to which Newton's method leads from starts.
+
+    Where impacts become much faster or longer than all of those at the starts, it is lost.
+    """
+
+    def sizes(z: NDArray) -> NDArray:
+        return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)
+
+    largest = 2 * sizes(z).max(axis=0, initial=0.0)
+    found = [z[:0]]
+    for _ in range(30):
+        if not len(z):
+            break
+        solution = newton(equations, z, iterations=1)
+        found.append(solution.z[solution.found])
+        # NaN is not inside either.
+        inside = (sizes(solution.z) <= largest).all(axis=1)
+        z = solution.z[inside & ~solution.found]
+    return np.concatenate(found)
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
@@ -238,10 +200,8 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
 
     Orbits of a shorter period, taken several times, are left out.
     """
-    if not len(z):
-        return z
     k = equations.impacts
-    x = z[:, : equations.size].reshape(len(z), k, equations.unknowns)
+    x, _, _ = equations.split(z)
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
     # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.

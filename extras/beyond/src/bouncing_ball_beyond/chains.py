@@ -58,25 +58,21 @@ def solve_bordered(
         matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)
         values = np.concatenate([right.reshape(rows, k * q, m), border_right], axis=1)
         return solved_or_nan(matrix, values)
-    p = columns - q - 2
+    p = border.shape[1]
     pairs = k // 2
-    first = derivatives[:, 0 : 2 * pairs : 2]
-    second = derivatives[:, 1 : 2 * pairs : 2]
+    legs = np.concatenate([derivatives, right], axis=-1)
+    first = legs[:, 0 : 2 * pairs : 2]
+    second = legs[:, 1 : 2 * pairs : 2]
     between = np.zeros((rows, pairs, 2 * q, q))
     between[:, :, :q, :2] = first[..., q : q + 2]
     between[:, :, q:] = second[..., :q]
-    others = np.zeros((rows, pairs, 2 * q, columns + m))
-    others[:, :, :q, :q] = first[..., :q]
-    others[:, :, q:, q : q + 2] = second[..., q : q + 2]
-    others[:, :, :q, q + 2 : columns] = first[..., q + 2 :]
-    others[:, :, q:, q + 2 : columns] = second[..., q + 2 :]
-    others[:, :, :q, columns:] = right[:, 0 : 2 * pairs : 2]
-    others[:, :, q:, columns:] = right[:, 1 : 2 * pairs : 2]
+    others = np.concatenate([first, second], axis=-2)
+    others[:, :, :q, q : q + 2] = 0.0
+    others[:, :, q:, :q] = 0.0
     orthogonal, triangle = np.linalg.qr(between, mode="complete")
     others = orthogonal.swapaxes(-1, -2) @ others
     eliminated = solved_or_nan(triangle[..., :q, :], others[..., :q, :])
-    legs = np.concatenate([others[..., q:, :columns], derivatives[:, 2 * pairs :]], axis=1)
-    legs_right = np.concatenate([others[..., q:, columns:], right[:, 2 * pairs :]], axis=1)
+    legs = np.concatenate([others[..., q:, :], legs[:, 2 * pairs :]], axis=1)
     # What the impacts between the pairs add to the border.
     blocks = border[..., : k * q].reshape(rows, p, k, q).swapaxes(1, 2)
     kept = blocks[:, ::2].copy()
@@ -87,14 +83,12 @@ def solve_bordered(
     total = added.sum(axis=1)
     kept = kept.swapaxes(1, 2).reshape(rows, p, -1)
     outer = np.concatenate([kept, border[..., k * q :] - total[..., q + 2 : columns]], axis=-1)
-    solution = solve_bordered(legs, legs_right, outer, border_right - total[..., columns:])
+    outer_right = border_right - total[..., columns:]
+    solution = solve_bordered(legs[..., :columns], legs[..., columns:], outer, outer_right)
     states = solution[:, :-p].reshape(rows, -1, q, m)
+    values = np.broadcast_to(solution[:, np.newaxis, -p:], (rows, pairs, p, m))
+    around = np.concatenate([states[:, :pairs], states[:, after, :2], values], axis=2)
     whole = np.empty((rows, k, q, m))
     whole[:, ::2] = states
-    whole[:, 1 : 2 * pairs : 2] = (
-        eliminated[..., columns:]
-        - eliminated[..., :q] @ states[:, :pairs]
-        - eliminated[..., q : q + 2] @ states[:, after, :2]
-        - eliminated[..., q + 2 : columns] @ solution[:, np.newaxis, -p:]
-    )
+    whole[:, 1::2] = eliminated[..., columns:] - eliminated[..., :columns] @ around
     return np.concatenate([whole.reshape(rows, k * q, m), solution[:, -p:]], axis=1)

@@ -138,11 +138,12 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)
     speeds = np.geomspace(1e-3, longest, 32)
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
-    columns = [tau.ravel(), u.ravel(), np.full(tau.size, amplitude)]
+    given = tau.ravel(), u.ravel()
+    columns = [*given, np.full(tau.size, amplitude)]
     if equations.ball.lasts:
         # Contacts of an orbit are shorter than its period.
-        T = equations.ball.first_release(*columns, periods=equations.periods, table=table)
-        columns.insert(2, T)
+        within: dict[str, Any] = {"periods": equations.periods, "table": table}
+        columns.insert(2, equations.ball.first_release(*given, amplitude, **within))
     z = np.stack(columns, axis=-1)
     change = equations.legs(z)[:, 0, -1].reshape(tau.shape)
     at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)

@@ -1,8 +1,7 @@
 """Pictures of branches of orbits and of curves of special orbits.
 
 Lines are solid where orbits are stable, dashed where they are not, and pale where no ball follows
-them; special orbits have marks. Nothing is drawn by pyplot, and nothing depends on the settings of
-the user, except in axes of his.
+them; special orbits have marks. Nothing is drawn by pyplot or depends on the user's settings.
 """
 
 from dataclasses import replace
@@ -51,13 +50,11 @@ HEIGHT = 2.8
 """Height of a figure in inches."""
 
 DECADES = 2, 8
-"""An axis on which more powers of ten lie is logarithmic, unless these are so many that its least
-value is as good as zero."""
+"""An axis on which more powers of ten lie is logarithmic, but not one that is as good as zero."""
 
 TITLE = 50
-"""Letters of a line of a title."""
+"""Letters of a line of a title, which does not break at an equals sign."""
 EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
-"""A line does not break here."""
 
 BESIDE = 1e-3
 """Multipliers of special orbits are nearer to the unit circle."""
@@ -69,24 +66,10 @@ MARKED = 4
 def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
     """Draw branches over what changes, or curves of special orbits over their two parameters.
 
-    Parameters
-    ----------
-    *found : FollowedBranch, SpecialCurve, or lists of them
-        All along the same parameters. The branches of a cascade are such a list.
-    quantity : str
-        What is drawn of a branch: a quantity of the dataset, such as "max_height". One of the
-        impacts has a line for each impact.
-    ax : matplotlib.axes.Axes, optional
-        Axes of a figure of yours.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-
-    Raises
-    ------
-    ValueError
-        If there is no such quantity, or the branches are not along the same parameters.
+    `found` are branches, curves, or lists of them such as a cascade, all along the same parameters.
+    The quantity is one of the dataset, such as "max_height"; those of impacts have a line for each.
+    By default the figure is a new one. ValueError if there is no such quantity, or if branches are
+    not along the same parameters.
     """
     if not all(isinstance(group, FollowedBranch | list | tuple) for group in found):
         raise ValueError(
@@ -161,9 +144,8 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
     """For each orbit the number of the next one, or of the last one, that is not special.
 
-    The multipliers of a special orbit do not tell how those beside it look. The ends of a branch
-    may be special orbits as well: one counts if it is alone on its side of a special orbit, and no
-    multiplier is next to the unit circle.
+    The ends of a branch may be special orbits as well: one counts if it is alone on its side of a
+    special orbit, and no multiplier is next to the unit circle.
     """
     places = [each.z for each in special]
     marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]

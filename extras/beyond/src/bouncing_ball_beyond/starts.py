@@ -1,7 +1,7 @@
 """Where branches start: at an ordinary orbit, or at a special one at which another one begins."""
 
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.chains import solve_bordered
 from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound
 from bouncing_ball_beyond.forms import one_impact_more
-from bouncing_ball_beyond.march import Start, newton, tangents, unit
+from bouncing_ball_beyond.march import Solution, Start, newton, tangents, unit
 from bouncing_ball_beyond.search import single
 
 NEAREST = 1e-9
@@ -62,6 +62,13 @@ def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     return np.concatenate([null, -null, np.zeros((rows, len(equations.along)))], axis=1)
 
 
+def _beside(equations: OrbitEquations, z: NDArray, direction: NDArray, step: Any) -> Solution:
+    """Orbits at a distance from special ones in a direction, on the planes across it."""
+    units = equations.scales(z)
+    ahead = unit(direction / units)
+    return newton(equations, z + step * ahead * units, ahead / units)
+
+
 def _ordinary_start(task: Task) -> Start:
     """The branch through orbits."""
     ahead = task.goal - task.z[:, -1]
@@ -77,9 +84,8 @@ def _fold_start(task: Task) -> Start:
 
     Both are on the same side of the parameter.
     """
-    units = task.equations.scales(task.z)
-    direction = unit(tangents(task.equations, task.z) / units)
-    near = newton(task.equations, task.z + 1e-3 * direction * units, direction / units)
+    direction = tangents(task.equations, task.z)
+    near = _beside(task.equations, task.z, direction, 1e-3)
     away = near.z[:, -1] - task.z[:, -1]
     stable = np.sign(1 - task.equations.turn(near.linear))
     side = np.where(task.goal < task.other, -stable, stable)
@@ -90,7 +96,7 @@ def _fold_start(task: Task) -> Start:
     on_side = away * (goal - task.z[:, -1]) > 0
     text = "the orbits of the saddle-node at {place} are {side} it"
     _refuse(reasons, ~on_side, task, text, away)
-    return Start(task.equations, task.z, direction * units * side[:, np.newaxis], goal, reasons)
+    return Start(task.equations, task.z, direction * side[:, np.newaxis], goal, reasons)
 
 
 def _grazing_start(task: Task) -> Start:
@@ -105,9 +111,7 @@ def _grazing_start(task: Task) -> Start:
         except OrbitNotFound as error:
             reasons[i] = str(error)
     # One step away from the touch, where the added impact has the speed 0.
-    units = more.scales(origin)
-    ahead = unit(direction / units)
-    start = newton(more, origin + 1e-3 * ahead * units, ahead / units)
+    start = _beside(more, origin, direction, 1e-3)
     away = start.z[:, -1] - origin[:, -1]
     _refuse(reasons, ~start.found, task, "the orbits with one impact more are not found", away)
     on_side = away * (task.goal - task.z[:, -1]) > 0
@@ -132,21 +136,23 @@ def _doubled_start(task: Task) -> Start:
     twice, origin = task.equations.doubled(task.z)
     rows = len(origin)
     units = twice.scales(origin)
-    direction = unit(flip(task.equations, task.z) / units)
+    direction = flip(task.equations, task.z)
     pair = twice.rows(np.tile(np.arange(rows), 2))
+    origins, directions = (np.tile(each, (2, 1)) for each in (origin, direction))
     start = origin.copy()
     step = np.full(rows, 0.02)
     good = np.zeros(rows, bool)
     for _ in range(40):
         reach = np.concatenate([step, step / 2])[:, np.newaxis]
-        guess = np.tile(origin, (2, 1)) + reach * np.tile(direction * units, (2, 1))
-        solution = newton(pair, guess, np.tile(direction / units, (2, 1)))
+        solution = _beside(pair, origins, directions, reach)
         with np.errstate(all="ignore"):
-            away = (solution.z[:, -1] - np.tile(origin[:, -1], 2)).reshape(2, rows)
+            change = (solution.z - origins).reshape(2, rows, -1)
+            away = change[..., -1]
             lost = 1 - pair.turn(solution.linear).reshape(2, rows)
-            bend = np.linalg.norm((solution.z - guess)[:rows] / units, axis=1)
             ratios = np.stack([away[0] / away[1], lost[0] / lost[1]])
-        new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < 0.2 * step)
+        # Orbits on the planes are farther away than the step is long, as the branch bends.
+        bend = np.linalg.norm(change[0] / units, axis=1) / step
+        new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < np.hypot(1, 0.2))
         new &= ((ratios > 3) & (ratios < 5.5)).all(axis=0) & (np.abs(lost[0]) < 0.3)
         start[new] = solution.z[:rows][new]
         good |= new
@@ -169,8 +175,7 @@ def _doubled_start(task: Task) -> Start:
     if short.any():
         # The whole branch is hardly longer than its start, or shorter.
         step = np.where(short, 0.3 * step * np.sqrt(np.abs(share)), step)
-        guess = origin + step[:, np.newaxis] * direction * units
-        solution = newton(twice, guess, direction / units)
+        solution = _beside(twice, origin, direction, step[:, np.newaxis])
         start[short] = solution.z[short]
         reasons[short & ~solution.found] = missing
     return Start(twice, start, start - origin, task.goal, reasons, step=step, origin=origin)

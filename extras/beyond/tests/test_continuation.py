@@ -446,6 +446,8 @@ def test_a_flight_vanishes_where_permanent_contact_begins():
     limit = np.sqrt(1 + (4 * ball.zeta**2 - 2) / 4 + 1 / 16)
     assert "the contacts before and after a flight merge" in branch.end
     assert branch.special[-1].kind == "vanishing flight"
+    # An impact vanishes at the same place: the end has one name.
+    assert np.sum([abs(each.amplitude - limit) < 1e-6 for each in branch.special]) == 1
     # The equations are singular there, so that half of the digits are certain.
     assert branch.values[-1] == pytest.approx(limit, abs=1e-7)
     assert branch.admissible[:-1].all()

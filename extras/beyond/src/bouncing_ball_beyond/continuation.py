@@ -5,6 +5,8 @@ Many branches, rows, are followed side by side.
 
 from collections.abc import Iterable
 from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -125,40 +127,29 @@ def _listed(given: Any, name: str, wanted: str) -> list:
     return found
 
 
-class _Row(NamedTuple):
-    """A row of the branches: the number of its orbit, its task, and what rows have in common."""
-
-    number: int
-    task: Task
-    common: tuple
-
-
 def _follow_all(orbits: list, along: str | Path | None, to: Any, points: int, until: list) -> list:
-    """Branches of orbits, or reasons, in order; orbits with the same equations side by side."""
+    """Branches of orbits, or reasons, in order; those with the same equations side by side."""
     several = 2 if isinstance(to, tuple) else len(orbits)
     if to is not None and np.shape(to) not in ((), (several,)):
         raise ValueError(
             f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
         )
-    groups: list[list[_Row]] = []
+    ways = []
     for i, each in enumerate(orbits):
         if not isinstance(each, PeriodicOrbit):
             continue
         path = each.equations.along[-1] if along is None else path_of(along, each.ball, each.table)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
         alike = (x.at(**dict.fromkeys(x.parameters, 0.0)) for x in (each.ball, each.table))
-        common = type(each.equations), each.kind, path, each.impacts, *alike
-        for task in _tasks(each, path, goal, until[i]):
-            same = next((rows for rows in groups if rows[0].common == common), None)
-            if same is None:
-                groups.append(same := [])
-            same.append(_Row(i, task, common))
+        common = each.kind, type(each.equations), path, each.impacts, *alike
+        ways += [(common, i, task) for task in _tasks(each, path, goal, until[i])]
     parts: list[list] = [[] for _ in orbits]
-    for rows in groups:
-        branches = _from_special(_stacked([row.task for row in rows]), rows[0].common[1], points)
-        for row, branch in zip(rows, branches, strict=True):
-            parts[row.number].append(branch)
-    return [_whole(ways) if ways else each for ways, each in zip(parts, orbits, strict=True)]
+    for (kind, *_), rows in groupby(ways, key=itemgetter(0)):
+        _, numbers, tasks = zip(*rows, strict=True)
+        branches = _from_special(_stacked(tasks), kind, points)
+        for i, branch in zip(numbers, branches, strict=True):
+            parts[i].append(branch)
+    return [_whole(some) if some else each for some, each in zip(parts, orbits, strict=True)]
 
 
 def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
@@ -190,7 +181,7 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
     ]
 
 
-def _stacked(tasks: list[Task]) -> Task:
+def _stacked(tasks: tuple[Task, ...]) -> Task:
     """Tasks of single orbits as rows of one."""
     if len(tasks) == 1:
         return tasks[0]

@@ -202,16 +202,20 @@ contact can turn back at a few hundredths."""
 
 
 class Touch(NamedTuple):
-    """The lowest turning point of flights, after the impact ``leg``, with δ″ and δ."""
+    """Where a flight touches the table: after the impact ``leg``, with δ″."""
 
     leg: int
     time: float
     acceleration: float
-    height: float
 
 
-def touch(equations: OrbitEquations, z: NDArray) -> Touch:
-    """The lowest point of an orbit's flights where δ has a minimum, or OrbitNotFound."""
+def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
+    """Where a flight of an orbit touches the table; OrbitNotFound if none does."""
+    if equations.ball.sinks:
+        raise OrbitNotFound(
+            "an impact of the corrected model takes effect below the table: at a grazing flight"
+            " there are no orbits with one impact more"
+        )
     ends = equations.ends(z[np.newaxis])
     leaves, gap, speed, last, amplitudes = (each[0] for each in ends[:5])
     amplitude = float(amplitudes[0])
@@ -228,22 +232,11 @@ def touch(equations: OrbitEquations, z: NDArray) -> Touch:
         height, rate = flight(time, leaves[leg], gap[leg], speed[leg], amplitude, table)
         acceleration = -amplitude * table(leaves[leg] + time, 2) - 1
         time = time - rate / acceleration
-    return Touch(int(leg), float(leaves[leg] + time), float(acceleration), float(height))
-
-
-def _grazing(equations: OrbitEquations, z: NDArray) -> Touch:
-    """Where a flight of an orbit touches the table; OrbitNotFound if none does."""
-    if equations.ball.sinks:
+    if not abs(height) < TOUCHES:
         raise OrbitNotFound(
-            "an impact of the corrected model takes effect below the table: at a grazing flight"
-            " there are no orbits with one impact more"
+            f"no flight of the orbit touches the table: the least gap is {height:.2g}"
         )
-    found = touch(equations, z)
-    if not abs(found.height) < TOUCHES:
-        raise OrbitNotFound(
-            f"no flight of the orbit touches the table: the least gap is {found.height:.2g}"
-        )
-    return found
+    return Touch(int(leg), float(leaves[leg] + time), float(acceleration))
 
 
 def one_impact_more(
@@ -255,7 +248,7 @@ def one_impact_more(
     impacts, their first orbit, and the direction in which the added impact gets faster by 1.
     OrbitNotFound if no flight touches the table, or the ball has no slow impacts.
     """
-    at = _grazing(equations, z)
+    at = _touch(equations, z)
     added = np.array([at.time, 0.0])
     if equations.ball.lasts:
         _, ball, amplitude = equations.split(z[np.newaxis])
@@ -332,13 +325,13 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     # On a curve two parameters change, of which the first one counts.
     path = orbit.equations.along[0]
     equations, z = orbit.on(path)
-    at = _grazing(equations, z)
+    at = _touch(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
     tangent = newton(equations, z[np.newaxis]).tangent[0]
     # The least gap is a smooth function: a third of all digits is enough for the sign.
     step = 1e-6 * max(1.0, abs(z[-1]))
-    below, above = (touch(equations, z + side * step * tangent).height for side in (-1, 1))
+    below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
     r = -1.0 if orbit.ball.lasts else float(orbit.ball.signature(0.0).restitution)
     return GrazingForm(
         leg=at.leg,
@@ -348,5 +341,5 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
         slope=0.0 if orbit.ball.lasts else float(direction[-1]),
         along=path.name,
         opens_upwards=opens_upwards,
-        persists=opens_upwards == (above < below),
+        persists=opens_upwards == bool(above < below),
     )

@@ -117,11 +117,10 @@ def to_dataset(found: Found) -> xr.Dataset:
         lifts = [each.z[each.equations.size - 1] for each in resting]
         data["lift_off_time"] = "point", np.array(lifts)
         data["rest"] = "point", np.array([each.rest for each in resting])
-    unknowns = np.array([each.z[: each.equations.size - bool(resting)] for each in orbits])
-    unknowns = unknowns.reshape(len(orbits), first.impacts, -1)
-    data["impact_time"] = ("point", "impact"), unknowns[..., 0]
+    data["impact_time"] = ("point", "impact"), np.array([each.times for each in orbits])
     if first.ball.lasts:
-        data["scaled_duration"] = ("point", "impact"), unknowns[..., 2]
+        lasts = np.array([each.z[2 : each.equations.size : 3] for each in orbits])
+        data["scaled_duration"] = ("point", "impact"), lasts
     for name in first.parameters:
         data[name] = "point", np.array([each.parameters[name] for each in orbits])
     texts = OF_IMPACTS | OF_ORBITS | OF_EQUATIONS | PARAMETERS
@@ -150,10 +149,9 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
         raise ValueError(f"orbits with {counts} impacts: those of one dataset have the same number")
     if len({(type(each), type(each.ball), *each.parameters) for each in orbits}) > 1:
         raise ValueError(
-            "the orbits of one dataset have balls of one kind, and change along one path"
+            "the orbits of one dataset have balls of one kind and tables of the same harmonics, and"
+            " change along one path"
         )
-    if len({each.table.at(**dict.fromkeys(each.table.parameters, 0.0)) for each in orbits}) > 1:
-        raise ValueError("the orbits of one dataset are on tables with the same harmonics")
     return orbits
 
 
@@ -204,10 +202,9 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
     if not {"ball", "along", "form"} <= data.attrs.keys():
         raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
     ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
-    # Datasets of the first versions have no table: theirs is a sine.
-    table: Table = SINE
-    if any(name.startswith(OF_TABLES) for name in map(str, data.variables)):
-        table = Table(json.loads(data.attrs["table"]))
+    # A sine has no parameters.
+    of_table = [name for name in map(str, data.variables) if name.startswith(OF_TABLES)]
+    table = Table(json.loads(data.attrs["table"])) if of_table else SINE
     missing = ball.parameters.keys() - data.variables
     if missing:
         raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
@@ -221,12 +218,12 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
         return orbits
     common = data.attrs.get("kind", "")
     rows = [each for each in orbits if each.kind == common]
-    z = np.array([each.z for each in rows])
     equations = rows[0].equations
-    special = [replace(each, equations=equations) for each in orbits if each.kind != common]
-    equations = replace(equations, kind=common)
-    given = equations, z, tuple(special), data.attrs["start"], data.attrs["end"]
-    return SpecialCurve(*given) if form == "SpecialCurve" else FollowedBranch(*given)
+    special = tuple(replace(each, equations=equations) for each in orbits if each.kind != common)
+    kind = SpecialCurve if common else FollowedBranch
+    z = np.array([each.z for each in rows])
+    ends = data.attrs["start"], data.attrs["end"]
+    return kind(replace(equations, kind=common), z, special, *ends)
 
 
 def _path(name: str, ball: Ball, given: Path | None, table: Table) -> Path:

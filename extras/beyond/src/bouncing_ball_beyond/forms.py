@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.chains import dense
 from bouncing_ball_beyond.equations import (
     MULTIPLIERS,
+    Linear,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
@@ -94,9 +95,12 @@ def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
 
 
 @np.errstate(all="ignore")
-def degeneracy(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance."""
-    linear = equations.linear(z)
+def degeneracy(equations: OrbitEquations, z: NDArray, linear: Linear | None) -> NDArray:
+    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance.
+
+    The derivatives of the legs may be given.
+    """
+    linear = linear or equations.linear(z)
     apart = equations.trace_and_determinant(linear)[1] - 1
     values = np.full(len(z), np.nan)
     for i in np.flatnonzero(np.abs(apart) > RESONANT):

@@ -1,7 +1,7 @@
 """Special orbits: where they are between two orbits of a march, or near a guess."""
 
+from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,19 @@ DEGENERATE = {
 same."""
 
 CUSP, GENERALIZED = (names[0] for names in DEGENERATE.values())
+
+
+def _resonance(equations: OrbitEquations, z: NDArray, linear: Linear) -> NDArray:
+    """The product of the multipliers less 1."""
+    return equations.trace_and_determinant(linear)[1] - 1
+
+
+TESTS: dict[str, Callable] = {
+    **{name: kind.test for name, kind in KINDS.items()},
+    GENERALIZED: degeneracy,
+    **dict.fromkeys(RESONANCES.values(), _resonance),
+}
+"""What is zero at special orbits, functions of equations, orbits and legs; a cusp has none."""
 
 
 class Crossings(NamedTuple):
@@ -40,14 +53,11 @@ def crossings_of(
     """All steps in which a test changes its sign, of orbits (points, N) that belong to rows."""
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
-    others = {
-        "grazing of a flight": every.clearance,
-        "grazing of a release": every.contact_clearance,
-    }
+    others = sorted({"grazing of a flight", "grazing of a release"} - {equations.kind})
     if equations.kind == "period doubling":
-        others[GENERALIZED] = partial(degeneracy, every)
-    columns = [*tests.T, *(test(z) for name, test in others.items() if name != equations.kind)]
-    names = [*equations.watched, *(name for name in others if name != equations.kind)]
+        others.append(GENERALIZED)
+    columns = [*tests.T, *(TESTS[name](every, z, None) for name in others)]
+    names = [*equations.watched, *others]
     if equations.kind == "saddle-node":
         # At a cusp both parameters turn back.
         rates = slopes[:, equations.size :]
@@ -83,21 +93,13 @@ def _tests_of(
     kinds: NDArray, equations: OrbitEquations, solution: Solution, turns: NDArray
 ) -> NDArray:
     """The tests of orbits, each that of its kind; ``turns`` are directions of the parameters."""
-    values = np.zeros(len(kinds))
-    for name in np.unique(kinds):
+    rates = solution.tangent[:, equations.size :]
+    # At a cusp the parameters turn back.
+    values = np.sum(rates * turns, axis=1)
+    for name in np.unique(kinds[kinds != CUSP]):
         these = kinds == name
-        part = equations.rows(these)
-        z = solution.z[these]
         linear = Linear(*(each[these] for each in solution.linear))
-        if name == CUSP:
-            rates = solution.tangent[these, equations.size :]
-            values[these] = np.sum(rates * turns[these], axis=1)
-        elif name == GENERALIZED:
-            values[these] = degeneracy(part, z)
-        elif name in KINDS:
-            values[these] = KINDS[name].test(part, z, linear)
-        else:
-            values[these] = part.trace_and_determinant(linear)[1] - 1
+        values[these] = TESTS[name](equations.rows(these), solution.z[these], linear)
     return values
 
 

@@ -46,6 +46,11 @@ BEFORE_END = 1e-3
 """The share of a step to an end of a branch that is left to the end in a point before it."""
 
 
+AT_GOAL = "the end of the window"
+CLOSED = "the branch is closed: it is back at its start"
+"""Two of the reasons why a branch ends."""
+
+
 class Solution(NamedTuple):
     """What Newton's method ends with, by rows: orbits, which of them are found, and the tangent of
     their curve, with normal · tangent = 1.
@@ -206,12 +211,6 @@ def _predicted(
     normal[last, bound[last]] = np.sign(rate[first])[last]
     z[last, bound[last]] = ends[first][last]
     return length, z, normal, last, bound
-
-
-AT_GOAL = "the end of the window"
-
-
-CLOSED = "the branch is closed: it is back at its start"
 
 
 def march(

@@ -1,5 +1,5 @@
 # make              sets up .venv from the lock file, and makes everything in results/
-# make test         the tests; `make test-long` has a few more, which take longer
+# make test         the tests
 # make replication  everything from nothing, and its comparison with the reference: results/diff/index.html
 # make diff         the comparison; `snakemake --cores 2 fig14 diff` makes and compares one figure
 
@@ -28,7 +28,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup test test-long test-cluster test-processors lint diff replication choices accept report release newest lowest lock clean ci everything test-everything
+.PHONY: all setup test test-cluster test-processors lint diff replication choices accept report release newest lowest lock clean ci everything test-everything
 
 all: setup
 	@echo "Making every figure, table and text in results/, about half a minute:"
@@ -45,10 +45,6 @@ $(VENV)/.installed: requirements-build.lock requirements.lock
 
 test: setup
 	OMP_NUM_THREADS=1 $(RUN) pytest
-
-# The recipes of CONTRIBUTING.md, published commands, the study of choices, a killed run, the report.
-test-long: setup
-	OMP_NUM_THREADS=1 $(RUN) pytest -m long tests
 
 # A stage on a Slurm that the test starts; it is skipped where there is none.
 test-cluster: setup

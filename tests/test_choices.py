@@ -26,7 +26,6 @@ def study():
             sys.path.remove(folder)
 
 
-@pytest.mark.long
 def test_the_result_in_the_repository_is_that_of_the_study(study):
     found = study.changed_verdicts(reference(), printed_table(study.PRINTED))
     with open(study.RESULT, encoding="utf-8", newline="") as file:

@@ -143,7 +143,6 @@ def checkout(fresh):
     return fresh
 
 
-@pytest.mark.long
 def test_commands_with_options_run(checkout):
     """The others name targets, which exist; a cluster and conda have tests of their own."""
     ran = 0
@@ -190,7 +189,6 @@ def conda(tmp_path, monkeypatch):
     return tmp_path / "asked"
 
 
-@pytest.mark.long
 def test_the_job_with_conda_runs(checkout, conda):
     """The script of continuous integration, and the commands of the page on clusters."""
     jobs = yaml.safe_load((ROOT / ".github/workflows/ci.yml").read_text("utf-8"))["jobs"]

@@ -10,8 +10,6 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
-
 from bouncing_ball.datasets import read
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -78,7 +76,6 @@ assert pytest.main([*tests, *chosen]) == 0
 """
 
 
-@pytest.mark.long
 def test_what_the_recipes_add_is_made_listed_and_shown(stubs, tmp_path):
     folder = tmp_path / "checkout"
     follow(folder)

@@ -216,7 +216,6 @@ def test_a_failed_figure_does_not_stop_other_stages(fresh):
     assert made(fresh.path) == datasets | files("fig01") | files("fig04")
 
 
-@pytest.mark.long
 def test_a_killed_run_is_unlocked_and_completed(fresh):
     script = fresh.path / "workflow/scripts/permanent_contact.py"
     at_once = script.read_text("utf-8")
@@ -296,7 +295,6 @@ def test_results_may_be_a_link_to_another_disk_but_not_a_file(fresh, tmp_path):
     assert fresh.run("--dry-run", "fig11")[0] == line
 
 
-@pytest.mark.long
 def test_the_report_has_every_figure_and_table(used):
     status, printed = used.run("--report", "report.html")
     assert status == 0, printed
@@ -392,7 +390,7 @@ def test_a_failed_step_does_not_hide_the_others(tmp_path, ci, root):
         [ROOT / ".ci/run"], env=environment, capture_output=True, text=True, check=False
     )
     called = (tmp_path / "called").read_text("utf-8").splitlines()
-    first = ["setup", "lint", "clean", "all", "diff", "test", "test-long", "test-cluster"]
+    first = ["setup", "lint", "clean", "all", "diff", "test", "test-cluster"]
     assert called[: len(first)] == first
     extras = [line for line in called[len(first) :] if line != "apt-get"]
     assert all(line.startswith(("-C extras/beyond ", "-C extras/contacts ")) for line in extras)

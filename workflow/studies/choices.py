@@ -3,7 +3,7 @@
 Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12, and the exponent
 of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
 with the other datasets of the reference. Datasets of other choices have fewer points than those of
-the figures. The study takes half a minute, so that it is no stage of the workflow: `make choices`
+the figures. The study changes no figure, so that it is no stage of the workflow: `make choices`
 writes its result, choices.csv, which the supplement shows, and a test does it again.
 """
 

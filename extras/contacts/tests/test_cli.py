@@ -90,21 +90,15 @@ def test_names_are_completed(line, offered, monkeypatch, capsys):
     assert capsys.readouterr().out.strip() == offered
 
 
-def test_without_a_command_the_help_is_shown(typed):
-    status, out, err = typed("")
-    assert (status, err) == (0, "") and "Examples:\n    bounce design --mass" in out
+COMMANDS = ("", "design", "diagnose", "fit", "engines")
+HELP = {f"{command} {option}": "Usage" for command in COMMANDS for option in ("--help", "-h")}
+HELP |= {"": "Examples:\n    bounce design --mass", "--version": "bounce, version "}
 
 
-@pytest.mark.parametrize("option", ["--help", "-h"])
-@pytest.mark.parametrize("command", ["", "design", "diagnose", "fit", "engines"])
-def test_help(typed, command, option):
-    status, out, _ = typed(f"{command} {option}")
-    assert status == 0 and "Usage" in out
-
-
-def test_the_version(typed):
-    status, out, _ = typed("--version")
-    assert status == 0 and out.startswith("bounce, version ")
+@pytest.mark.parametrize("line", HELP)
+def test_help(typed, line):
+    status, out, err = typed(line)
+    assert (status, err) == (0, "") and HELP[line] in out
 
 
 def test_engines_are_listed_with_what_was_run(typed):

@@ -164,7 +164,7 @@ def test_a_film_of_30_frames_a_second_is_read(tmp_path):
     assert any("multiples of 33.33 ms" in note for note in found.notes)
     # A resolution that is given takes the place of the frame.
     assert not any("multiples" in note for note in fit(path, resolution="1 ms").notes)
-    with pytest.raises(Refused, match="follows one of .* need a line such as # frame rate: 30"):
+    with pytest.raises(Refused, match="follows one of .* need a line # frame rate: 30"):
         written("", flights)
     # By more than two frames no rounding lets a flight grow.
     flights[-2] = 8

@@ -7,7 +7,6 @@ from scipy.integrate import solve_ivp
 from bouncing_ball_contacts.fits import fit
 from bouncing_ball_contacts.flights import drag_of, heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY as G
-from bouncing_ball_contacts.units import Refused
 
 # 1/m: none, a tennis ball, one of table tennis, more than a beach ball.
 DRAGS = [0.0, 0.017, 0.13, 0.4]
@@ -85,8 +84,3 @@ def test_the_drag_is_removed_from_a_track(tmp_path):
     plain = fit(columns)
     assert plain.restitution < 0.86
     assert any("the drag of the air is not removed" in note for note in plain.notes)
-
-
-def test_a_ball_has_the_density_of_a_material():
-    with pytest.raises(Refused, match="is a unit missing"):
-        drag_of(46.0, 0.043)

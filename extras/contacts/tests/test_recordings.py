@@ -190,6 +190,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("speed,COR\n1,1.04\n2,1.041\n3,1.04\n4,1.041", "above 1 by more than its error"),
         ("# contact time: 0.6 s\ntime [s]\n0.1\n0.9\n1.4\n1.8", "contact time: 600 ms is longer"),
         ("# mass: 58\n# diameter: 67 mm\ntime [s]\n" + column(TIMES), "is a unit missing"),
+        ("# frame rate: 0.01\ntime\n0.1\n0.9\n1.5", "an error of 28.9 s say nothing of r"),
         ("v_in,v_out\n1,2\n1,2", "exchanged"),
         ("drop,rebound\n1,1.12", "it rebounds with 1.12 m from 1 m"),
         ("time [s]\n0.1\n0.9", "no impact lies between"),

@@ -238,9 +238,10 @@ def fit(
             f"{show(at, 'm/s')} is more than 100 times off the measured speeds, "
             f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there"
         )
-    if known is not None and np.min(np.linalg.norm(impacts.readings * known, axis=1)) > 1:
+    error = rounding / math.sqrt(12) if known is None else known
+    if np.min(np.linalg.norm(impacts.readings * error, axis=1)) > 1:
         raise Refused(
-            f"{recording.name}: readings with an error of {show(float(np.max(known)), unit)} say "
+            f"{recording.name}: readings with an error of {show(float(np.max(error)), unit)} say "
             "nothing of r: is a unit missing?"
         )
     curves = curves_of(impacts, known, at, rounding)

@@ -181,6 +181,7 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     # Errors of two readings may let a height grow by a last digit, and those of three times a
     # flight by two.
     grows = 2 * rounding if kind == "times" else rounding
+    film = "; times of a film need a line # frame rate: 30" if kind == "times" else ""
     what = "height of {} m" if kind == "heights" else "flight of {} s"
     for values, lines in runs:
         if kind != "heights":
@@ -188,8 +189,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
             f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
-            "release, or another recording begins (leave an empty line, or --leave-out its line); "
-            "times of a film need a line such as # frame rate: 30",
+            "release, or another recording begins (leave an empty line, or --leave-out its line)"
+            f"{film}",
             values[1:],
             values[:-1],
             lines=lines[1:],

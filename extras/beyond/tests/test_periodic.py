@@ -19,7 +19,6 @@ from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.periodic import (
     OrbitNotFound,
     PeriodicOrbit,
-    apart,
     orbit,
     orbit_near,
     orbits,
@@ -234,15 +233,12 @@ def test_rows_have_an_orbit_or_a_reason_each():
         assert (each.periods, each.amplitude, each.ball.restitution) == (n, amplitude, r)
 
 
-def test_a_reason_has_the_digits_that_tell_two_amplitudes_apart():
-    fold = np.pi / 3
+def test_a_reason_tells_two_amplitudes_apart():
     with pytest.raises(OrbitNotFound) as raised:
         orbit(Rigid(0.5), amplitude=1.047197)
     text = str(raised.value)
     assert "\n" not in text
-    assert "Λ = 1.047197 " in text and text.endswith("below the saddle-node at Λ = 1.047198")
-    assert apart(fold, fold * (1 + 1e-9)) == ("1.047197551", "1.047197552")
-    assert apart(0.2, 0.24) == ("0.2", "0.24")
+    assert "Λ = 1.047197 " in text and text.endswith("below the saddle-node at Λ = 1.047197551")
 
 
 @pytest.mark.parametrize(
@@ -318,7 +314,7 @@ def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeyp
         return solve_panel(*given, **more)
 
     monkeypatch.setattr(root_time, "solve_panel", counted)
-    with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.253185"):
+    with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.25318"):
         orbit(ball, amplitude=0.1)
     found = orbits(ball, amplitude=1.2)
     assert [(each.stable, each.admissible) for each in found] == [(False, True), (False, True)]

@@ -95,17 +95,7 @@ class ParameterPath(Path):
         also complex ones. The first one must rise or fall throughout: it tells where on the path
         an orbit is. ValueError if one is not analytic or not monotonic.
 
-    Examples
-    --------
-    A contact of 500 Hz on a shaker with a stroke of 0.5 mm, in hertz:
-
-    >>> path = ParameterPath(
-    ...     "hertz",
-    ...     low=15.0,
-    ...     high=30.0,
-    ...     amplitude=lambda f: 0.5e-3 * (2 * np.pi * f) ** 2 / 9.80665,
-    ...     frequency_ratio=lambda f: 500.0 / f,
-    ... )
+    The shaker of docs/orbits.md, in hertz, is an example.
     """
 
     low: float

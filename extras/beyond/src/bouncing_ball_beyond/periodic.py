@@ -104,11 +104,9 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
-        where = f"{amplitude[i]:.10g}"
         why = "none is found on this side of the saddle-node"
         if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
-            where, limit = apart(amplitude[i], fold.amplitude)
-            why = f"below the saddle-node at Λ = {limit}"
+            why = f"below the saddle-node at Λ = {fold.amplitude:.10g}"
         elif near[i] or found[i]:
             found[i] = near[i] or found[i]
             continue
@@ -117,7 +115,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
         ball = equations.ball.rows(i)
         values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
         found[i] = OrbitNotFound(
-            f"no {np.ravel(equations.periods)[i]}-T orbit at Λ = {where} for"
+            f"no {np.ravel(equations.periods)[i]}-T orbit at Λ = {amplitude[i]:.10g} for"
             f" {type(ball).__name__}({values}): {why}"
         )
     return found
@@ -129,15 +127,6 @@ def one_amplitude(amplitude: Any) -> float:
     if np.ndim(value):
         raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
     return value
-
-
-def apart(first: float, second: float) -> tuple[str, str]:
-    """Two different numbers with as many digits as tell them apart, at least six."""
-    for digits in range(6, 18):
-        texts = f"{first:.{digits}g}", f"{second:.{digits}g}"
-        if texts[0] != texts[1]:
-            break
-    return texts
 
 
 def orbits(

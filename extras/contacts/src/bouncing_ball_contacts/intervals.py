@@ -266,7 +266,7 @@ def curves_of(
     # Readings that are nearly redundant have eigenvalues of about 0.
     variances = eigenvalues + 1e-9 + np.square([0.0, *ratio])[:, None]
     unrounded = np.exp(np.arange(-7.0, 7.0, step)) if known is None else np.ones(1)
-    rounded = max(rounding / math.sqrt(12), _ARITHMETIC) / impacts.usual
+    rounded = max(rounding / math.sqrt(12) if known is None else 0.0, _ARITHMETIC) / impacts.usual
     sizes = error * np.hypot(unrounded, rounded)
     scatter = np.outer(ratio, sizes)
     # The logarithms of the priors.

@@ -351,6 +351,19 @@ def test_an_end_beside_a_power_of_ten_has_no_number():
     assert_readable(figure)
 
 
+def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model():
+    data = reference("fig13").isel(case=0)
+    lines = [line.get_xydata() * np.pi for line in of_reference("fig13").axes[0].lines]
+    phase = data.restitution_phase
+    for x, y in (
+        (data.phase, data.impact_velocity),
+        (data.release_phase, data.bounce_velocity),
+        ([phase, phase], [data.restitution_impact_velocity, data.restitution_bounce_velocity]),
+    ):
+        points = np.stack([x, y], axis=1)
+        assert any(each.shape == points.shape and np.allclose(each, points) for each in lines)
+
+
 def test_the_frequency_ratios_of_the_poincare_map_have_lines_to_their_points():
     data = reference("fig13").isel(case=0)
     axes = of_reference("fig13").axes[0]

@@ -471,3 +471,12 @@ def test_the_error_law_is_of_second_order_on_any_table(name):
     for quantity in ("max_height", "phase", "saddle_node"):
         error = bb.law_errors(bb.SpringDamper(thresholds[quantity], 0.65), **given)[quantity]
         assert abs(error) == pytest.approx(1e-4, rel=1e-2)
+
+
+def test_an_orbit_says_of_a_table_what_is_not_said_by_its_amplitude():
+    table = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
+    shown = repr(bb.orbit(bb.Rigid(0.7), amplitude=0.8, table=table))
+    assert "harmonic_3" in shown and "phase_3" in shown
+    assert "harmonic_1" not in shown and "phase_1" not in shown
+    twice = Table([(1, 2.0, 0.0), (3, 0.1, 0.7)])
+    assert "harmonic_1" in repr(bb.orbit(bb.Rigid(0.7), amplitude=0.4, table=twice))

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Ball, H, Impact
 from bouncing_ball_beyond.chains import dense, product_of, solve_bordered, solved_or_nan
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.tables import FUNDAMENTAL, SINE, Table
 
 FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
@@ -638,7 +638,7 @@ class PeriodicOrbit:
             **({"kind": self.kind} if self.kind else {}),
             "impacts": self.impacts,
             "periods": self.periods,
-            **self.parameters,
+            **{name: x for name, x in self.parameters.items() if FUNDAMENTAL.get(name) != x},
             **self._further,
             "phase": self.phase,
             "contact_duration": self.contact_duration,

@@ -137,11 +137,7 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
-    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1).
-
-    The restitution coefficient is the function r(v) of the impact, on whose slope the period
-    doubling depends. NaN below the saddle-node Λ = C.
-    """
+    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1)."""
     amplitude = np.asarray(amplitude, float)
     phase, lift, _, _ = table.instant(impact.line, amplitude)
     anywhere = 0 * (impact.line + amplitude)
@@ -211,10 +207,7 @@ def law_errors(
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
     """The shifts of the period doubling, of first order: those of w′ from C and of -w″ from Y_D,
-    the relative one of Λ, and that of the phase of the instant.
-
-    With J = -w‴ there, δΛ/Λ = (Y_D δY + J δX)/(Y_D² + CJ).
-    """
+    the relative one of Λ, and that of the phase of the instant."""
     amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
     jolt = -amplitude * table(phase, 3)
     b = impact.slope
@@ -373,10 +366,7 @@ def _first_stretch(
 
 
 def _longest(impact: Any, amplitude: Values, tolerance: float, name: str, turn: Values) -> NDArray:
-    """The stretch γ up to which a concave error is within the tolerance.
-
-    ``turn`` is the value of C - s at which the error is largest.
-    """
+    """The stretch γ up to which a concave error is within the tolerance."""
 
     def error(stretch: Values, amplitude: Values, *fields: NDArray) -> Values:
         return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude)[name]
@@ -398,11 +388,7 @@ def _longest(impact: Any, amplitude: Values, tolerance: float, name: str, turn: 
 
 @np.errstate(invalid="ignore", divide="ignore")
 def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
-    """Where functions fall to zero for the last time in brackets, before which they may be NaN.
-
-    It is the zero of a polynomial through some values of a function; as long as its last
-    coefficients are not small, that in the interval next to the zero.
-    """
+    """Where functions fall to zero for the last time in brackets, before which they may be NaN."""
     low, high = bracket
     columns = np.arange(low.size)
     for _ in range(ROUNDS):
@@ -497,10 +483,7 @@ def contact_values(
 
 
 def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
-    """The n-T orbits on the stable side of the saddle-node, shape (rows, N), NaN if there is none.
-
-    They are solved from the instants of the corrected model, and are not searched for elsewhere.
-    """
+    """The n-T orbits on the stable side of the saddle-node, (rows, N), NaN if there is none."""
     periods = np.broadcast_to(equations.periods, amplitude.shape)
     guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
     solution = newton(equations, guess)

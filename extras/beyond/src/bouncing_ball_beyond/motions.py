@@ -97,21 +97,7 @@ TRANSIENT = "it looks chaotic, but a ball beside it comes to rest or repeats: it
 
 
 def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
-    """Derivatives of each next (τ, u) by (τ, u) of an impact.
-
-    Parameters
-    ----------
-    balls : Balls
-    record : ndarray, shape (impacts, 8, balls)
-        As of :func:`.simulation.follow`.
-    lifts : ndarray of bool, shape (impacts, balls)
-        As of :func:`lift_offs`.
-
-    Returns
-    -------
-    ndarray, shape (2, 2, impacts, balls)
-        Zero where a ball leaves by the lift-off after a rest, because it forgets its past there.
-    """
+    """Derivatives of each next (τ, u) by (τ, u) of an impact."""
     ball = balls.ball
     table = balls.table
     amplitude = balls.amplitude
@@ -200,14 +186,7 @@ def product(maps: NDArray) -> NDArray:
 
 
 def ends_of(balls: Balls, impacts: int) -> dict:
-    """The motions on which balls end that are followed for a number of impacts, or some more.
-
-    Returns
-    -------
-    dict of ndarray
-        The variables of :func:`motion_of`, each over the balls, with ``end_speed``, a closing
-        speed.
-    """
+    """The motions on which balls end that are followed for a number of impacts, or some more."""
     impacts = whole_number("impacts", impacts)
     numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
     found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
@@ -248,25 +227,17 @@ def _take(track: dict, which: Any) -> dict:
 @np.errstate(all="ignore")
 def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
     """Follow balls until the motion of each is known, and store it. Deviations of long motions
-    overflow, and vanish at a lift-off.
-
-    ``track`` has the indices ``lane`` of the balls; ``vector``, a deviation of length 1; ``climb``,
-    the logarithm of its growth above the least one since the last lift-off, and ``most``, the
-    greatest climb since then; ``lifted`` and ``lifted_at``, the number of the impact before the
-    last lift-off, -1 if there was none, and its time; ``marginal``, whether the neighbours of a
-    ball that returns come closer too slowly; and ``sections``, the growth, the time and the
-    logarithm of the contraction of areas in each section.
-    """
+    overflow, and vanish at a lift-off."""
     zeros = np.zeros(lane.size)
     track = {
-        "lane": lane,
-        "vector": np.array([zeros + 1, zeros]),
-        "climb": zeros,
-        "most": zeros,
-        "lifted": zeros - 1,
-        "lifted_at": zeros,
-        "marginal": zeros > 0,
-        "sections": np.zeros((0, 3, lane.size)),
+        "lane": lane,  # indices of the balls
+        "vector": np.array([zeros + 1, zeros]),  # a deviation of length 1
+        "climb": zeros,  # the logarithm of its growth above the least since the last lift-off
+        "most": zeros,  # the greatest climb since then
+        "lifted": zeros - 1,  # the number of the impact before the last lift-off, -1 without one
+        "lifted_at": zeros,  # its time
+        "marginal": zeros > 0,  # whether neighbours of a ball that returns come closer too slowly
+        "sections": np.zeros((0, 3, lane.size)),  # growth, time and ln of the areas of sections
     }
     seen = 0
     while track["lane"].size and seen < impacts:
@@ -346,15 +317,7 @@ def times(record: NDArray, after: Balls) -> NDArray:
 
 
 def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> dict:
-    """The first recurrence of each ball, seen from the impact after those recorded.
-
-    Returns
-    -------
-    dict of ndarray
-        ``impacts`` and ``periods`` until a ball returns, the modulus ``radius`` of the larger
-        multiplier, the logarithm ``areas`` of the contraction of areas, and whether the motion
-        ``repeats``, or its neighbours come closer too slowly (``marginal``).
-    """
+    """The first recurrence of each ball, seen from the impact after those recorded."""
     n, _, m = record.shape
     half = n // 2
     phase = np.vstack([record[:, 1], after.phase])
@@ -684,8 +647,7 @@ def lyapunov(
     xarray.Dataset
         As of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m with its larger
         multiplier μ, and -∞ if the later motion does not depend on earlier impacts. The error is
-        NaN
-        if a ball was followed for too few relaxation lengths of about 1/(1 - r²) impacts.
+        NaN if a ball was followed for too few relaxation lengths of about 1/(1 - r²) impacts.
 
     Examples
     --------
@@ -820,16 +782,7 @@ def basins(
 
 
 def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
-    """The different motions on which balls end.
-
-    Returns
-    -------
-    which : ndarray of int
-        The number of the motion of each ball.
-    motions : dict of lists
-        Of each motion the ``kind``, ``impacts`` and ``periods``, by which they are sorted, and its
-        fastest impact.
-    """
+    """The different motions on which balls end."""
     kinds = ends["kind"].astype(str)
     balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])
     which = np.full(kinds.size, -1)

@@ -451,11 +451,7 @@ def _answer(
 
 
 def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
-    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke.
-
-    Λ is proportional to the square of the frequency. That of a bifurcation hardly changes with it,
-    so that the factor is a fixed point which is found in some steps.
-    """
+    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke."""
     path = Frequency()
     times = np.sqrt(exact[name] / amplitude)
     for _ in range(30):

@@ -134,12 +134,7 @@ def instants(
     amplitude: Values,
 ) -> tuple[NDArray, NDArray]:
     r"""The times after landings at which the gap is that at which impacts of the ball start, and
-    the speeds.
-
-    f = δ - h(u) with the gap h(u) at the start has f″ ≥ -max(1 + w″)(1 + \|h′\|) if h′ is constant,
-    as it is for the instants of a linear contact. For others a step may pass the zero of f, and
-    Newton's method goes back to it.
-    """
+    the speeds."""
     t = landed.copy()
     speed = np.empty_like(t)
     strongest = 1 + table.bounds[2] * amplitude
@@ -202,10 +197,7 @@ def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, left: NDArray) -> NDArray:
-    """Which balls may not rise after the time ``left``, or not through the level of the table.
-
-    The others do against the strongest relative gravity, the greatest 1 + w″.
-    """
+    """Which balls may not rise after the time ``left``, or not through the level of the table."""
     return (gap < 0) & ((w <= strongest * left) | (w * w + 2 * strongest * gap <= 0))
 
 
@@ -217,11 +209,7 @@ def reduced(phase: Values) -> tuple[NDArray, NDArray]:
 
 @np.errstate(divide="ignore", invalid="ignore")
 def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
-    """The time of the flights of balls up to their next impacts, and their closing speeds.
-
-    Where a contact resumes, the speed is negative. The time is NaN where it does so for a law whose
-    force does not vanish where δ + κδ′ = 0.
-    """
+    """The time of the flights of balls up to their next impacts, and their closing speeds."""
     ball = balls.ball
     table = balls.table
     amplitude = balls.amplitude
@@ -311,10 +299,7 @@ def follow_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
 def follow_by_map(
     balls: Balls, contacts: ImpactMap, impacts: int
 ) -> tuple[NDArray, NDArray, Balls]:
-    """:func:`follow` for balls with a map of their contacts.
-
-    A ball whose contact has to be integrated waits for others, so that many are integrated at once.
-    """
+    """:func:`follow` for balls with a map of their contacts."""
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     turns, phase, speed = balls.turns.copy(), balls.phase.copy(), balls.speed.copy()
     done = np.zeros(balls.phase.size, int)
@@ -704,10 +689,7 @@ def states_at(
 
 
 def own_times(balls: Balls, above: NDArray, *given: NDArray) -> NDArray:
-    """T at times after the starts of contacts, from T above them or NaN, by a bracket.
-
-    ``given`` are the phases and speeds at the starts, and the times since then.
-    """
+    """T at times after the starts of contacts, from T above them or NaN, by a bracket."""
 
     def late(T: Values, phase: Values, speed: NDArray, since: NDArray) -> NDArray:
         on_table = float(balls.amplitude[0]), 1.0, balls.table

@@ -6,6 +6,7 @@ and where it rises fastest. The sine of the paper is :data:`SINE`. W is analytic
 parameters, the sizes and phases of the harmonics, so that complex steps give all derivatives.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import Any
@@ -26,6 +27,9 @@ ROUGH = 0.1
 """The share of the greatest harmonics in the acceleration (root of the mean square) above which
 samples do not tell by themselves how many harmonics are meant."""
 
+FUNDAMENTAL = {"harmonic_1": 1.0, "phase_1": 0.0}
+"""What is not said of a fundamental: Λ is its size, and the phase is counted from it."""
+
 Values = Any
 """Numbers or arrays, real or complex: complex steps go through all functions."""
 
@@ -36,10 +40,7 @@ CYCLE = (np.sin, np.cos)
 
 
 def swing(x: Values) -> tuple[Values, Values]:
-    """sin x and 1 - cos x, which loses no digits for a small x.
-
-    For real numbers numpy finds them faster by a tangent, at whose poles complex steps are lost.
-    """
+    """sin x and 1 - cos x, which loses no digits for a small x."""
     half = x / 2
     if getattr(x, "dtype", REAL).kind == "c" or isinstance(x, complex):
         sine = np.sin(half)
@@ -400,31 +401,40 @@ class Table:
         largest = [np.abs(self(self.grid, m)).max() + rest * sums[m + 2] for m in range(6)]
         return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
 
+    def _top(self, order: int, sign: int = 1) -> float:
+        """The phase at which a derivative of W, or its negative, is largest."""
+        start = self.grid[np.argmax(sign * self(self.grid, order))]
+        return float(self._zero(start, lambda tau: (self(tau, order + 1), self(tau, order + 2))))
+
+    def _zero(self, phase: Values, function: Callable) -> Values:
+        """The zero beside a sample of a function with a slope, by Newton's method."""
+        most = 0.1 / self.orders[-1]
+        for _ in range(6):
+            value, slope = function(phase)
+            step = np.divide(value, slope, where=slope != 0, out=np.zeros_like(value))
+            # Where the slope vanishes as well, samples are a better guess than Newton's first step.
+            phase = phase - np.clip(step, -most, most)
+        return phase
+
     @cached_property
     def lift(self) -> Values:
         """The greatest -W″: above Λ = 1/lift the table falls faster than a ball."""
-        start = self.grid[np.argmin(self(self.grid, 2))]
-        return float(-self(_polished(self, start, 3), 2))
+        return float(-self(self._top(2, -1), 2))
 
     @cached_property
     def acceleration(self) -> Values:
         """The greatest |W″|."""
-        start = self.grid[np.abs(self(self.grid, 2)).argmax()]
-        return float(abs(self(_polished(self, start, 3), 2)))
+        return max(self.lift, float(self(self._top(2), 2)))
 
     @cached_property
     def peaks(self) -> Values:
         """The greatest and the least W."""
-        values = self(self.grid)
-        return tuple(
-            float(self(_polished(self, self.grid[i], 1)))
-            for i in (values.argmax(), values.argmin())
-        )
+        return float(self(self._top(0))), float(self(self._top(0, -1)))
 
     @cached_property
     def steepest(self) -> Values:
         """The phase at which W′ is largest."""
-        return float(_polished(self, self.grid[np.argmax(self(self.grid, 1))], 2))
+        return self._top(1)
 
     @cached_property
     def slope(self) -> Values:
@@ -432,55 +442,44 @@ class Table:
         return float(self(self.steepest, 1))
 
     @cached_property
-    def _sides(self) -> Values:
-        """Times from the steepest phase to where W′ has fallen to its next minimum, and W′ there.
-
-        By samples, after the steepest phase and before it.
-        """
-        found = []
+    def _sides(self) -> dict:
+        """Samples after the steepest phase (1) and before it (-1), up to the next minimum of W′."""
+        found = {}
         for side in (1, -1):
-            time = side * np.linspace(0, TURN, 4 * SAMPLES * self.orders[-1] + 1)
-            falls = side * self(self.steepest + time, 2) <= 0
-            falls[0] = True
-            time = time[: int(np.argmin(falls)) or len(time)]
-            found.append((time, self(self.steepest + time, 1)))
+            phase = self.steepest + side * np.linspace(0, TURN, 4 * len(self.grid) - 3)
+            rises = side * self(phase, 2) > 0
+            rises[0] = False
+            found[side] = phase[: int(np.argmax(rises)) or len(phase)]
         return found
 
     @cached_property
     def _turns(self) -> tuple:
-        """Times from the steepest phase to where W′ has fallen to zero, and angles of (W′, -W″)."""
-        time = np.linspace(0, TURN, 4 * SAMPLES * self.orders[-1] + 1)
-        rises = self(self.steepest + time, 1) > 0
-        time = time[: int(np.argmin(rises)) + 2]
-        phase = self.steepest + time
+        """Samples from the steepest phase to where W′ is zero, and angles of (W′, -W″)."""
+        phase = self.steepest + np.linspace(0, TURN, 4 * len(self.grid) - 3)
+        phase = phase[: int(np.argmax(self(phase, 1) <= 0)) + 1]
         angles = np.arctan2(-self(phase, 2), self(phase, 1))
-        return time, np.maximum.accumulate(np.maximum(angles, 0))
+        return phase, np.maximum.accumulate(np.maximum(angles, 0))
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
         """The phase after the steepest one, or before it (-1), at which W′ is a given slope.
 
         It is the steepest phase for slopes above the greatest one.
         """
-        time, slopes = self._sides[0 if side > 0 else 1]
+        phase = self._sides[side]
+        slopes = self(phase, 1)
         slope = np.clip(slope, slopes[-1], slopes[0])
-        phase = self.steepest + np.interp(-slope, -slopes, time)
-        for _ in range(4):
-            bend = self(phase, 2)
-            step = np.divide(self(phase, 1) - slope, bend, where=bend != 0, out=np.zeros_like(bend))
-            # Next to the steepest phase the samples are a better guess than Newton's first step.
-            phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
-        return phase
+        start = np.interp(-slope, -slopes, phase)
+        return self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
 
     def phase_of_angle(self, angle: Values) -> Values:
         """The phase after the steepest one at which (W′, -W″) has turned by an angle up to π/2."""
-        time, angles = self._turns
-        phase = self.steepest + np.interp(angle, angles, time)
+        phase, turned = self._turns
         x, y = np.cos(angle), np.sin(angle)
-        for _ in range(4):
-            apart = x * self(phase, 2) + y * self(phase, 1)
-            step = apart / (x * self(phase, 3) + y * self(phase, 2))
-            phase = phase - np.clip(step, -0.1 / self.orders[-1], 0.1 / self.orders[-1])
-        return phase
+
+        def apart(tau: Values) -> tuple:
+            return x * self(tau, 2) + y * self(tau, 1), x * self(tau, 3) + y * self(tau, 2)
+
+        return self._zero(np.interp(angle, turned, phase), apart)
 
     def instant(self, speed: Values, amplitude: Values) -> tuple:
         """Where w′ has fallen to a speed: the phase, w, -w″ and -w‴ there, NaN where it does not.
@@ -604,14 +603,6 @@ class Table:
         return settled + wait, leaves
 
 
-def _polished(table: Table, phase: Values, order: int) -> Values:
-    """The zero of a derivative of W beside a sample, by Newton's method."""
-    for _ in range(6):
-        slope = table(phase, order + 1)
-        phase = phase - np.clip(table(phase, order) / slope if slope else 0.0, -0.1, 0.1)
-    return phase
-
-
 @lru_cache(maxsize=64)
 def _lift_offs(table: Table, amplitude: Values) -> Values:
     if amplitude * table.lift <= 1:
@@ -621,7 +612,7 @@ def _lift_offs(table: Table, amplitude: Values) -> Values:
     falling = table(phases, 3) < 0
     if not falling.any():
         # The samples step over a short fall of the table.
-        return np.array([_polished(table, table.grid[np.argmin(table(table.grid, 2))], 3) % TURN])
+        return np.array([table._top(2, -1) % TURN])
     return np.sort(phases[falling] % TURN)
 
 

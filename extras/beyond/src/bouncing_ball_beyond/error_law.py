@@ -2,20 +2,10 @@
 
 The error of a quantity q is (q_contact - q)/q, relative to the restitution model (Eqs. 37, 38).
 
-The law
--------
-All n-T orbits of the restitution model have the closing speed v₀ = 2nπ/(1 + r). In the plane
-(X, Y) = Λ(cos ψ, sin ψ) of the table's phase ψ at the impact they lie on the line X = C with
-C = v₀ - nπ, at the distance Λ from the origin: Y₀ = √(Λ² - C²). A contact of finite duration D is
-an impact at the centroid of its force, t_c after the touch, whose impulse grows by σ for each unit
-of the load 1 - Y. To first order in D its orbit is that of the restitution model with C - s in
-place of C, turned by -s, and delayed by t_c, where s = σ/(1 + b) and b = d(rv)/dv at v₀:
-
-    Y₁ = √(Λ² - (C - s)²),    cos ψ₁ = (C - s)/Λ.
-
-This holds from the saddle-node, where the height is wrong by √(2Cs)/H, to the period doubling.
-On another table, C - s is the w′ of the instant, and W takes the place of the sine in all formulas.
-The proof is in appendix.md, and docs/error-law.md says how good the law is.
+An n-T orbit of the restitution model has the closing speed v₀ = 2nπ/(1 + r), and the table has the
+velocity C = v₀ - nπ at its impacts and Y = -w″. By the law, the orbit on a contact is that with
+C - s in place of C, its phase turned by -s, its impact delayed by t_c. The law and how good it is
+are in docs/error-law.md, and the proof in appendix.md.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,17 +1,11 @@
 """The motions on which balls end: permanent contact, a motion that repeats, or chaos.
 
-A ball is followed together with the derivative M of its motion over its last k impacts. If it has
-returned to where it was k impacts ago, up to a small distance, and if the fixed point of the
-motion,
+A motion repeats after k impacts if the ball has returned, if the fixed point is as near,
 
     s* = s + (I - M)⁻¹ (F(s) - s),
 
-is as near, and if the multipliers of M are below 1 by a margin, then the ball is on a periodic
-motion with k impacts. A ball that *sticks* to the table after instantaneous impacts leaves it in a
-state that does not depend on earlier impacts: a motion that sticks twice is *locked*. A contact of
-finite duration sticks if it lasts longer than two free impacts; where these do not end, as from
-ζ = 1 on, none does. What neither repeats nor rests is called chaotic if neighbouring motions
-separate exponentially, and undecided otherwise.
+and if the multipliers of M, the derivative over these impacts, are below 1 by a margin. It is
+locked if the ball also sticks to the table; docs/orbits.md says when it does.
 """
 
 from dataclasses import replace

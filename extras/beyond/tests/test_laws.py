@@ -1,5 +1,7 @@
 """Force laws by an integrator in plain time, by closed forms, and by the spring and damper."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -590,3 +592,38 @@ def test_few_contacts_are_as_many(release):
     few = law.first_impact(tau[:3], u[:3], 1.5)
     np.testing.assert_allclose(few[0], many[0][:3], rtol=CLOSE)
     np.testing.assert_allclose(few[1].speed, many[1].speed[:3], rtol=CLOSE)
+
+
+@pytest.mark.parametrize("law", [tsuji, hunt_crossley, kuwabara_kono])
+def test_contacts_in_one_panel_are_those_in_many(law: Callable) -> None:
+    """States and derivatives of contacts that are guessed from free impacts, without the guess."""
+    ball = law(restitution=0.6, duration=0.2, speed=3.0)
+    u = np.array([1.0, 2.0, 3.0, 7.0])
+    tau = np.array([0.3, 2.0, 4.0, 6.0])
+    T = ball.first_release(tau, u, 1.2)
+    steps = 1j * H * np.eye(4)[..., np.newaxis]
+    given = tau + steps[0], u + steps[1], 1.2 + steps[2], 1.0, T * (1 + 0.01 * steps[3])
+    impacts = (ball._followed(*given, guessed=each)[1] for each in (True, False))
+    # The gap is zero but for rounding, as the fourth power of the release function.
+    guessed, alone = (np.array([x.duration, x.speed, x.release]) for x in impacts)
+    assert not np.array_equal(guessed, alone)
+    np.testing.assert_allclose(guessed.real, alone.real, rtol=1e-12, atol=1e-13)
+    size = np.abs(alone.imag).max(axis=(1, 2), keepdims=True)
+    assert np.all(np.abs(guessed.imag - alone.imag) <= 1e-11 * size)
+
+
+def test_derivatives_in_one_panel_are_those_of_differences() -> None:
+    """Derivatives by the time, the speed, Λ and a parameter beside central differences."""
+    ball = tsuji(restitution=0.6, duration=0.2, speed=3.0)
+    stiffness = ball.values["stiffness"]
+    x = np.array([2.0, 3.0, 1.2, stiffness])
+    T = ball.first_release(x[0], x[1], x[2])
+
+    def end(x: np.ndarray) -> np.ndarray:
+        return np.array(ball.at(stiffness=x[3]).contact(x[0], x[1], T, x[2])[:3])
+
+    for i, step in enumerate(1e-4 * x):
+        nudge = np.eye(4)[i]
+        along = end(x + 1j * H * nudge).imag / H
+        slopes = [(end(x + h * nudge) - end(x - h * nudge)) / (2 * h) for h in (step, step / 2)]
+        np.testing.assert_allclose(along, (4 * slopes[1] - slopes[0]) / 3, rtol=1e-7, atol=1e-9)

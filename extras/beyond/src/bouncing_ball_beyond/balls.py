@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bouncing_ball_beyond import one_ball, oscillator
 from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
@@ -161,6 +162,21 @@ class Ball:
     ) -> Impact:
         """The end of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
+
+    def release_slopes(
+        self,
+        tau: Values,
+        u: Values,
+        T: Values,
+        places: NDArray,
+        amplitude: Values,
+        table: Table = SINE,
+    ) -> NDArray | None:
+        """About the derivative of the release function at T times places, shape (..., places).
+
+        None if it costs as much as the contacts up to all these times.
+        """
+        return None
 
     def signature(self, u: Values) -> Signature:
         """What free impacts of the closing speed u are, as seen from outside."""

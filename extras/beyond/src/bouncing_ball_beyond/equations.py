@@ -23,7 +23,7 @@ FAR = 10.0
 """A clearance is at most this large: the value where a flight does not come back to the table."""
 
 
-POINT = (1.0, -1.0), (0.5, -0.5), 1e-6
+POINT = (1.0,), (1.0,), 1e-7
 CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
 """Nodes, weights and steps of the differences for gradients of tests. Errors of 1e-10 do not move
 the points that Newton's method finds; tangents of curves have errors of 1e-12."""
@@ -291,7 +291,9 @@ class OrbitEquations:
         rates = np.ones(len(nearby))
         if self.kind in MULTIPLIERS and self.ball.lasts:
             rates = linear.derivatives[..., 0, 2].prod(axis=-1)
-        beside = np.stack([values * rates, rates])[:, rows:].reshape(2, len(nodes), length, rows)
+        here, beside = np.split(np.stack([values * rates, rates]), [rows], axis=1)
+        beside = beside.reshape(2, len(nodes), length, rows)
+        beside -= here[:, np.newaxis, np.newaxis]
         slopes = np.einsum("n,inlr->irl", weights, beside) / shift
         value = values[:rows]
         gradient = slopes[0] - value[:, np.newaxis] * slopes[1]
@@ -397,6 +399,12 @@ class OrbitEquations:
         """How far release functions are below zero where they turn back: the least of all."""
         if not self.ball.lasts:
             return np.full(len(z), FAR)
+        x, ball, amplitude = self.split(z)
+        table = self.table_at(z[:, self.size :])
+        length = x[..., 2]
+        places = samples_in(length)
+        slopes = ball.release_slopes(x[..., 0], x[..., 1], length, places, amplitude, table)
+        falling = None if slopes is None else -slopes
         during = self._during(z)
 
         def release(t: NDArray) -> Any:
@@ -405,8 +413,7 @@ class OrbitEquations:
         def falls(t: NDArray) -> NDArray:
             return -_derivative(release, t)
 
-        length = self.split(z)[0][..., 2]
-        return turns_back(falls, lambda t: -release(t), length).min(axis=-1)
+        return turns_back(falls, lambda t: -release(t), length, slopes=falling).min(axis=-1)
 
     def max_height(self, z: NDArray) -> NDArray:
         """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.
@@ -553,6 +560,11 @@ def _longest(times: NDArray) -> float:
     return np.fmax.reduce(times, axis=None, initial=0.0)
 
 
+def samples_in(ends: NDArray, waves: int = 1) -> NDArray:
+    """Places on [0, 1] at which :func:`turns_back` takes samples."""
+    return np.linspace(0, 1, int(np.clip(32 * waves * _longest(ends) / (2 * np.pi), 32, 2000)) + 1)
+
+
 def turns_back(
     slope: Callable,
     value: Callable,
@@ -561,6 +573,7 @@ def turns_back(
     first: bool = False,
     among: NDArray | None = None,
     waves: int = 1,
+    slopes: NDArray | None = None,
 ) -> NDArray:
     """The least value at a local minimum of functions of the time within (0, ends).
 
@@ -579,17 +592,18 @@ def turns_back(
         Further times at which the slope is sampled.
     waves : int
         How many times more samples a table of so many waves in a period needs.
+    slopes : ndarray, shape (..., n), optional
+        What the slope about is at the samples.
 
     Returns
     -------
     ndarray
         Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
     """
-    samples = int(np.clip(32 * waves * _longest(ends) / (2 * np.pi), 32, 2000)) + 1
-    times = ends[..., np.newaxis] * np.linspace(0, 1, samples)
+    times = ends[..., np.newaxis] * samples_in(ends, waves)
     if among is not None:
         times = np.sort(np.concatenate([times, among], axis=-1), axis=-1)
-    slopes = slope(times)
+    slopes = slope(times) if slopes is None else slopes
     turns = (slopes[..., :-1] < 0) & (slopes[..., 1:] >= 0)
     if not turns.any():
         return np.full(ends.shape, FAR)

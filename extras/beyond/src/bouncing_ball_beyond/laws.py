@@ -21,9 +21,16 @@ from bouncing_ball_beyond.root_time import (
     PERIODS,
     WHOLE,
     ContactMotion,
+    Guess,
+    Rows,
+    event_rate,
     follow,
+    follow_to,
+    linearised,
     load_of,
+    rates,
     values_by_row,
+    whole_panel,
 )
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
@@ -43,8 +50,12 @@ FACTOR, DEGREE = 8.0, 23
 """The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
 ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴."""
 
-FEW_WHOLE = 10
-"""So many contacts are followed in one panel each, which is faster only for few of them."""
+NEIGHBOURS = 2.0
+"""The range of speeds of contacts that are guessed from one free impact."""
+
+SPARE = 1e-9
+"""The largest last Legendre coefficients of v of this one over its speed. With a load as large as
+the force they are some hundred times as large."""
 
 FEW = 8
 """So many intervals of a check may have a kink; if there are more, a force is not analytic."""
@@ -329,27 +340,44 @@ class ForceLaw(Ball):
             return None
         return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 
-    def free_push(self, u: Values) -> NDArray:
-        """F of free impacts of one ball over their lengths and speeds, about that at speeds u.
+    @np.errstate(all="ignore")
+    def guess(self, u: NDArray, T: NDArray) -> Guess:
+        """Free impacts of one ball, about those at the speeds u and of the lengths T."""
+        numbers, which = np.unique(np.floor(np.log(u) / np.log(NEIGHBOURS)), return_inverse=True)
+        for k in set(numbers) - self._free_impacts.keys():
+            self._free_impacts[k] = self._free_impact(NEIGHBOURS ** (k + 0.5))
+        most = min(len(self._free_impacts[k]) for k in numbers)
+        known = [self._free_impacts[k][-most] for k in numbers]
+        push = np.stack([push for push, _ in known], axis=-1)[:, which]
+        return Guess(WHOLE[-most], push * (u / T), which, [inverse for _, inverse in known])
 
-        Its nodes are those of a whole contact in one panel, shape (nodes, rows).
+    def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
+        """F of a free impact over its length and speed, and the inverse of its linear equations.
+
+        They are those at the nodes of each of :data:`WHOLE` that are enough, or of the last one.
         """
-        number = np.floor(np.log(u) / np.log(FACTOR))
-        for k in set(number) - self._pushes.keys():
-            self._pushes[k] = self._free_push(FACTOR ** (k + 0.5))
-        return np.stack([self._pushes[k] for k in number], axis=-1)
-
-    def _free_push(self, u: Values) -> NDArray:
-        """The same for one free impact."""
-        given = {**self.values, "u": u}
-        T = float(self.free(np.array([u]))[0])
-        p, v = (-x for x in self.contact(0.0, u, T * WHOLE.nodes, 0.0, 0.0)[1:3])
-        lever = self.root * p ** (1 - 1 / self.root)
-        return -lever * self.force_at(p, v, 0.0, given) * T / u
+        *_, finest = WHOLE
+        T = np.ravel(self.free(np.array([u])))
+        _, impact = self._followed(0.0, u, 0.0, 0.0, T * finest.nodes, guessed=False)
+        duration, gap, speed, _ = impact
+        states = np.stack([(-gap) ** (1 / self.root), -speed, duration], axis=1)
+        coefficients = finest.coefficients @ states
+        at_rest = {**self.values, "tau": 0.0, "u": u, "amplitude": 0.0, "gravity": 0.0}
+        at_rest["table"] = SINE
+        motion = ContactMotion(self.root, self.force_at, self._release, (), at_rest, {})
+        found = []
+        for gauss in WHOLE:
+            order = gauss.nodes.size
+            if gauss is finest or np.abs(coefficients[order - 2 :, 1]).max() < SPARE * u:
+                nodes = legendre.legval(2 * gauss.nodes - 1, coefficients)[..., np.newaxis]
+                push = rates(motion, nodes)[1][:, 0] * T / u
+                matrix = linearised(motion._replace(gauss=gauss), nodes, T).matrix()[0]
+                found.append((push, np.linalg.inv(matrix)))
+        return found
 
     @cached_property
-    def _pushes(self) -> dict[float, NDArray]:
-        """What :meth:`free_push` has found, by the numbers of the ranges."""
+    def _free_impacts(self) -> dict[float, list]:
+        """What :meth:`_free_impact` has found, by the numbers of the ranges."""
         return {}
 
     @cached_property
@@ -410,20 +438,38 @@ class ForceLaw(Ball):
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
-    def _followed(
+    @np.errstate(all="ignore")
+    def release_slopes(
         self,
         tau: Values,
         u: Values,
+        T: Values,
+        places: NDArray,
         amplitude: Values,
-        gravity: Values,
-        T: Values = None,
-        longest: Values = PERIODS,
         table: Table = SINE,
-    ) -> tuple[Values, Impact]:
-        """The root time and the state at the root time T or at the first release."""
-        values = {**self.values, "tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
-        values |= table.parameters
-        rows = values_by_row(values if T is None else values | {"T": T})
+    ) -> NDArray | None:
+        """From polynomials through the nodes of contacts that are found in one panel each."""
+        given = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": 1.0, "T": T}
+        rows, motion, start, _ = self._started(given, table)
+        guess = self._guessed(rows)
+        if guess is None:
+            return None
+        motion = motion._replace(gauss=guess.gauss)
+        panel, good = whole_panel(motion, start, rows.given["T"], guess.push, guess)
+        if not good.all():
+            return None
+        states = panel.states(places, guess.gauss)
+        slopes = event_rate(motion, motion.release, states)[1]
+        return slopes.T.reshape(*rows.shape, places.size)
+
+    def _started(
+        self, values: Mapping, table: Table
+    ) -> tuple[Rows, ContactMotion, NDArray, NDArray]:
+        """Contacts that are given: their rows, their motion, q and v, and the derivatives of these.
+
+        The derivatives of the latter have the shape (2, directions, rows).
+        """
+        rows = values_by_row({**self.values, **values, **table.parameters})
         given = rows.given
         given["table"] = table
         none = np.zeros((rows.directions, rows.size))
@@ -435,33 +481,60 @@ class ForceLaw(Ball):
             self.root, self.force_at, self._release, tuple(kinks), given, rows.steps
         )
         # Where a contact resumes, the ball moves away, u < 0, from the line p + κp′ = 0.
-        stepped = motion.stepped()
-        kappa = self.at(**self.own(stepped)).kappa
-        start = (-kappa * np.minimum(stepped["u"], 0.0)) ** (1 / self.root)
-        by = np.array([np.imag(start) + none, rows.steps.get("u", none)])
+        q = np.zeros(rows.size)
+        by = np.array([none, rows.steps.get("u", none)])
+        if self.lag and np.any(given["u"] < 0):
+            stepped = motion.stepped()
+            kappa = self.at(**self.own(stepped)).kappa
+            start = (-kappa * np.minimum(stepped["u"], 0.0)) ** (1 / self.root)
+            by[0] = np.imag(start)
+            q = np.atleast_2d(np.real(start))[0]
         if "start_speed" not in self.needs:
             rows.steps.pop("u", None)
-        u = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
-        given["u"] = u
+        given["u"] = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
+        return rows, motion, np.array([q, given["u"]]), by
+
+    def _guessed(self, rows: Rows) -> Guess | None:
+        """Free impacts in the place of contacts that end; None if they are no good guess."""
+        u = rows.given["u"]
+        if self.root == 1 or self.kinks or not rows.size or not np.all(u > 0):
+            return None
+        return self._origin.guess(u, rows.given["T"])
+
+    def _followed(
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values,
+        T: Values = None,
+        longest: Values = PERIODS,
+        table: Table = SINE,
+        *,
+        guessed: bool = True,
+    ) -> tuple[Values, Impact]:
+        """The root time and the state at the root time T or at the first release."""
+        values = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
+        rows, motion, start, by = self._started(values if T is None else values | {"T": T}, table)
+        given = rows.given
+        u = given["u"]
         period = np.full(rows.size, 2 * np.pi)
-        push = None
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
             # A table at rest has no period; most impacts last some three times P/u, and end before.
             period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
+            ends, slopes = follow(motion, start, by, first, period, longest)
         else:
             # So many panels are about the least that impacts need.
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
-            if self.root > 1 and 0 < rows.size <= FEW_WHOLE and not self.kinks and np.all(u > 0):
-                push = self._origin.free_push(u) * u / given["T"]
-        limits = given.get("T"), rows.steps.get("T", none)
-        q = np.atleast_2d(np.real(start))[0]
-        ends = follow(motion, q, u, by, first, period, *limits, longest, push)
-        s, q, v, t = rows.joined(*ends)
-        values["table"] = table
-        return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, values))
+            by_until = rows.steps.get("T", np.zeros((rows.directions, rows.size)))
+            guess = self._guessed(rows) if guessed else None
+            ends, slopes = follow_to(motion, start, by, first, period, given["T"], by_until, guess)
+        s, q, v, t = rows.joined(ends, slopes)
+        given = {**self.values, **values, **table.parameters, "table": table}
+        return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, given))
 
 
 def check_force(law: ForceLaw) -> None:

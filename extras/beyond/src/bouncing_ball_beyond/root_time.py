@@ -20,6 +20,7 @@ An array of contacts has the shape (rows,), and one of values at nodes (nodes, r
 are (directions, rows).
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -39,8 +40,11 @@ SMOOTH, FALLING = 1e-13, 0.02
 """The same, if the coefficients do not fall as those of an analytic function do: by this factor
 from the middle to the end. Beyond a kink it is (1/2)² to (1/2)³, and their square is no error."""
 
-SWEEPS = 20
-"""The largest number of sweeps of a panel."""
+SWEEPS, NEWTON = 20, 8
+"""The largest number of sweeps of a panel, and of steps of Newton's method for a whole contact."""
+
+FEW_WHOLE = 10
+"""Newton's method for whole contacts is faster than panels only for so few."""
 
 CONVERGED, SETTLED = 1e-13, 1e-12
 """Changes of v in a sweep over its greatest value: where the sweeps stop, and what is enough."""
@@ -51,6 +55,9 @@ With these, contacts of four laws took the least number of sweeps."""
 
 NEAR = 1e-13
 """The last step of Newton's method to an event, over the length of the panel in which it is."""
+
+FAR_OFF = 0.5
+"""The largest first change of v, over its greatest value, in a contact that is like its guess."""
 
 SAME = 1e-10
 """Two events are the same if they are nearer, over the length of their panel."""
@@ -72,6 +79,10 @@ ROWS = 1000
 FEW_CONTACTS = 50
 """The linear equations of so few contacts are solved as such and not by sweeps. With m = 1 they are
 nearly linear themselves, and solved by Newton's method."""
+
+FEW_ENTRIES = 2 * 80 * 80
+"""The matrices of linear equations that are solved as such, for whole contacts: they fit into a
+processor's cache."""
 
 TINY = 1e-300
 
@@ -101,8 +112,37 @@ class Gauss(NamedTuple):
         return cls((x + 1) / 2, weights / 2, integrals, integrals @ integrals, coefficients)
 
 
-PANEL, WHOLE = Gauss.of_order(20), Gauss.of_order(64)
+PANEL = Gauss.of_order(20)
+WHOLE = tuple(Gauss.of_order(n) for n in (32, 48, 64, 80))
 """The nodes of a panel, and those of a whole contact in one panel."""
+
+
+class Guess(NamedTuple):
+    """Whole contacts as they would be without a load: F at their nodes, shape (nodes, rows).
+
+    Row i has the matrix inverses[which[i]], the inverse of that of :meth:`Linearised.matrix`.
+    """
+
+    gauss: Gauss
+    push: NDArray
+    which: NDArray
+    inverses: Sequence[NDArray]
+
+    def of(self, rows: NDArray) -> "Guess":
+        """Those of some rows."""
+        return self._replace(push=self.push[:, rows], which=self.which[rows])
+
+    def corrected(self, missing: NDArray) -> NDArray:
+        """About what is to be added to F that misses so much, shape (nodes, ..., rows)."""
+        if len(self.inverses) == 1:
+            flat = self.inverses[0] @ missing.reshape(len(missing), -1)
+            return flat.reshape(missing.shape)
+        found = np.empty_like(missing)
+        for k, inverse in enumerate(self.inverses):
+            at = self.which == k
+            part = missing[..., at]
+            found[..., at] = (inverse @ part.reshape(len(part), -1)).reshape(part.shape)
+        return found
 
 
 class Rows(NamedTuple):
@@ -137,18 +177,18 @@ def values_by_row(values: Mapping) -> Rows:
     """:class:`Rows` of numbers and arrays that broadcast."""
     arrays = {name: np.asarray(value) for name, value in values.items()}
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
-    is_complex = any(np.iscomplexobj(x) for x in arrays.values())
-    ahead = [x.real for x in arrays.values() if x.ndim == len(shape) > 0]
-    beside = is_complex and all(np.array_equal(x, x[:1] + 0 * x, equal_nan=True) for x in ahead)
-    inner = shape[1:] if beside and shape else shape
-    directions = (shape[0] if beside and shape else 1) if is_complex else 0
-    size = int(np.prod(inner))
+    complexes = {name: x.imag for name, x in arrays.items() if x.dtype.kind == "c"}
+    ahead = (x.real for x in arrays.values() if x.ndim == len(shape))
+    beside = complexes and shape and all(((x == x[:1]) | (x != x)).all() for x in ahead)
+    inner = shape[1:] if beside else shape
+    directions = (shape[0] if beside else 1) if complexes else 0
+    size = math.prod(inner)
     given = {}
     steps = {}
     for name, x in arrays.items():
         real = x.real[0] if x.ndim > len(inner) else x.real
         given[name] = np.broadcast_to(real, inner).ravel() if x.ndim or name in LISTED else real[()]
-        if np.any(x.imag):
+        if name in complexes and complexes[name].any():
             steps[name] = np.broadcast_to(x.imag, shape).reshape(directions, size)
             given[name] = np.broadcast_to(given[name], size)
     stepped: Any = sum((step.any(axis=1) for step in steps.values()), np.zeros(directions, bool))
@@ -254,6 +294,12 @@ class Panel(NamedTuple):
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
+    def states(self, places: NDArray, gauss: Gauss) -> list[NDArray]:
+        """About q, v and t at places on [0, 1], each of the shape (places, rows)."""
+        order = gauss.nodes.size
+        values = legendre.legvander(2 * places - 1, order - 1) @ gauss.coefficients
+        return [values @ y for y in self.nodes]
+
     def pushed(self, share: NDArray, gauss: Gauss) -> NDArray:
         """F at the nodes of the first part of each panel, by the polynomial that it is."""
         coefficients = gauss.coefficients @ self.push
@@ -294,24 +340,31 @@ class Linearised(NamedTuple):
         """What changes of the state change of F."""
         return self.by_q * q + self.by_v * v + self.by_t * t
 
-    def solved(self, known: NDArray) -> NDArray:
-        """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
+    def matrix(self) -> NDArray:
+        """The matrix of the linear system for δF of each panel, shape (rows, nodes, nodes).
+
+        In units of the length of the panel and of a speed it is the same in all units.
+        """
         by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
         h = self.h[:, np.newaxis, np.newaxis]
         once = h * self.gauss.integrals
         twice = h * h * self.gauss.twice
         time = once @ (bend * twice)
-        matrix = np.eye(len(known)) - by_v * once - by_q * twice - by_t * time
-        return np.linalg.solve(matrix, np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
+        return np.eye(self.gauss.nodes.size) - by_v * once - by_q * twice - by_t * time
 
-    def swept(self, known: NDArray) -> NDArray:
+    def solved(self, known: NDArray) -> NDArray:
+        """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
+        return np.linalg.solve(self.matrix(), np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
+
+    def swept(self, known: NDArray, guess: Guess | None = None) -> NDArray:
         """As :meth:`solved`, by sweeps; they converge as those of the motion have done."""
-        push = known
+        push = guess.corrected(known) if guess else known
         rate = self.integrated(push)
         change = np.zeros(rate.shape[1:])
         for _ in range(2 * SWEEPS):
             along = self.integrated(rate)
-            push = known + self.felt(along, rate, self.time(along))
+            felt = known + self.felt(along, rate, self.time(along))
+            push = push + guess.corrected(felt - push) if guess else felt
             before = rate
             rate = self.integrated(push)
             earlier = change
@@ -354,14 +407,17 @@ def solve_panel(
     *,
     push: Values = 0.0,
     newton: bool = False,
+    guess: Guess | None = None,
+    sweeps: int = SWEEPS,
 ) -> Panel:
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
     An event is found if the last step to it is at most ``within``. ``push`` is a guess of F.
 
     The sweeps are Picard's, or steps of Newton's method. With these the panel of a ball that lies
-    on the table may be as long as many oscillations of its contact, which have died out. In each
-    sweep a step of Newton's method also moves the end of a panel towards its event.
+    on the table may be as long as many oscillations of its contact, which have died out. Those of
+    whole contacts have the linear equations of a guess in place of their own. In each sweep a step
+    of Newton's method also moves the end of a panel towards its event.
     """
     q0, v0, t0 = start
     _, weights, integrals, *_ = motion.gauss
@@ -370,7 +426,7 @@ def solve_panel(
     moved = 0.0
     early, change = np.zeros((2, v0.size))
     near = True
-    for sweep in range(SWEEPS):
+    for sweep in range(sweeps):
         q = q0 + h * (integrals @ v)
         lever = motion.lever(q)
         t = t0 + h * (integrals @ lever)
@@ -379,6 +435,8 @@ def solve_panel(
         if newton:
             missing = (force - push)[:, np.newaxis]
             force = push + linearised(motion, (q, v, t), h).solved(missing)[:, 0]
+        elif guess:
+            force = push + guess.corrected(force - push)
         push = force
         before = v
         v = v0 + h * (integrals @ push)
@@ -396,7 +454,10 @@ def solve_panel(
         # Each sweep changes v by a smaller part of the last change than the one before, and a step
         # of Newton's method by the square of that part.
         left = change * np.fmin(change / earlier, 1.0) ** (2 if newton else 1)
-        if np.all(near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)):
+        done = near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)
+        if guess:
+            done |= change > (FAR_OFF * np.abs(v).max(0) if sweep == 0 else earlier)
+        if np.all(done):
             break
         if event:
             h = h + moved
@@ -411,7 +472,13 @@ def solve_panel(
 
 
 def carried(
-    motion: ContactMotion, nodes: tuple, by: NDArray, h: NDArray, *, newton: bool
+    motion: ContactMotion,
+    nodes: tuple,
+    by: NDArray,
+    h: NDArray,
+    *,
+    newton: bool = False,
+    guess: Guess | None = None,
 ) -> NDArray:
     """Derivatives of (q, v, t) at the ends of panels, from those at the starts.
 
@@ -431,8 +498,14 @@ def carried(
     # That in which only the end of a contact moves is still at rest.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
-    few = newton or h.size <= FEW_CONTACTS
-    push[:, moves] = (linear.solved if few else linear.swept)(known[:, moves])
+    if guess:
+        few = linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
+    else:
+        few = newton or h.size <= FEW_CONTACTS
+    if few:
+        push[:, moves] = linear.solved(known[:, moves])
+    else:
+        push[:, moves] = linear.swept(known[:, moves], guess)
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
     weights = motion.gauss.weights
@@ -551,10 +624,9 @@ def _next_panel(
     start: Sequence,
     length: NDArray,
     newton: bool,
-    push: Values = 0.0,
 ) -> tuple[Panel, NDArray]:
     """The next panels, which end at their first events, and these, -1 if none. Writes ``side``."""
-    panel = solve_panel(motion, start, length, push=push, newton=newton)
+    panel = solve_panel(motion, start, length, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
     rows = np.arange(which.size)
     found = which
@@ -614,11 +686,8 @@ class _Contacts:
     ended: NDArray
     lost: NDArray
 
-    def advance(self, here: NDArray, lies: bool, push: Values = 0.0) -> None:
-        """Move some contacts to the ends of their next panels, or make these shorter.
-
-        ``push`` is a guess of F on whole contacts.
-        """
+    def advance(self, here: NDArray, lies: bool) -> None:
+        """Move some contacts to the ends of their next panels, or make these shorter."""
         motion = self.motion.of(here)
         s, *start = self.now[:, here]
         length = self.length[here]
@@ -630,8 +699,8 @@ class _Contacts:
             last = pieces == 1
         side = self.side[:, here]
         few = motion.root == 1 and here.size <= FEW_CONTACTS
-        newton = lies or few or motion.gauss is WHOLE
-        panel, which = _next_panel(motion, self.events, side, start, length, newton, push)
+        newton = lies or few
+        panel, which = _next_panel(motion, self.events, side, start, length, newton)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         least = CALM if lies else 1.0
@@ -684,17 +753,81 @@ class _Contacts:
 
 
 @np.errstate(all="ignore")
-def follow(
+def whole_panel(
+    motion: ContactMotion, start: NDArray, until: NDArray, push: NDArray, guess: Guess | None
+) -> tuple[Panel, NDArray]:
+    """Contacts up to root times in one panel each, and which of them are found.
+
+    Those that are like their guess are found by its sweeps; without one Newton's method is used.
+    """
+    newton = guess is None
+    sweeps = NEWTON if newton else SWEEPS
+    given = motion, (*start, 0 * until), until
+    panel = solve_panel(*given, push=push, newton=newton, guess=guess, sweeps=sweeps)
+    good, _ = _resolved(panel, np.abs(panel.nodes[1]).max(0), motion.gauss)
+    return panel, good
+
+
+def _in_one_panel(
     motion: ContactMotion,
-    q: NDArray,
-    v: NDArray,
+    start: NDArray,
+    by: NDArray,
+    until: NDArray,
+    push: NDArray,
+    guess: Guess | None,
+) -> tuple[NDArray, NDArray, NDArray]:
+    """As :func:`follow_to`, but at fixed root times, with the contacts that are found."""
+    panel, good = whole_panel(motion, start, until, push, guess)
+    slopes = np.zeros((4, *by.shape[1:]))
+    at = np.flatnonzero(good)
+    if by.shape[1] and at.size:
+        given = panel.of(at).nodes, np.array([*by, 0 * by[0]])[..., at], until[at]
+        of_guess = guess.of(at) if guess else None
+        slopes[1:, :, at] = carried(motion.of(at), *given, newton=guess is None, guess=of_guess)
+    return np.array([until, *panel.end]), slopes, good
+
+
+@np.errstate(all="ignore")
+def follow_to(
+    motion: ContactMotion,
+    start: NDArray,
     by: NDArray,
     length: NDArray,
     period: NDArray,
-    until: Any = None,
-    by_until: Values = 0.0,
+    until: NDArray,
+    by_until: NDArray,
+    guess: Guess | None,
+) -> tuple[NDArray, NDArray]:
+    """As :func:`follow`, contacts up to root times, with the derivatives of these.
+
+    Those that end as free impacts do are found in one panel each.
+    """
+    left = np.arange(until.size)
+    ends = np.empty((4, until.size))
+    slopes = np.zeros((4, *by.shape[1:]))
+    if guess:
+        whole = motion._replace(gauss=guess.gauss)
+        ends, slopes, good = _in_one_panel(whole, start, by, until, guess.push, guess)
+        left = np.flatnonzero(~good)
+        if 0 < left.size <= FEW_WHOLE:
+            given = start[:, left], by[..., left], until[left], guess.push[:, left], None
+            ends[:, left], slopes[..., left], good = _in_one_panel(whole.of(left), *given)
+            left = left[~good]
+    if left.size:
+        some = motion.of(left), start[:, left], by[..., left], length[left], period[left]
+        ends[:, left], slopes[..., left] = follow(*some, until=until[left])
+    return ends, slopes + _pace(motion, ends[1:]) * (by_until - slopes[0])
+
+
+@np.errstate(all="ignore")
+def follow(
+    motion: ContactMotion,
+    start: NDArray,
+    by: NDArray,
+    length: NDArray,
+    period: NDArray,
     longest: Values = PERIODS,
-    push: Values = None,
+    until: NDArray | None = None,
 ) -> tuple[NDArray, NDArray]:
     """Contacts from their starts to the first releases, or to root times.
 
@@ -704,23 +837,21 @@ def follow(
     ----------
     motion : ContactMotion
         The equation of motion.
-    q, v, length, period : array, shape (rows,)
-        q and v at the start, the length of the first panel, and the period of the table.
-    by : array, shape (2, directions, rows)
-        Derivatives of q and v.
-    until, by_until : array, shapes (rows,) and (directions, rows), optional
-        Root times at which contacts are left, and their derivatives.
+    start, by : array, shapes (2, rows) and (2, directions, rows)
+        q and v at the start, and their derivatives.
+    length, period : array, shape (rows,)
+        Those of the first panel, and of the table.
+    until : array, shape (rows,), optional
+        Root times at which contacts are left.
     longest : int or array, shape (rows,)
         A contact that lasts for so many periods is taken for a permanent one.
-    push : array, shape (nodes, rows), optional
-        A guess of F at the nodes of :data:`WHOLE`, up to the root times. Contacts that Newton's
-        method finds from it, in one panel, are followed no further.
 
     Returns
     -------
     ends, derivatives : array, shapes (4, rows) and (4, directions, rows)
         Root time, q, v and the time after the start; NaN for permanent contacts.
     """
+    q, v = start
     rows = v.size
     motion = motion._replace(given={**motion.given, "turn": period.copy()})
     events = motion.kinks if until is not None else (*motion.kinks, motion.release, _turn)
@@ -743,12 +874,6 @@ def follow(
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )
-    if push is not None:
-        contacts.motion = motion._replace(gauss=WHOLE)
-        contacts.length = until.copy()
-        contacts.advance(np.arange(rows), lies=False, push=push)
-        contacts.motion = motion
-        contacts.length = length.copy()
     for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
@@ -756,7 +881,5 @@ def follow(
         for here in np.array_split(active, -(-active.size // ROWS)):
             # Most balls have left the table after few panels, and the others lie on it.
             contacts.advance(here, lies=attempt >= PATIENT)
-    if until is not None and by.shape[1]:
-        contacts.by += _pace(motion, now[1:]) * (by_until - contacts.by[0])
     now[:, ~contacts.ended] = np.nan
     return now, contacts.by

@@ -25,7 +25,7 @@ FAR = 10.0
 
 POINT = (1.0,), (1.0,), 1e-7
 CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
-"""Nodes, weights and steps of the differences for gradients of tests. Errors of 1e-10 do not move
+"""Nodes, weights and steps of the differences for gradients of tests. Errors of 1e-7 do not move
 the points that Newton's method finds; tangents of curves have errors of 1e-12."""
 
 LASTING = 4 * np.pi
@@ -364,10 +364,7 @@ class OrbitEquations:
         return trace / (1 + determinant)
 
     def stable(self, linear: Linear) -> NDArray:
-        """Whether no neighbouring motion leaves the orbits, shape (rows,).
-
-        Neighbours come nearer, or stay near if the ball is elastic.
-        """
+        """Whether no neighbouring motion leaves the orbits, shape (rows,)."""
         trace, determinant = self.trace_and_determinant(linear)
         # The determinant of an elastic ball is 1 up to rounding.
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
@@ -575,30 +572,12 @@ def turns_back(
     waves: int = 1,
     slopes: NDArray | None = None,
 ) -> NDArray:
-    """The least value at a local minimum of functions of the time within (0, ends).
+    """The least value, or the first one, at a local minimum of functions of the time in (0, ends).
 
-    Minima are found if the slope changes its sign between two of 32 samples in a time of 2π, or of
-    those given.
-
-    Parameters
-    ----------
-    slope, value : callable
-        The function's derivative, or a positive multiple of it, and the function, of times of the
-        shape (..., n); the slope is analytic.
-    ends : ndarray
-    first : bool
-        Whether the value is that of the first minimum and not of the lowest.
-    among : ndarray, shape (..., m), optional
-        Further times at which the slope is sampled.
-    waves : int
-        How many times more samples a table of so many waves in a period needs.
-    slopes : ndarray, shape (..., n), optional
-        What the slope about is at the samples.
-
-    Returns
-    -------
-    ndarray
-        Of the shape of `ends`, FAR where there is no minimum, and at most FAR.
+    It is at most FAR, and FAR where there is no minimum. Minima are found if the slope, an analytic
+    positive multiple of the derivative, changes its sign between two of 32 samples in a time of 2π,
+    and of as many for each of the waves of a table. Further times may be among them, (..., m), or
+    the slopes at the samples be known, but for small errors.
     """
     times = ends[..., np.newaxis] * samples_in(ends, waves)
     if among is not None:

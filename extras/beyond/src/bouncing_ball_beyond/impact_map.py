@@ -108,15 +108,7 @@ def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:
 def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> ImpactMap:
     """The map of contacts up to a speed, with as many pieces downwards as are analytic.
 
-    Parameters
-    ----------
-    ball : Ball
-        One ball, with numbers as its parameters.
-    amplitude : float
-        Λ.
-    table : Table
-    top : float
-        The greatest closing speed u.
+    ``top`` is the greatest closing speed u.
     """
     pieces: list[Any] = []
     while len(pieces) < PIECES:

@@ -455,7 +455,7 @@ class ForceLaw(Ball):
         if guess is None:
             return None
         motion = motion._replace(gauss=guess.gauss)
-        panel, good = whole_panel(motion, start, rows.given["T"], guess.push, guess)
+        panel, good = whole_panel(motion, start, rows.given["T"], guess)
         if not good.all():
             return None
         states = panel.states(places, guess.gauss)

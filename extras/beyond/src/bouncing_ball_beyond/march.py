@@ -22,7 +22,7 @@ TOLERANCE = 1e-11
 """The largest last step, in units of `OrbitEquations.sizes`: the next one is one of rounding."""
 
 SPECIAL = 1e-9
-"""The same for special orbits, whose gradients have errors of 1e-10."""
+"""The same for special orbits, whose gradients have errors of 1e-7 at most."""
 
 FAST = 0.1
 """A special orbit at a point needs no new gradient if a step is so much shorter than the last."""

@@ -223,12 +223,7 @@ def elasto_backlash(
     During compression the damper at most doubles the force, which thus grows from zero. The force
     has a kink where p = κp′, κ = 2ζ/ϖ, and the contact ends where it vanishes, p = -κp′.
 
-    Parameters
-    ----------
-    frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ ≥ 0.
-    restitution, duration, speed : float or array
-        In place of ϖ and ζ: r and D of a free impact of a speed.
+    Given are numbers or arrays: ϖ > 0 and ζ ≥ 0, or r and D of a free impact at a speed.
     """
     return _given(
         {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
@@ -265,12 +260,7 @@ def hunt_crossley(
     The physical force k x^{3/2} (1 + λẋ) has K = k√g/(mΩ³) and C = λg/Ω. For slow impacts
     1 - r = (2/3) C v.
 
-    Parameters
-    ----------
-    stiffness, damping : float or array
-        K > 0 and C ≥ 0.
-    restitution, duration, speed : float or array
-        In place of K and C: r and D of a free impact of a speed.
+    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
 
     References
     ----------
@@ -330,12 +320,7 @@ def tsuji(
     that C = √5 (-ln r)/√(π² + ln² r). From C = √5 on the ball does not leave. The physical force
     k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α.
 
-    Parameters
-    ----------
-    stiffness, damping : float or array
-        K > 0 and C ≥ 0.
-    restitution, duration, speed : float or array
-        In place of K and C: r and D of a free impact of a speed.
+    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
 
     References
     ----------
@@ -377,12 +362,7 @@ def kuwabara_kono(
     The physical force k (x^{3/2} + (3/2) A √x ẋ), with a time A of the dissipation, has
     C = (3/2) AΩ. For slow impacts 1 - r = 1.15 C K^{2/5} v^{1/5}.
 
-    Parameters
-    ----------
-    stiffness, damping : float or array
-        K > 0 and C ≥ 0.
-    restitution, duration, speed : float or array
-        In place of K and C: r and D of a free impact of a speed.
+    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
 
     References
     ----------
@@ -425,12 +405,8 @@ def lankarani_nikravesh(
     not the nominal e: c (1 + r) = ln((1 + c)/(1 - rc)), and never below 0.663. As v₀ tends to zero
     the damping grows without limit.
 
-    Parameters
-    ----------
-    stiffness, nominal_restitution : float or array
-        K > 0 and e in (0, 1].
-    restitution, duration, speed : float or array
-        In place of K and e: the r and D that a free impact of a speed really has.
+    Given are numbers or arrays: K > 0 and e in (0, 1], or the r and D that a free impact at a speed
+    really has.
 
     References
     ----------
@@ -470,12 +446,8 @@ def flores(
 
     As :func:`lankarani_nikravesh`, with another c: r is 0.470 for e = 0.5.
 
-    Parameters
-    ----------
-    stiffness, nominal_restitution : float or array
-        K > 0 and e in (0, 1].
-    restitution, duration, speed : float or array
-        In place of K and e: the r and D that a free impact of a speed really has.
+    Given are numbers or arrays: K > 0 and e in (0, 1], or the r and D that a free impact at a speed
+    really has.
 
     Examples
     --------
@@ -517,12 +489,8 @@ def adams_impact(
     The damper grows by the cubic step s from the surface to the depth d. A damper that would pull
     is left out, and the contact ends at p = 0. Impacts that are much less deep than d lose little.
 
-    Parameters
-    ----------
-    stiffness, damping, depth : float or array
-        K > 0, C ≥ 0 and d > 0, the depth of full damping.
-    restitution, duration, speed : float or array
-        In place of them: r and D of a free impact of a speed. Then d is a tenth of (v²/K)^{2/5}.
+    Given are numbers or arrays: K > 0, C ≥ 0 and d > 0, the depth of full damping, or r and D of a
+    free impact at a speed. Then d is a tenth of (v²/K)^{2/5}.
 
     References
     ----------
@@ -617,12 +585,8 @@ def simscape_contact(
     manual gives no formula of its step; the cubic is the polynomial of the lowest degree with its
     slopes.
 
-    Parameters
-    ----------
-    stiffness, damping, depth : float or array
-        K > 0, C ≥ 0 and d > 0, the depth of full damping.
-    restitution, duration, speed : float or array
-        In place of them: r and D of a free impact of a speed. Then d is a tenth of v/√K.
+    Given are numbers or arrays: K > 0, C ≥ 0 and d > 0, the depth of full damping, or r and D of a
+    free impact at a speed. Then d is a tenth of v/√K.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},

@@ -212,13 +212,8 @@ def contact(
 
 
 def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: float) -> tuple:
-    r"""f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
-    what :func:`contact` returns.
-
-    What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² =
-    F′² + ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
-
-        \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
+    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
+    what :func:`contact` returns; see :func:`.oscillator.bounds`.
     """
     position, rate, push, shove = motion
     loss = 2 * zeta * ratio
@@ -362,12 +357,8 @@ def impacts(
     They are instants with a restitution coefficient if ϖ is 0, and otherwise contacts with a spring
     and a damper, ζ < 1.
 
-    Returns
-    -------
-    stays : bool
-        Whether the ball stays on the table.
-    turns, phase, u : float
-        Those of the impact after the last one.
+    They are followed by whether the ball stays on the table, and the turns, the phase and u of the
+    impact after the last one.
     """
     for i in range(len(out)):
         x = amplitude * math.cos(phase)

@@ -40,11 +40,8 @@ SMOOTH, FALLING = 1e-13, 0.02
 """The same, if the coefficients do not fall as those of an analytic function do: by this factor
 from the middle to the end. Beyond a kink it is (1/2)² to (1/2)³, and their square is no error."""
 
-SWEEPS, NEWTON = 20, 8
-"""The largest number of sweeps of a panel, and of steps of Newton's method for a whole contact."""
-
-FEW_WHOLE = 10
-"""Newton's method for whole contacts is faster than panels only for so few."""
+SWEEPS = 20
+"""The largest number of sweeps of a panel."""
 
 CONVERGED, SETTLED = 1e-13, 1e-12
 """Changes of v in a sweep over its greatest value: where the sweeps stop, and what is enough."""
@@ -199,23 +196,10 @@ def values_by_row(values: Mapping) -> Rows:
 class ContactMotion(NamedTuple):
     """The equation of motion of contacts, and where panels end.
 
-    Parameters
-    ----------
-    root : int
-        m: 1, or an even number.
-    force : callable
-        f(p, v, a, given).
-    release : callable
-        The release function of (q, v, t, given), negative in a contact and zero at its end.
-    kinks : tuple of callables
-        Functions of (q, v, t, given) whose zeros are kinks of the force.
-    given : mapping
-        Numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity", the "table" with its
-        parameters, and what the force needs.
-    steps : mapping
-        Imaginary parts of what is given, arrays of the shape (directions, rows).
-    gauss : Gauss
-        The nodes of panels.
+    ``force`` is f(p, v, a, given). ``release`` is the release function of (q, v, t, given): it is
+    negative in a contact and zero at its end. Zeros of ``kinks`` are those of the force. ``given``
+    has numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity", the "table" with its
+    parameters, and what the force needs. ``steps`` are their imaginary parts, (directions, rows).
     """
 
     root: int
@@ -408,7 +392,6 @@ def solve_panel(
     push: Values = 0.0,
     newton: bool = False,
     guess: Guess | None = None,
-    sweeps: int = SWEEPS,
 ) -> Panel:
     """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
 
@@ -426,7 +409,7 @@ def solve_panel(
     moved = 0.0
     early, change = np.zeros((2, v0.size))
     near = True
-    for sweep in range(sweeps):
+    for sweep in range(SWEEPS):
         q = q0 + h * (integrals @ v)
         lever = motion.lever(q)
         t = t0 + h * (integrals @ lever)
@@ -754,37 +737,12 @@ class _Contacts:
 
 @np.errstate(all="ignore")
 def whole_panel(
-    motion: ContactMotion, start: NDArray, until: NDArray, push: NDArray, guess: Guess | None
+    motion: ContactMotion, start: NDArray, until: NDArray, guess: Guess
 ) -> tuple[Panel, NDArray]:
-    """Contacts up to root times in one panel each, and which of them are found.
-
-    Those that are like their guess are found by its sweeps; without one Newton's method is used.
-    """
-    newton = guess is None
-    sweeps = NEWTON if newton else SWEEPS
-    given = motion, (*start, 0 * until), until
-    panel = solve_panel(*given, push=push, newton=newton, guess=guess, sweeps=sweeps)
+    """Contacts up to root times in one panel each, and which of them are like their guess."""
+    panel = solve_panel(motion, (*start, 0 * until), until, push=guess.push, guess=guess)
     good, _ = _resolved(panel, np.abs(panel.nodes[1]).max(0), motion.gauss)
     return panel, good
-
-
-def _in_one_panel(
-    motion: ContactMotion,
-    start: NDArray,
-    by: NDArray,
-    until: NDArray,
-    push: NDArray,
-    guess: Guess | None,
-) -> tuple[NDArray, NDArray, NDArray]:
-    """As :func:`follow_to`, but at fixed root times, with the contacts that are found."""
-    panel, good = whole_panel(motion, start, until, push, guess)
-    slopes = np.zeros((4, *by.shape[1:]))
-    at = np.flatnonzero(good)
-    if by.shape[1] and at.size:
-        given = panel.of(at).nodes, np.array([*by, 0 * by[0]])[..., at], until[at]
-        of_guess = guess.of(at) if guess else None
-        slopes[1:, :, at] = carried(motion.of(at), *given, newton=guess is None, guess=of_guess)
-    return np.array([until, *panel.end]), slopes, good
 
 
 @np.errstate(all="ignore")
@@ -807,12 +765,14 @@ def follow_to(
     slopes = np.zeros((4, *by.shape[1:]))
     if guess:
         whole = motion._replace(gauss=guess.gauss)
-        ends, slopes, good = _in_one_panel(whole, start, by, until, guess.push, guess)
+        panel, good = whole_panel(whole, start, until, guess)
+        ends = np.array([until, *panel.end])
+        at = np.flatnonzero(good)
         left = np.flatnonzero(~good)
-        if 0 < left.size <= FEW_WHOLE:
-            given = start[:, left], by[..., left], until[left], guess.push[:, left], None
-            ends[:, left], slopes[..., left], good = _in_one_panel(whole.of(left), *given)
-            left = left[~good]
+        if by.shape[1] and at.size:
+            begin = np.array([*by, 0 * by[0]])[..., at]
+            given = whole.of(at), panel.of(at).nodes, begin, until[at]
+            slopes[1:, :, at] = carried(*given, guess=guess.of(at))
     if left.size:
         some = motion.of(left), start[:, left], by[..., left], length[left], period[left]
         ends[:, left], slopes[..., left] = follow(*some, until=until[left])
@@ -835,8 +795,6 @@ def follow(
 
     Parameters
     ----------
-    motion : ContactMotion
-        The equation of motion.
     start, by : array, shapes (2, rows) and (2, directions, rows)
         q and v at the start, and their derivatives.
     length, period : array, shape (rows,)

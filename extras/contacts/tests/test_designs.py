@@ -527,7 +527,7 @@ class NoneKeeps(Problem):
         depth = 0.001 if step < 5e-5 else 0.02
         # Of the shallow ones, those of the longest steps are the nearest.
         r = 0.5 + 1e3 * step
-        return Candidate(1e-3, 0.0, step, Outcome((depth, depth), 0.0, (0.0, 0.0), (r, r, r)))
+        return Candidate(None, step, Outcome((depth, depth), 0.0, (0.0, 0.0), (r, r, r)))
 
 
 def test_if_no_contact_keeps_all_a_shallow_one_comes_before_a_near_one():

@@ -22,6 +22,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -45,9 +46,7 @@ from bouncing_ball_contacts.schemes import (
     Solved,
     Trials,
     drop,
-    hop,
     nearby,
-    offsets,
 )
 from bouncing_ball_contacts.units import (
     DENSITIES,
@@ -380,13 +379,9 @@ class Row:
 
 
 class Candidate(NamedTuple):
-    """A contact by its undamped depth δ in m and its ratio of damping, at a step in s.
+    """A contact at a step in s, and what it does before its numbers are written."""
 
-    ``outcome`` is what it does before its numbers are written.
-    """
-
-    depth: float
-    ratio: float
+    law: Law
     step: float
     outcome: Outcome
 
@@ -488,42 +483,24 @@ class Problem:
             restitution=(float(r.min()), float(r.mean()), float(r.max())),
         )
 
-    @property
-    def slight_hop(self) -> float:
-        """The height in m below which nothing is said of a hop in MuJoCo, where all bodies hop."""
-        return self.bounce.size / 100
+    def restless(self, law: Law, step: float, found: Outcome) -> str:
+        """Return why a body never lies still, and by how much it hops; empty if it does.
 
-    def hop(self, law: Law, step: float, r: float) -> float:
-        """Return by how much a body with the restitution r still hops at rest in m.
-
-        It is computed where steps of gravity may throw a body back: for numbers, and for MuJoCo's
-        contact, which hardly feels gravity.
+        A rebound leaves r of a speed, and a step of gravity, which is thrown back by a number and
+        by MuJoCo's contact, adds g h to it: the body leaves with about g h/(1 - r).
         """
         fall = self.bounce.load * step
-        if fall == 0 or r >= 1 or not (law.is_number or isinstance(law, Impedance)):
-            return 0.0
-        lost = max(1 - r, LEAST_RESTITUTION)
-        if isinstance(law, Impedance) and law.low == law.high:
-            # A bounce leaves r of the speed, and a step of gravity adds g h to it at most.
-            most = fall / lost
-            height = most**2 / (2 * self.bounce.load)
-            if height + most / math.sqrt(float(law.stiffness)) < self.slight_hop:
-                return 0.0
-        speed = np.minimum(self.bounce.impact_speed, fall / lost * np.linspace(1, 3, 8))
-        scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
-        # After two thirds of so many bounces less than a fiftieth of this speed is left.
-        steps = 6 / lost * (8 + float(law.duration(speed[-1])) / step)
-        found = hop(law, scheme, step, speed, self.bounce.load, offsets(8), math.ceil(steps))
-        return found if found > fall * step / 10 else 0.0
-
-    def restless(self, law: Law, step: float, found: Outcome) -> str:
-        """Return why a body never lies still, and by how much it hops; empty if it does."""
-        hops = self.hop(law, step, found.restitution[2])
-        is_slight = isinstance(law, Impedance) and hops < self.slight_hop
-        return (
-            ""
-            if is_slight or hops == 0
-            else f"it never lies still, but hops by up to about {show(hops, 'm', 2)}, because each "
+        _, r, _ = found.restitution
+        speed = 0.0
+        # All bodies hop a little in MuJoCo.
+        slight = self.bounce.size / 100 if isinstance(law, Impedance) else 0.0
+        if isinstance(law, Impedance) and r < 1:
+            speed = fall / max(1 - r, LEAST_RESTITUTION)
+        elif isinstance(law, Solved) and np.any(np.isnan(law.rest(self.bounce.load))):
+            speed = min(float(np.max(law.settling(fall))), self.bounce.impact_speed)
+        height = speed**2 / (2 * self.bounce.load) if speed else 0.0
+        return (height > slight) * (
+            f"it never lies still, but hops by up to about {show(height, 'm', 2)}, because each "
             "step of gravity is thrown back: a shorter one less"
         )
 
@@ -596,15 +573,19 @@ class Problem:
 
     def candidate(self, depth: float, ratio: float, step: float) -> Candidate:
         """Return a contact with what it does."""
-        return Candidate(depth, ratio, step, self.outcome(self.law(depth, ratio), step))
+        law = self.law(depth, ratio)
+        return Candidate(law, step, self.outcome(law, step))
 
-    def is_near(self, found: Outcome) -> bool:
-        """Return whether r is within the tolerance."""
-        return found.deviation(self.bounce.restitution) <= self.tolerance
+    @property
+    def permitted(self) -> float:
+        """The depth in m that must not be exceeded, infinite of a contact that was given."""
+        return self.bounce.limit if self.given_depth is None else math.inf
 
-    def is_usable(self, found: Outcome) -> bool:
-        """Return whether r is within the tolerance, and the depth one that works in a scene."""
-        return self.is_near(found) and found.depth[1] <= self.usable_depth
+    def keeps(self, found: Outcome, depth: float) -> bool:
+        """Return whether r is within the tolerance, and the body sinks by a depth at most."""
+        return (
+            found.deviation(self.bounce.restitution) <= self.tolerance and found.depth[1] <= depth
+        )
 
     def at(self, depth: float, step: float) -> Candidate:
         """Return the contact of an undamped depth in m at a time step in s."""
@@ -621,28 +602,15 @@ class Problem:
         # A contact that is stopped by its damper sinks about √r times its undamped depth.
         depth = self.bounce.limit / math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
         for _ in range(8):
-            contact = self.at(depth, step_of(depth))
+            ratio = self.ratio(depth, step_of(depth))
+            contact = self.candidate(depth, ratio, step_of(depth))
             sunk = max(contact.outcome.depth[1], self.bounce.limit / 100)
             change = _AIM * self.bounce.limit / sunk
             # Between δ, of a fast body, and δ², of one that its weight presses in.
             depth *= change**0.75
             if abs(change - 1) < 0.01:
                 break
-        return self.candidate(depth, contact.ratio, step_of(depth))
-
-    def is_shallow(self, found: Outcome) -> bool:
-        """Return whether the depth is at most the permitted one, or the contact was given."""
-        return self.given_depth is not None or found.depth[1] <= self.bounce.limit
-
-    def keeps(self, contact: Candidate) -> bool:
-        """Return whether r is within the tolerance, and the depth at most the permitted one."""
-        return self.is_shallow(contact.outcome) and self.is_near(contact.outcome)
-
-    def works(self, contact: Candidate) -> bool:
-        """Return whether r is within the tolerance, and the body neither lost nor swallowed."""
-        found = contact.outcome
-        is_seen = found.depth[1] < self.deepest and not found.rest >= self.bounce.size
-        return is_seen and self.is_near(found)
+        return self.candidate(depth, ratio, step_of(depth))
 
     def wanted(self) -> Candidate:
         """Return the contact that keeps what is given, with the longest step in the tolerance.
@@ -652,15 +620,11 @@ class Problem:
         tried = []
         for count in _COUNTS:
             contact = self.keeping(self.step_of(count))
-            if self.keeps(contact):
+            if self.keeps(contact.outcome, self.permitted):
                 return contact
-            tried.append(contact)
-
-        def falls_short(contact: Candidate) -> tuple[bool, float]:
-            found = contact.outcome
-            return not self.is_shallow(found), found.deviation(self.bounce.restitution)
-
-        return min(tried, key=falls_short)
+            is_deep = contact.outcome.depth[1] > self.permitted
+            tried.append((is_deep, contact.outcome.deviation(self.bounce.restitution), contact))
+        return min(tried, key=itemgetter(0, 1))[2]
 
     def stiffest(self, step: float) -> Candidate:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
@@ -675,12 +639,12 @@ class Problem:
             return self.at(depths[place], step)
 
         places = range(len(depths))
-        place = bisect_left(places, True, key=lambda i: self.is_near(contact(i).outcome))
+        place = bisect_left(places, True, key=lambda i: self.keeps(contact(i).outcome, math.inf))
         return contact(min(place, places[-1]))
 
     def row(self, contact: Candidate) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
-        law = self.law(contact.depth, contact.ratio)
+        law = contact.law
         combined = {**self.engine.write(law, self.setting(contact.step)), **self.engine.beside}
         values = self.engine.of_one if self.one_body else self.engine.of_each
         parameters = {name: _written(value) for name, value in values(combined).items()}
@@ -741,7 +705,7 @@ class Problem:
         # The impulse also keeps r of boxes and of bodies that slide, which implicit springs of
         # several points do not; if nothing is to rebound, a spring stops the body more softly.
         for name in (IMPULSE, YOURS) if self.bounce.restitution > 0 else (YOURS, IMPULSE):
-            if name in rows and self.is_usable(rows[name].outcome):
+            if name in rows and self.keeps(rows[name].outcome, self.usable_depth):
                 return name
         return WANTED
 
@@ -804,13 +768,16 @@ def design(
     keeps = False
     if step is not None:
         kept = problem.keeping(lambda _: step)
-        keeps = problem.keeps(kept)
+        keeps = problem.keeps(kept.outcome, problem.permitted)
         contact = kept if keeps else problem.stiffest(step)
-        if keeps or problem.works(contact):
+        # Beyond these the engine loses the body, or the ground swallows it.
+        is_held = not contact.outcome.rest >= bounce.size
+        if keeps or (is_held and problem.keeps(contact.outcome, problem.deepest)):
             rows[YOURS] = problem.row(contact)
     if problem.engine.number and not one_body and (step or bounce.restitution):
         rows[IMPULSE] = problem.impulse(step or problem.short_step)
-        if not (problem.is_usable(rows[IMPULSE].outcome) or bounce.gives_contact):
+        is_usable = problem.keeps(rows[IMPULSE].outcome, problem.usable_depth)
+        if not (is_usable or bounce.gives_contact):
             rows[IMPULSE] = problem.impulse(min(step or math.inf, problem.short_step))
     chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
     names = ", ".join(map(repr, rows))

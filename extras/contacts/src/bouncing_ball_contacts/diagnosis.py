@@ -293,9 +293,6 @@ def diagnose(
         step=bounce.step(time_step),
     )
     spring = _spring(contact.law)
-    outcome = contact.outcome()
-    if contact.law.is_number and contact.problem.restless(contact.law, contact.step, outcome):
-        outcome = replace(outcome, rest=math.nan)
     found = Diagnosis(
         engine=row.name,
         source=row,
@@ -304,7 +301,7 @@ def diagnose(
         parameters=contact.one,
         given=given,
         other=differs,
-        outcome=outcome,
+        outcome=contact.outcome(),
         limit=_in_short_steps(contact, bounce.load),
         free=_in_short_steps(contact, 0.0),
         stiffness=float(spring.stiffness) * bounce.reduced_mass,
@@ -437,21 +434,22 @@ def _spring(law: Law) -> Law:
 def _in_short_steps(contact: Contact, gravity: float) -> float:
     """Return r in the limit of short steps, with nothing that is set beside the contact.
 
-    r differs from its limit by a multiple of the step, and so does half of it at half the step. The
-    steps are semi-implicit also where the engine's are implicit: they come nearer to the limit.
+    r differs from its limit by a multiple of the step, and half of that at half the step. The steps
+    are semi-implicit also where the engine's are implicit: they come nearer to the limit.
     """
     law = contact.law
     if law.is_number:
         return float(contact.combined[contact.problem.engine.number])
     law = _spring(law) if isinstance(law, Solved) else law
-    scheme = contact.problem.engine.scheme
-    explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
     speed = contact.problem.bounce.impact_speed
     step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
-    whole, half = drop(law, explicit, step, speed, gravity, _BOTH).restitution.reshape(2, -1)
-    if max(whole.mean(), half.mean()) > 1 + TOLERANCE:
-        # A damper that is too strong for explicit steps.
-        return float(drop(law, scheme, step, speed, gravity, _MEAN).mean)
+    scheme = contact.problem.engine.scheme
+    explicit = scheme if isinstance(scheme, SemiImplicit) else SemiImplicit()
+    # A damper may be too strong for explicit steps.
+    for each in (explicit, scheme):
+        whole, half = drop(law, each, step, speed, gravity, _BOTH).restitution.reshape(2, -1)
+        if max(whole.mean(), half.mean()) <= 1 + TOLERANCE:
+            break
     return max(float(2 * half.mean() - whole.mean()), 0.0)
 
 

@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 
 MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""
-SHORT_STEPS = 150
+SHORT_STEPS = 300
 """In a contact. r of these and of half as long ones leads to the limit of short steps to 0.001,
 unless the weight presses the body in more than the impact does."""
 # Below this share of the impact speed a body that creeps out of a contact counts as at rest. Its
@@ -502,7 +502,9 @@ def drop(
     shape = np.shape(scheme.velocity(columns, z, v, v - fall, h, g))
     lowest = np.zeros(shape)
     peak = np.zeros(shape)
-    found = np.zeros(shape)
+    # Velocity and height of those that have left.
+    upward = np.zeros(shape)
+    above = np.zeros(shape)
     inside = np.ones(shape, bool)
     # Of all bodies, until the first one ends: numbers are faster taken without a mask.
     counted: Any = True
@@ -524,16 +526,8 @@ def drop(
         leaves = inside & rises & (z >= 0)
         if leaves.any():
             leaves &= peak > 0
-            if gravity:
-                # The highest of the steps that follow: n more of them raise the body.
-                upward = np.maximum(new, 0.0)
-                if law.drag:
-                    upward = np.interp(upward, *_drag_free(2 * speed, gravity, law.drag))
-                n = np.floor(upward / (g * h))
-                rise = np.maximum(z + n * h * upward - g * h**2 * n * (n + 1) / 2, 0.0)
-                found = np.where(leaves, np.sqrt(rise / height), found)
-            else:
-                found = np.where(leaves, new / speed, found)
+            np.copyto(upward, new, where=leaves)
+            np.copyto(above, z, where=leaves)
             ends |= leaves
         is_slow = np.abs(new) < _REST * speed
         if is_slow.any():
@@ -545,45 +539,11 @@ def drop(
             counted = inside
             if not inside.any():
                 break
-    return Drops(found, 0 - lowest, peak / h)
-
-
-def hop(
-    law: Law,
-    scheme: SemiImplicit | Implicit | OfSolver,
-    step: float,
-    speed: Array,
-    gravity: float,
-    at: Array,
-    steps: int,
-) -> float:
-    """Return by how much bodies still rise and fall in m, long after impacts with small speeds.
-
-    Free flights are not counted as steps. The rise is the largest in the last third of the steps,
-    over all speeds and the offsets `at`; it is 0 for bodies that lie still.
-    """
-    fall = gravity * step
-    v, at = np.meshgrid(-speed, at)
-    z = -v * step * (1 - at)
-    lowest = np.full_like(z, math.inf)
-    highest = np.full_like(z, -math.inf)
-    settled = 2 * steps // 3
-    for k in range(steps):
-        if k >= settled:
-            rise = np.maximum(v, 0.0) ** 2 / (2 * gravity)
-            highest = np.maximum(highest, z + np.where(z > 0, rise, 0.0))
-            lowest = np.minimum(lowest, z)
-        # Down to two steps above the surface a body flies freely.
-        above = z - 2 * step * np.sqrt(v**2 + 2 * gravity * np.abs(z))
-        flies = above > 0
-        if flies.any():
-            half = v - fall / 2
-            rising = np.sqrt(half**2 + 2 * gravity * np.maximum(above, 0.0))
-            n = np.where(flies, np.maximum(np.floor((half + rising) / fall), 0.0), 0.0)
-            z = z + n * step * v - gravity * step**2 * n * (n + 1) / 2
-            v = v - n * fall
-        v = scheme.velocity(law, z, v, v - fall, np.asarray(step), np.asarray(gravity))
-        z = z + step * v
-    lowest = np.minimum(lowest, z)
-    # A body below the surface that comes up slowly does not hop.
-    return float(np.max(np.where(highest > 0, highest - lowest, 0.0)))
+    if not gravity:
+        return Drops(upward / speed, 0 - lowest, peak / h)
+    if law.drag:
+        upward = np.interp(upward, *_drag_free(2 * speed, gravity, law.drag))
+    # The highest of the steps that follow: n more of them raise the body.
+    n = np.floor(upward / fall)
+    rise = np.maximum(above + n * h * upward - fall * h * n * (n + 1) / 2, 0.0)
+    return Drops(np.sqrt(rise / height), 0 - lowest, peak / h)

@@ -15,6 +15,8 @@ kink, so that the force is analytic on each. It also ends at a maximum of the re
 may be above zero, so that no release is passed where it barely is.
 
 The derivatives are those of the collocation, whose linear equations are solved by the same sweeps.
+A contact up to a known end is one panel, if it is like a free impact of its speed: then the inverse
+of the linear equations of this one makes each step of the sweeps nearly one of Newton's method.
 
 An array of contacts has the shape (rows,), and one of values at nodes (nodes, rows). Derivatives
 are (directions, rows).

@@ -404,12 +404,12 @@ class Table:
     def _top(self, order: int, sign: int = 1) -> float:
         """The phase at which a derivative of W, or its negative, is largest."""
         start = self.grid[np.argmax(sign * self(self.grid, order))]
-        return float(self._zero(start, lambda tau: (self(tau, order + 1), self(tau, order + 2))))
+        return float(self._zero(start, lambda tau: (self(tau, order + 1), self(tau, order + 2)), 6))
 
-    def _zero(self, phase: Values, function: Callable) -> Values:
+    def _zero(self, phase: Values, function: Callable, steps: int = 4) -> Values:
         """The zero beside a sample of a function with a slope, by Newton's method."""
         most = 0.1 / self.orders[-1]
-        for _ in range(6):
+        for _ in range(steps):
             value, slope = function(phase)
             step = np.divide(value, slope, where=slope != 0, out=np.zeros_like(value))
             # Where the slope vanishes as well, samples are a better guess than Newton's first step.
@@ -443,13 +443,14 @@ class Table:
 
     @cached_property
     def _sides(self) -> dict:
-        """Samples after the steepest phase (1) and before it (-1), up to the next minimum of W′."""
+        """Phases after the steepest one (1) and before it (-1), up to a minimum of W′, and W′."""
         found = {}
         for side in (1, -1):
             phase = self.steepest + side * np.linspace(0, TURN, 4 * len(self.grid) - 3)
             rises = side * self(phase, 2) > 0
             rises[0] = False
-            found[side] = phase[: int(np.argmax(rises)) or len(phase)]
+            phase = phase[: int(np.argmax(rises)) or len(phase)]
+            found[side] = phase, self(phase, 1)
         return found
 
     @cached_property
@@ -465,8 +466,7 @@ class Table:
 
         It is the steepest phase for slopes above the greatest one.
         """
-        phase = self._sides[side]
-        slopes = self(phase, 1)
+        phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
         start = np.interp(-slope, -slopes, phase)
         return self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))

@@ -496,7 +496,7 @@ class Problem:
         slight = self.bounce.size / 100 if isinstance(law, Impedance) else 0.0
         if isinstance(law, Impedance) and r < 1:
             speed = fall / max(1 - r, LEAST_RESTITUTION)
-        elif isinstance(law, Solved) and np.any(np.isnan(law.rest(self.bounce.load))):
+        elif r < 1 and isinstance(law, Solved) and np.any(np.isnan(law.rest(self.bounce.load))):
             speed = min(float(np.max(law.settling(fall))), self.bounce.impact_speed)
         height = speed**2 / (2 * self.bounce.load) if speed else 0.0
         return (height > slight) * (

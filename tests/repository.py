@@ -20,7 +20,8 @@ def git(folder: Path, *arguments: str) -> str:
     """
     assert arguments[0] == "init" or (folder / ".git").exists()
     settings = [word for key, value in SETTINGS.items() for word in ("-c", f"{key}={value}")]
-    answer = history.git(folder, *settings, *arguments)
+    command = [*settings, *arguments]
+    answer = history.git(folder, *command)
     assert answer.returncode == 0, answer.stderr
     return answer.stdout.strip()
 

@@ -86,8 +86,9 @@ class History:
         """Files that the last commit has otherwise than another one; none if that is unknown."""
         if not HASH.fullmatch(commit):
             return None
-        names = self.names(files)
-        return self.ask("diff", "--name-only", "--no-renames", commit, "HEAD", "--", *names)
+        changes = ["diff", "--name-only", "--no-renames", commit, "HEAD", "--"]
+        changes += self.names(files)
+        return self.ask(*changes)
 
     def newest(self, commits: Iterable[str], files: Collection[str | Path]) -> str:
         """The newest of those commits that git knows, else that which last changed some files."""

@@ -50,8 +50,8 @@ def relative(path):
     return local(os.path.relpath(path))
 
 
-# The modules of SOURCES, and an import in a line, in parentheses or continued after a backslash. A
-# syntax tree of every module would take half the time of a start.
+# The modules of SOURCES, and an import at the start of a line, where `make lint` wants it, perhaps in
+# parentheses or continued after a backslash. Syntax trees would take half the time of a start.
 MODULES = {
     f"{path.parent.name}.{path.stem}": path for folder in SOURCES for path in folder.glob("*/*.py")
 }

@@ -303,18 +303,18 @@ def test_nothing_warns_where_rows_have_no_solution():
 def test_the_search_with_a_contact_law_soon_finds_that_there_is_no_orbit(monkeypatch):
     """Balls that lie on the table, and impacts that have become long or fast, are not followed.
 
-    The searches took 477 and 3612 panels, and the limit leaves them half as many more.
+    The searches took 482 and 526 panels, and the limit leaves them twice as many.
     """
     ball = hunt_crossley(1000.0, 0.08)
     panels = []
 
     def counted(*given, **more):
         panels.append(1)
-        assert len(panels) < 6000
+        assert len(panels) < 2000
         return solve_panel(*given, **more)
 
     monkeypatch.setattr(root_time, "solve_panel", counted)
-    with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.25318"):
+    with pytest.raises(OrbitNotFound, match=r"below the saddle-node at Λ = 0\.253184639"):
         orbit(ball, amplitude=0.1)
     found = orbits(ball, amplitude=1.2)
     assert [(each.stable, each.admissible) for each in found] == [(False, True), (False, True)]

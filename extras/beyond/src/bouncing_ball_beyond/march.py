@@ -99,33 +99,42 @@ def newton(
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
-    """Special orbits. As long as steps to points become shorter fast, gradients, which cost much,
-    are changed by Broyden's rule: they explain the last value, which should have been zero.
+    """Special orbits; only rows that are not found yet go on, because their gradients cost.
+
+    As long as steps to points become shorter fast, gradients are changed by Broyden's rule: they
+    explain the last value, which should have been zero.
     """
     z = z.copy()
-    gradient, step, tangent = np.ones((3, *z.shape))
+    tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
+    left = np.arange(len(z))
+    part = equations
+    gradient, step = np.ones((2, *z.shape))
     slow = ~found
-    before = np.ones(len(z))
+    size_before = np.ones(len(z))
     for _ in range(iterations):
-        linear = equations.linear(z)
-        value = equations.excess(z, linear)
-        gradient += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        linear = part.linear(z[left])
+        value = part.excess(z[left], linear)
+        gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
         if slow.any():
-            _, gradient[slow] = equations.rows(slow).condition(z[slow])
-        solution = equations.bordered(z, linear, normal, (value, gradient))
+            _, gradient[left[slow]] = part.rows(slow).condition(z[left[slow]])
+        condition = value, gradient[left]
+        solution = part.bordered(z[left], linear, normal[left], condition)
         step = solution[..., 0]
-        step[np.abs(step).max(axis=1) > LONG * (1 + np.abs(z).max(axis=1))] = np.nan
-        going = ~found
-        z[going] += step[going]
-        tangent[going] = solution[going, :, 1]
-        moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
-        found |= moved < np.where(slow, SPECIAL, TOLERANCE)
-        going = ~found & np.isfinite(moved)
-        if not going.any():
+        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
+        step[size > LONG] = np.nan
+        z[left] += step
+        tangent[left] = solution[..., 1]
+        moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
+        found[left] = moved < np.where(slow, SPECIAL, TOLERANCE)
+        going = ~found[left] & np.isfinite(moved)
+        slow = (moved >= FAST * size_before[left])[going] | (len(equations.along) > 1)
+        size_before[left] = moved
+        step = step[going]
+        left = left[going]
+        if not left.size:
             break
-        slow = going & ((moved >= FAST * before) | (len(equations.along) > 1))
-        before = moved
+        part = equations.rows(left)
     return Solution(z, found, tangent, equations.linear(z))
 
 

@@ -138,18 +138,20 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)
     speeds = np.geomspace(1e-3, longest, 32)
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
-    given = tau.ravel(), u.ravel()
-    columns = [*given, np.full(tau.size, amplitude)]
-    if equations.ball.lasts:
-        # Contacts of an orbit are shorter than its period.
-        within: dict[str, Any] = {"periods": equations.periods, "table": table}
-        columns.insert(2, equations.ball.first_release(*given, amplitude, **within))
-    z = np.stack(columns, axis=-1)
-    change = equations.legs(z)[:, 0, -1].reshape(tau.shape)
+
+    def impacts(tau: NDArray, u: NDArray) -> NDArray:
+        columns = [tau, u, np.full(tau.size, amplitude)]
+        if equations.ball.lasts:
+            # Contacts of an orbit are shorter than its period.
+            within: dict[str, Any] = {"periods": equations.periods, "table": table}
+            columns.insert(2, equations.ball.first_release(tau, u, amplitude, **within))
+        return np.stack(columns, axis=-1)
+
+    change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
     at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
     share = change[:, :-1][at] / (change[:, :-1] - change[:, 1:])[at]
-    z = z.reshape(*tau.shape, -1)
-    return z[:, :-1][at] + share[:, np.newaxis] * np.diff(z, axis=1)[at]
+    # The lengths of contacts may jump from one sample to the next, and are not interpolated.
+    return impacts(tau[:, :-1][at], u[:, :-1][at] + share * np.diff(u, axis=1)[at])
 
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:

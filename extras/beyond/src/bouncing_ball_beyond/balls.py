@@ -1,10 +1,9 @@
 """What an impact does: a restitution coefficient, a spring with a damper, or an instant.
 
-The table is at ΛW(τ), where W is sin τ if no other waveform is given, and δ is the gap between ball
-and table. An impact starts at the time τ with the closing speed u = -δ′. After the duration D it
-leaves the ball at a gap δ with the relative speed w = δ′. All of this is analytic in all arguments
-and parameters, so that a complex step gives derivatives with all digits: if x has the imaginary
-part H = 1e-30, then f(x) has the imaginary part H f′(x).
+The table is at ΛW(τ), and δ is the gap between ball and table. An impact starts at the time τ with
+the closing speed u = -δ′. After the duration D it leaves the ball at a gap δ with the relative
+speed w = δ′. All of this is analytic in all arguments and parameters, so that complex steps give
+derivatives with all digits.
 """
 
 from collections.abc import Callable
@@ -19,7 +18,7 @@ from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 H = 1e-30
-"""The imaginary part of a complex step."""
+"""The imaginary part of a complex step: that of f(x + iH) is H f′(x)."""
 
 FEW = 40
 """Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
@@ -27,10 +26,9 @@ scalar ones."""
 
 
 class Impact(NamedTuple):
-    """The end of an impact: all fields are numbers or arrays of one shape.
+    """The end of an impact, by numbers or arrays of one shape.
 
-    `release` is the release function, which is negative within the contact and zero at its end. It
-    is None if the ball has no contact of finite duration.
+    `release` is negative within a contact and zero at its end, and None for an instant.
     """
 
     duration: np.ndarray
@@ -40,13 +38,8 @@ class Impact(NamedTuple):
 
 
 class Signature(NamedTuple):
-    """What a contact is as seen from outside, at a closing speed v.
-
-    ``restitution`` and ``duration`` are r and D of a free impact, without a load. ``centroid`` is
-    t_c, the time from its start to the centroid of the force. ``loss`` is σ, the derivative of the
-    impulse with respect to a constant load, at a fixed closing speed at the centroid. Seen from
-    outside, an impact under the load a = 1 + w″ is an instant, t_c after its start, at
-    which the ball gets the relative speed r v + σ a.
+    """r and D of a free impact, the delay t_c of the centroid of its force, and σ, the derivative of
+    its impulse by a load at a fixed speed at the centroid: see docs/impact-as-an-instant.md.
     """
 
     restitution: np.ndarray
@@ -65,11 +58,6 @@ class Ball:
     """Whether impacts are instants below the level of the table, which stand for contacts."""
 
     @property
-    def simple(self) -> bool:
-        """Whether its impacts are those of a restitution coefficient that is a number."""
-        return False
-
-    @property
     def integrated(self) -> bool:
         """Whether contacts are integrated, and end analytically in their start."""
         return False
@@ -84,10 +72,8 @@ class Ball:
         }
 
     def at(self, **values: Values) -> Any:
-        """The same ball with other values of parameters: numbers or arrays, real or complex.
-
-        The values are not checked.
-        """
+        """The same ball with other values of parameters, which are not checked: also arrays, also
+        complex."""
         unknown = values.keys() - vars(self).keys()
         if unknown:
             raise ValueError(
@@ -145,10 +131,8 @@ class Ball:
         periods: Values = None,
         table: Table = SINE,
     ) -> Values:
-        """T of impacts: 0 for impacts without a duration.
-
-        Contacts that last longer than a number of periods of the table may be left out, as NaN.
-        """
+        """T of impacts, 0 for instants; contacts beyond a number of periods may be left out, as
+        NaN."""
         return 0.0 * (tau + u + amplitude)
 
     def contact(
@@ -172,10 +156,8 @@ class Ball:
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """About the derivative of the release function at T times places, shape (..., places).
-
-        None if it costs as much as the contacts up to all these times.
-        """
+        """About the derivative of the release function at T times places, shape (..., places), if
+        it costs less than the contacts up to all these times."""
         return None
 
     def signature(self, u: Values) -> Signature:
@@ -198,13 +180,8 @@ class Ball:
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
     def at_ratio(self, n: Any = 1) -> Callable:
-        """The function from ϖ, or from a number in its place, to the ball.
-
-        Raises
-        ------
-        ValueError
-            If impacts have no duration.
-        """
+        """The function from ϖ, or from a number in its place, to the ball; ValueError for a ball
+        whose impacts have no duration."""
         raise ValueError(
             f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw or a function to one"
         )
@@ -257,29 +234,29 @@ def checked(name: str, value: Values, low: float, high: float, *, low_allowed: b
     return values if values.ndim else float(values)
 
 
-def _check_function(restitution: Values) -> None:
-    """Raise ValueError unless complex steps give the derivative of r(u), as differences do."""
-    u = np.array([0.5, 1.0, 2.0])
-    step = 1e-5
+def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
+    """The values of a function of one variable; ValueError unless complex steps derive it."""
+    reach = np.ptp(at)
+    step = 1e-6 * reach
     try:
-        along = np.imag(restitution(u + 1j * H)) / H
-        across = (restitution(u + step) - restitution(u - step)) / (2 * step)
-        r = restitution(u) + 0 * u
+        values = function(at) + 0 * at
+        along = np.imag(function(at + 1j * H)) / H
+        across = (function(at + step) - function(at - step)) / (2 * step)
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"restitution: r(u) fails for an array of complex u ({reason})") from None
-    checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
-    # Differences are wrong by 1e-11 for rounding and by the third derivative of r times 1e-11.
-    if not np.allclose(along, across, rtol=1e-4, atol=1e-6):
-        raise ValueError("restitution: r(u) must be analytic, without abs, real, sign or the like")
+        raise ValueError(f"{what} must take arrays, also complex ones ({reason})") from None
+    # Differences are wrong by eps/step for rounding, and by step² times the third derivative.
+    size = np.abs(along) + np.abs(across)
+    if np.any(np.abs(along - across) > 1e-4 * size.max() + 1e-9 * np.abs(values).max() / reach):
+        raise ValueError(f"{what} must be analytic, without abs, real, sign or the like")
+    return values
 
 
 @dataclass(frozen=True)
 class Rigid(Ball):
     """Instantaneous impacts with a restitution coefficient r: w = r u (Eq. 5).
 
-    ``restitution`` is r in [0, 1], a number or an array, or a function r(u) of the closing speed,
-    which must be analytic.
+    ``restitution`` is r in [0, 1], also an array, or an analytic function r(u) of the closing speed.
 
     Examples
     --------
@@ -291,7 +268,9 @@ class Rigid(Ball):
 
     def __post_init__(self) -> None:
         if callable(self.restitution):
-            _check_function(self.restitution)
+            samples = np.array([0.5, 1.0, 2.0])
+            r = check_analytic("restitution: r(u)", self.restitution, samples)
+            checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
         else:
             r = checked("restitution", self.restitution, 0, 1, low_allowed=True)
             object.__setattr__(self, "restitution", r)
@@ -306,14 +285,10 @@ class Rigid(Ball):
             )
         return {}
 
-    @property
-    def simple(self) -> bool:
-        """Whether r is a number."""
-        return not callable(self.restitution)
-
     def looped(self, table: Table) -> tuple | None:
-        """r alone."""
-        return (self.restitution, 0.0, 0.0) if self.simple and table.compiled else None
+        """r alone, if it is a number."""
+        is_looped = table.compiled and not callable(self.restitution)
+        return (self.restitution, 0.0, 0.0) if is_looped else None
 
     def _restitution(self, u: Values) -> Values:
         return self.restitution(u) if callable(self.restitution) else self.restitution
@@ -361,24 +336,15 @@ class SpringDamper(Ball):
     Parameters
     ----------
     frequency_ratio : array_like
-        ϖ > 0: a stiff contact has a large one.
+        ϖ > 0: a stiff contact has a large one. The unknown T of a contact is ϖD.
     restitution, damping_ratio : array_like
         One of both: r in (0, 1], from which Eq. 16 gives ζ, or ζ ≥ 0. With the force release or
-        under a load the restitution of the contact is another one.
+        under a load the restitution of the contact is another one. From ζ = 1 on the displacement
+        release has no free impacts: `free` and `signature` are NaN.
     release : {"displacement", "force"}
         Contacts end where δ = 0 (Eq. 23), or where the force vanishes, δ + κδ′ = 0 with κ = 2ζ/ϖ.
-
-    Notes
-    -----
-    The unknown T of a contact is ϖD, which changes little along ϖ.
-
-    After a release by the force the ball is below the table's level, δ = -κδ′. If the line
-    δ + κδ′ = 0 is reached again before the level, then the contact resumes there. This is an
-    impact whose closing speed u = -δ′ is negative, and which starts at the gap κu; a landing has
-    u > 0 and starts at the gap 0.
-
-    With ζ ≥ 1 and the displacement release a contact ends only where the table retracts from the
-    ball. There are no free impacts: `free` and `signature` are NaN.
+        This is below the table's level; where the line is reached again before the level, a contact
+        resumes, as an impact with u = -δ′ < 0 at the gap κu.
 
     Examples
     --------
@@ -401,14 +367,10 @@ class SpringDamper(Ball):
             raise ValueError("restitution, damping_ratio: exactly one of them must be given")
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
-        ratio = checked("frequency_ratio", self.frequency_ratio, 0, np.inf, low_allowed=False)
-        object.__setattr__(self, "frequency_ratio", ratio)
-        if self.damping_ratio is None:
-            r = checked("restitution", self.restitution, 0, 1, low_allowed=False)
-            object.__setattr__(self, "restitution", r)
-        else:
-            zeta = checked("damping_ratio", self.damping_ratio, 0, np.inf, low_allowed=True)
-            object.__setattr__(self, "damping_ratio", zeta)
+        for name, value in self.parameters.items():
+            most = 1 if name == "restitution" else np.inf
+            value = checked(name, value, 0, most, low_allowed=name == "damping_ratio")
+            object.__setattr__(self, name, value)
         broadcast_named(self.parameters.items())
 
     def at(self, **values: Values) -> Any:
@@ -498,9 +460,7 @@ class SpringDamper(Ball):
         periods: Values = None,
         table: Table = SINE,
     ) -> Values:
-        """T of the first release after impacts at the times τ with the speeds u; an array.
-
-        It is NaN for a ball that stays in contact: for ever, or for `PATIENCE`.
+        """T of first releases, NaN for a ball that stays: for ever, or for `PATIENCE`.
 
         Examples
         --------
@@ -510,11 +470,9 @@ class SpringDamper(Ball):
         """
         parameters = self.parameters
         every = np.broadcast_arrays(tau, u, amplitude, *parameters.values())
-        tau, u, amplitude, *others = [each.ravel() for each in every]
+        tau, u, amplitude, *others = (each.ravel() for each in every)
         ball = self.at(**dict(zip(parameters, others, strict=True)))
-        duration, _ = releases(ball, tau, u, amplitude, table)
-        duration = duration.reshape(every[0].shape)
-        return np.where(duration < np.inf, self.frequency_ratio * duration, np.nan)
+        return ball.leaves(tau, u, amplitude, table)[0].reshape(every[0].shape)
 
 
 def root_of_parabola(f: Values, slope: Values, bend: Values) -> Values:
@@ -594,16 +552,11 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
 
 @dataclass(frozen=True)
 class Corrected(Ball):
-    """The corrected restitution model: the impacts of another ball as instants.
+    """The corrected restitution model: the impacts of another ball, `of`, as instants.
 
-    The flight is continued into the contact. An impact of the closing speed v takes place at the
-    gap -v t_c(v), and leaves the ball there with the relative speed w = r(v) v + σ(v) a, where
-    a = g + w″ is the load.
-
-    Parameters
-    ----------
-    of : Ball
-        The ball whose signature (r, t_c, σ) and whose parameters this one has.
+    An impact of the closing speed v takes place at the gap -v t_c(v), and leaves the ball there with
+    the relative speed w = r(v) v + σ(v) a, where a = g + w″ is the load
+    (docs/impact-as-an-instant.md).
 
     Examples
     --------

@@ -236,40 +236,38 @@ def law_remainders(
     """Estimates of what the error law leaves of the six errors, at most.
 
     They are Sη with η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli
-    of the terms of the law. Those of the period doubling are at its own Λ and Y_D, and S has the
-    factor M² with M = Λ² max |W″| max |W‴|/(Y_D² + CJ), which is 1 on a sine: the shift of the
-    doubling has this divisor, and what it leaves has the square of the shift. The theorem has the
-    order in D; the factor 1 is fitted to random orbits and tables and not proved
-    (docs/error-law.md).
+    of the terms of the law; those of the period doubling are at its own Λ and Y_D. The theorem has
+    the order in D; the factor 1 is fitted to random orbits and tables (docs/error-law.md).
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     amplitude = np.asarray(amplitude, float)
     reference = restitution_values(impact, amplitude, table)
     delay = impact.centroid
     shift = np.abs(impact.shift)
-    weight = 1 + np.abs(1 - table.instant(impact.line, amplitude)[2])
-    loaded = impact.duration * weight / (impact.restitution * impact.speed)
-    small = impact.duration * np.maximum(1, amplitude * table.bounds[2]) + loaded
+    push = table.instant(impact.line, amplitude)[2]
+
+    def loaded(push: NDArray) -> NDArray:
+        return impact.duration * (1 + np.abs(1 - push)) / (impact.restitution * impact.speed)
+
+    def small(amplitude: NDArray, push: NDArray) -> NDArray:
+        return impact.duration * np.maximum(1, amplitude * table.bounds[2]) + loaded(push)
+
+    eta = small(amplitude, push)
     doubled, phase = table.amplitude_at(impact.line, impact.doubling)
     divisor = impact.doubling**2 - impact.line * doubled * table(phase, 3)
     steepness = doubled**2 * table.bounds[2] * table.bounds[3] / divisor
-    pushed = (1 + np.abs(1 - impact.doubling)) / (impact.restitution * impact.speed)
-    at_doubling = impact.duration * (np.maximum(1, doubled * table.bounds[2]) + pushed)
     with np.errstate(invalid="ignore", divide="ignore"):
-        later = shift * weight / table.instant(impact.line - shift, amplitude)[2]
-        risen = impact.line * later + impact.speed * delay
+        later = shift * (1 + np.abs(1 - push)) / table.instant(impact.line - shift, amplitude)[2]
         node = shift / impact.line
-        scales = {
-            "max_height": risen / reference["max_height"],
-            "bounce_velocity": (impact.duration - delay) / reference["bounce_velocity"],
-            "phase": (later + delay) / reference["phase"],
-            "apparent_restitution": loaded,
-            "saddle_node": node,
+        doubling = (node + delay / impact.half) * steepness**2 * small(doubled, impact.doubling)
+        return {
+            "max_height": eta * (impact.line * later + impact.speed * delay) / reference["max_height"],
+            "bounce_velocity": eta * (impact.duration - delay) / reference["bounce_velocity"],
+            "phase": eta * (later + delay) / reference["phase"],
+            "apparent_restitution": eta * loaded(push),
+            "saddle_node": eta * node,
+            "period_doubling": doubling + 0 * reference["period_doubling"],
         }
-        estimates = {name: scale * small for name, scale in scales.items()}
-    scale = (node + delay / impact.half) * steepness**2
-    estimates["period_doubling"] = scale * at_doubling + 0 * reference["period_doubling"]
-    return estimates
 
 
 def law_thresholds(
@@ -312,68 +310,51 @@ def law_thresholds(
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
     coefficients = law_coefficients(impact, amplitude=amplitude, table=table)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
-    if not table.compiled:
-        for name in ("max_height", "phase"):
-            found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
-        return found
-    # The error of the height is largest where Y₁ rises as fast as the depth of the instant, and
-    # that of the phase where ψ₁ does: at these values of C - s.
-    deeper = impact.shift * impact.line + impact.speed * impact.centroid
-    later = impact.shift + impact.centroid
-    turns = {
-        "max_height": deeper * amplitude / np.hypot(impact.shift, deeper),
-        "phase": np.sqrt(np.maximum(np.square(amplitude) - (impact.shift / later) ** 2, 0)),
-    }
-    for name, turn in turns.items():
-        found[name] = 1 / _longest(impact, amplitude, tolerance, name, turn)
+    for name in ("max_height", "phase"):
+        found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
     return found
 
 
+@np.errstate(invalid="ignore", divide="ignore")
 def _first_stretch(
-    impact: Any, amplitude: Values, tolerance: float, name: str, table: Table
+    impact: FreeImpact, amplitude: NDArray, tolerance: float, name: str, table: Table
 ) -> NDArray:
-    """The stretch γ at which an error on any table first leaves the tolerance, by 200 samples."""
-    with np.errstate(invalid="ignore", divide="ignore"):
-        end = (impact.line + np.copysign(amplitude * table.slope, impact.shift)) / impact.shift
-    end = np.fmin(end * (1 - 1e-9), 4 * np.pi / impact.duration)
-    shares = np.linspace(0, 1, 201)[1:].reshape(-1, *(1 for _ in np.shape(end)))
-
-    def excess(stretch: Values) -> Values:
-        errors = law_errors(impact.stretched(stretch), amplitude=amplitude, table=table)
-        return np.abs(errors[name]) - tolerance
-
-    beyond = ~(excess(shares * end) <= 0)
-    first = np.where(beyond.any(axis=0), beyond.argmax(axis=0), len(shares) - 1)
-    bracket = first / 200 * end, (first + 1) / 200 * end
-    # A bracket whose end has no orbit is left as it is.
-    inside = (excess(bracket[0]) <= 0) & (excess(bracket[1]) > 0)
-    low, high = (np.where(inside, each, end) for each in bracket)
-    for _ in range(60):
-        middle = (low + high) / 2
-        within = excess(middle) <= 0
-        low, high = np.where(within, middle, low), np.where(within, high, middle)
-    return high
-
-
-def _longest(impact: Any, amplitude: Values, tolerance: float, name: str, turn: Values) -> NDArray:
-    """The stretch γ up to which a concave error is within the tolerance."""
+    """The stretch γ at which an error first leaves the tolerance, by samples in between."""
+    shift = impact.shift
+    # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
+    end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
+    end = np.fmin(end, 4 * np.pi / impact.duration)
+    if table.compiled:
+        # The error is concave, and largest where Y₁ rises as fast as the depth of the instant, or
+        # ψ₁ falls as fast as it is late: at these values of C - s.
+        deeper = shift * impact.line + impact.speed * impact.centroid
+        share = shift / (shift + impact.centroid)
+        turns = {
+            "max_height": deeper * amplitude / np.hypot(shift, deeper),
+            "phase": np.sqrt(np.maximum(np.square(amplitude) - share**2, 0)),
+        }
+        largest = np.where(shift > 0, np.maximum((impact.line - turns[name]) / shift, 0), 0)
+        places = np.array(np.broadcast_arrays(0.0, largest, end))
+    else:
+        places = np.multiply.outer(np.linspace(0, 1, 201), end)
 
     def error(stretch: Values, amplitude: Values, *fields: NDArray) -> Values:
-        return law_errors(FreeImpact(*fields).stretched(stretch), amplitude=amplitude)[name]
+        stretched = FreeImpact(*fields).stretched(stretch)
+        return law_errors(stretched, amplitude=amplitude, table=table)[name]
 
-    shift = impact.shift
-    with np.errstate(invalid="ignore", divide="ignore"):
-        largest = np.where(shift > 0, np.maximum((impact.line - turn) / shift, 0), 0)
-        # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
-        end = (impact.line + np.copysign(amplitude, shift)) / shift * (1 - 1e-9)
-    end = np.fmin(end, 4 * np.pi / impact.duration)
-    upwards = error(largest, amplitude, *impact) >= tolerance
+    errors = error(places, amplitude, *impact)
+    beyond = np.abs(errors) > tolerance
+    after = np.maximum(beyond.argmax(axis=0), 1)[np.newaxis]
+    low, high, value = (
+        np.take_along_axis(*each, axis=0)[0]
+        for each in ((places, after - 1), (places, after), (errors, after))
+    )
     found = find_root(
         lambda stretch, bound, *known: error(stretch, *known) - bound,
-        (np.where(upwards, 0, largest), np.where(upwards, largest, end)),
-        args=(np.where(upwards, tolerance, -tolerance), amplitude, *impact),
+        (low, high),
+        args=(np.copysign(tolerance, value), amplitude, *impact),
     )
-    return np.where(error(end, amplitude, *impact) > -tolerance, end, found.x)
+    return np.where(beyond.any(axis=0), found.x, end + 0 * errors[-1])
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -446,13 +427,9 @@ def contact_values(
         around its instant, which starts t_c before it and lasts D. Whether a ball follows an orbit
         is not examined here, but by ``orbit``.
     """
-    if isinstance(quantities, str):
-        raise ValueError(f"quantities = {quantities!r}: must be a list of names")
-    unknown = set(quantities) - set(QUANTITIES)
-    if unknown:
-        raise ValueError(f"quantities: {min(unknown)!r} must be one of {', '.join(QUANTITIES)}")
-    if not np.all(np.asarray(amplitude) > 0):
-        raise ValueError(f"amplitude = {amplitude!r}: must be positive")
+    if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
+        raise ValueError(f"quantities = {quantities!r}: must be a list of {', '.join(QUANTITIES)}")
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
@@ -490,13 +467,9 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
     if name == "saddle_node":
         kind = "saddle-node"
         x = impact.line - impact.shift
-        y = -impact.shift * impact.line
-        amplitude = np.hypot(x, y)
-        phase = np.arctan2(y, x)
-        if not table.compiled:
-            amplitude = x / table.slope
-            phase = table.steepest - impact.shift
-            y = impact.shift * amplitude * table(table.steepest, 3)
+        amplitude = x / table.slope
+        phase = table.steepest - impact.shift
+        y = impact.shift * amplitude * table(table.steepest, 3)
     else:
         kind = "period doubling"
         across, along, share, turn = _doubling_shift(impact, table)
@@ -505,8 +478,6 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
         amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
         amplitude = amplitude * (1 + share)
         phase = phase + turn
-        if table.compiled:
-            amplitude, phase = table.amplitude_at(x, y)
     # The impacts of a corrected ball are at the centroids, and all others start before them.
     delay = 0.0 if row.sinks else impact.centroid
     guess = [phase - delay, impact.half + x - (1 - y) * delay]

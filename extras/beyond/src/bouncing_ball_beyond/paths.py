@@ -8,9 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, H
+from bouncing_ball_beyond.balls import Ball, check_analytic
 from bouncing_ball_beyond.tables import SINE, Table
 
 LIMITS = {
@@ -109,7 +108,8 @@ class ParameterPath(Path):
             raise ValueError(f"the path {name} needs a function for each parameter that changes")
         samples = np.linspace(low, high, 33)
         for parameter, function in functions.items():
-            _check_analytic(parameter, function, (samples[1:] + samples[:-1]) / 2)
+            between = (samples[1:] + samples[:-1]) / 2
+            check_analytic(f"{parameter}: the function", function, between)
         first, function = next(iter(functions.items()))
         steps = np.diff(function(samples))
         if not (np.all(steps > 0) or np.all(steps < 0)):
@@ -188,17 +188,3 @@ def usual_range(path: Path, value: float, least: float, greatest: float) -> tupl
     far = max(10.0, 10 * abs(value))
     low = value / 10 if value > 0 else -far
     return max(least, low), min(greatest, far)
-
-
-def _check_analytic(name: str, function: Callable, at: NDArray) -> None:
-    """ValueError unless the imaginary parts of complex steps are the derivatives."""
-    step = 1e-6 * np.ptp(at)
-    try:
-        exact = np.broadcast_to(np.imag(function(at + 1j * H)) / H, at.shape)
-        ends = [np.asarray(function(at + side), float) for side in (-step, step)]
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name}: the function must take arrays, also complex ones") from error
-    by_difference = (ends[1] - ends[0]) / (2 * step)
-    size = np.abs(exact).max() + np.abs(by_difference).max()
-    if not np.all(np.abs(exact - by_difference) <= 0.1 * size):
-        raise ValueError(f"{name}: the function must be analytic, without abs, real or the like")

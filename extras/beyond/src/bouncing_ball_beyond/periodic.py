@@ -93,7 +93,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     found: list = [None] * len(near)
     admissible = np.zeros(len(near), bool)
     # With a number r and a sine the instants are the impacts, so that there are no others.
-    if not (equations.ball.simple and equations.table.compiled):
+    if equations.ball.lasts or equations.ball.looped(equations.table) is None:
         found, admissible = shortest_contacts(equations, amplitude, sign)
     missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))

@@ -46,6 +46,7 @@ ANSWERS = {
     f"motion --restitution 0.5 --amplitude 1 {TWO}": ["kind                periodic"],
     f"error-law {SPRING} {TWO}": ["max height"],
     f"shaker --mass 20g {SHAKER} {TWO}": ["good enough"],
+    "curve --help": ["--across", "--harmonic", "--law"],
 }
 
 

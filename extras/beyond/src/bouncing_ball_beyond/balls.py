@@ -38,8 +38,8 @@ class Impact(NamedTuple):
 
 
 class Signature(NamedTuple):
-    """r and D of a free impact, the delay t_c of the centroid of its force, and σ, the derivative of
-    its impulse by a load at a fixed speed at the centroid: see docs/impact-as-an-instant.md.
+    """r and D of a free impact, the delay t_c of the centroid of its force, and σ, the derivative
+    of its impulse by a load at a fixed speed at the centroid: see docs/impact-as-an-instant.md.
     """
 
     restitution: np.ndarray
@@ -256,7 +256,7 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
 class Rigid(Ball):
     """Instantaneous impacts with a restitution coefficient r: w = r u (Eq. 5).
 
-    ``restitution`` is r in [0, 1], also an array, or an analytic function r(u) of the closing speed.
+    ``restitution`` is r in [0, 1], also an array, or an analytic function r(u) of the speed.
 
     Examples
     --------
@@ -554,8 +554,8 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
 class Corrected(Ball):
     """The corrected restitution model: the impacts of another ball, `of`, as instants.
 
-    An impact of the closing speed v takes place at the gap -v t_c(v), and leaves the ball there with
-    the relative speed w = r(v) v + σ(v) a, where a = g + w″ is the load
+    An impact of the closing speed v takes place at the gap -v t_c(v), and leaves the ball there
+    with the relative speed w = r(v) v + σ(v) a under the load a = g + w″
     (docs/impact-as-an-instant.md).
 
     Examples

@@ -10,6 +10,7 @@ import re
 import sys
 from collections.abc import Callable
 from functools import wraps
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -25,19 +26,14 @@ class Command(click.Command):
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """The arguments of the command; all options that are missing are named at once."""
-        given = list(args)
-        try:
-            return super().parse_args(ctx, args)
-        except click.MissingParameter:
-            values, _, _ = self.make_parser(ctx).parse_args(given)
-            missing = [each.opts[0] for each in self.params if each.required]
-            missing = [name for name in missing if name[2:].replace("-", "_") not in values]
-            names = {each.name for each in self.params}
-            if "law" in names and not values.keys() & {"restitution", "damping_ratio", "law"}:
-                missing.append("--restitution or --law")
-            if len(missing) < 2:
-                raise
-            raise click.UsageError(f"Missing options {', '.join(missing)}.") from None
+        given, _, _ = self.make_parser(ctx).parse_args(list(args))
+        missing = [each.opts[0] for each in self.params if each.required and each.name not in given]
+        has_ball = any(each.name == "law" for each in self.params)
+        if has_ball and not given.keys() & {"restitution", "damping_ratio", "law"}:
+            missing.append("--restitution or --law")
+        if len(missing) > 1 and not {*args} & {*ctx.help_option_names}:
+            raise click.UsageError(f"Missing options {', '.join(missing)}.")
+        return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command."""
@@ -95,6 +91,20 @@ def with_options(*options: Callable) -> Callable:
     return decorate
 
 
+def made(name: str, make: Callable, *options: Callable) -> Callable:
+    """A decorator for options, of which a command gets one argument, made by a function of them."""
+
+    def decorate(function: Callable) -> Callable:
+        @wraps(function)
+        def command(**given: Any) -> None:
+            own = {each: given.pop(each) for each in signature(make).parameters}
+            function(**{name: make(**own)}, **given)
+
+        return with_options(*options)(command)
+
+    return decorate
+
+
 def output(*suffixes: str) -> Callable:
     """The option of a file, whose name must end with one of some suffixes."""
 
@@ -115,61 +125,19 @@ AMPLITUDE = click.option("--amplitude", type=float, required=True, help="Amplitu
 N = click.option("--n", type=int, default=1, show_default=True, help="Periods of the n-T orbit.")
 DATA = output(".nc", ".csv")
 DRAWN = output(".nc", ".csv", *PICTURES)
-START = with_options(
-    click.option("--phase", type=float, help="Phase of the table at the first impact."),
-    click.option("--velocity", type=float, help="Absolute velocity of the ball before it."),
-)
-BALL = with_options(
-    click.option("--restitution", type=float, help="Restitution coefficient r."),
-    click.option("--frequency-ratio", type=float, help="ϖ; without it impacts are instants."),
-    click.option("--damping-ratio", type=float, help="ζ of the contact, in place of r."),
-    click.option(
-        "--release",
-        type=click.Choice(["displacement", "force"]),
-        default="displacement",
-        help="Contacts end at the level of the table, or where the force vanishes.",
-    ),
-    click.option("--law", metavar="NAME", help="Contact law, such as tsuji."),
-    click.option("--set", "settings", multiple=True, metavar="NAME=NUMBER", help="Of the law."),
-    click.option("--corrected", is_flag=True, help="Impacts as instants at the force's centroid."),
-)
-TABLE = with_options(
-    click.option(
-        "--harmonic",
-        "harmonics",
-        type=(int, float, float),
-        multiple=True,
-        metavar="K SIZE PHASE",
-        help="The table is a sum of SIZE sin(Kτ + PHASE); without one, of sin τ.",
-    ),
-    click.option(
-        "--table",
-        "samples",
-        type=click.Path(exists=True, dir_okay=False),
-        metavar="CSV",
-        help="The table by samples of one period, in a column height or acceleration.",
-    ),
-    click.option("--highest-harmonic", type=int, metavar="K", help="Of noisy samples, such as 5."),
-)
 
 
-def with_table(function: Callable) -> Callable:
-    """A command with the options of a waveform, which gets the table in their place."""
+def table_of(harmonics: Any, samples: str | None, highest_harmonic: int | None) -> Any:
+    """The table of its harmonics, or of a file of samples; by default a sine."""
+    from bouncing_ball_beyond.tables import SINE
 
-    @wraps(function)
-    def command(harmonics: Any, samples: Any, highest_harmonic: int | None, **others: Any) -> None:
-        from bouncing_ball_beyond.tables import SINE
-
-        if harmonics and samples:
-            raise ValueError("harmonics, samples: at most one of them may be given")
-        if highest_harmonic is not None and not samples:
-            raise ValueError("highest_harmonic: is that of the samples of a --table")
-        table = bb.Table(harmonics) if harmonics else SINE
-        if samples:
-            table = _of_samples(samples, highest_harmonic)
-        return function(table=table, **others)
-
-    return TABLE(command)
+    if harmonics and samples:
+        raise ValueError("harmonics, samples: at most one of them may be given")
+    if samples:
+        return _of_samples(samples, highest_harmonic)
+    if highest_harmonic is not None:
+        raise ValueError("highest_harmonic: is that of the samples of a --table")
+    return bb.Table(harmonics) if harmonics else SINE
 
 
 def _of_samples(path: str, highest: int | None) -> Any:
@@ -189,31 +157,25 @@ def _of_samples(path: str, highest: int | None) -> Any:
     return bb.Table.of_samples(values, highest, acceleration=name == "acceleration")
 
 
-def with_ball(function: Callable) -> Callable:
-    """A command with the options of a ball and its table, which gets both in their place."""
-
-    @wraps(function)
-    def command(
-        restitution: Any,
-        frequency_ratio: Any,
-        damping_ratio: Any,
-        release: str,
-        law: str | None,
-        settings: Any,
-        corrected: bool,
-        **others: Any,
-    ) -> None:
-        if settings and law is None:
-            raise ValueError("settings: --set gives the parameters of a --law, and there is none")
-        if law is not None:
-            ball = _of_law(law, restitution, settings)
-        elif frequency_ratio is None and damping_ratio is None:
-            ball = bb.Rigid(restitution)
-        else:
-            ball = bb.SpringDamper(frequency_ratio, restitution, damping_ratio, release)
-        return function(bb.Corrected(ball) if corrected else ball, **others)
-
-    return BALL(with_table(command))
+def ball_of(
+    restitution: float | None,
+    frequency_ratio: float | None,
+    damping_ratio: float | None,
+    release: str,
+    law: str | None,
+    settings: tuple[str, ...],
+    corrected: bool,
+) -> Any:
+    """The ball of a restitution coefficient, a spring and damper, or a law by its name."""
+    if settings and law is None:
+        raise ValueError("settings: --set gives the parameters of a --law, and there is none")
+    if law is not None:
+        ball = _of_law(law, restitution, settings)
+    elif frequency_ratio is None and damping_ratio is None:
+        ball = bb.Rigid(restitution)
+    else:
+        ball = bb.SpringDamper(frequency_ratio, restitution, damping_ratio, release)
+    return bb.Corrected(ball) if corrected else ball
 
 
 def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> Any:
@@ -228,51 +190,88 @@ def _of_law(law: str, restitution: float | None, settings: tuple[str, ...]) -> A
     return bb.named_law(law, **values)
 
 
-def given(phase: float | None, velocity: float | None) -> dict[str, float]:
+def start_of(phase: float | None, velocity: float | None) -> dict[str, float]:
     """The arguments of a first impact, without those that are not given."""
     start = {"phase": phase, "velocity": velocity}
     return {name: value for name, value in start.items() if value is not None}
 
 
-def with_branch(function: Callable) -> Callable:
-    """A command that gets a branch, in place of the options of a ball, an orbit and a parameter."""
+def branch_of(
+    ball: Any,
+    table: Any,
+    amplitude: float,
+    n: int,
+    start: dict,
+    along: str,
+    to: float,
+    doublings: int,
+) -> Any:
+    """The branch of the n-T orbit, or of that on which a ball ends, or of doubled orbits."""
+    known = {"amplitude": amplitude, "table": table}
+    one = bb.orbit_of_motion(ball, **known, **start) if start else bb.orbit(ball, **known, n=n)
+    goal = {"along": along.replace("-", "_"), "to": to}
+    branch = bb.follow(one, **goal)
+    for _ in range(doublings):
+        branch = bb.follow(branch.first("period doubling"), **goal)
+    return branch
 
-    @wraps(function)
-    def command(
-        ball: Any,
-        table: Any,
-        amplitude: float,
-        n: int,
-        phase: float | None,
-        velocity: float | None,
-        along: Any,
-        to: Any,
-        doublings: Any,
-        **others: Any,
-    ) -> None:
-        motion = given(phase, velocity)
-        known = {"amplitude": amplitude, "table": table}
-        if motion:
-            start = bb.orbit_of_motion(ball, **known, **motion)
-        else:
-            start = bb.orbit(ball, **known, n=n)
-        goal = {"along": along.replace("-", "_"), "to": to}
-        branch = bb.follow(start, **goal)
-        for _ in range(doublings):
-            branch = bb.follow(branch.first("period doubling"), **goal)
-        return function(branch, **others)
 
-    decorate = with_options(
-        AMPLITUDE,
-        N,
-        START,
-        click.option("--along", default="amplitude", show_default=True, help="What changes."),
-        click.option("--to", type=float, required=True, help="Its value at which the branch ends."),
-        click.option(
-            "--doublings", type=int, default=0, help="Follow the orbits after so many doublings."
-        ),
-    )
-    return with_ball(decorate(command))
+with_table = made(
+    "table",
+    table_of,
+    click.option(
+        "--harmonic",
+        "harmonics",
+        type=(int, float, float),
+        multiple=True,
+        metavar="K SIZE PHASE",
+        help="The table is a sum of SIZE sin(Kτ + PHASE); without one, of sin τ.",
+    ),
+    click.option(
+        "--table",
+        "samples",
+        type=click.Path(exists=True, dir_okay=False),
+        metavar="CSV",
+        help="The table by samples of one period, in a column height or acceleration.",
+    ),
+    click.option("--highest-harmonic", type=int, metavar="K", help="Of noisy samples, such as 5."),
+)
+with_ball = made(
+    "ball",
+    ball_of,
+    click.option("--restitution", type=float, help="Restitution coefficient r."),
+    click.option("--frequency-ratio", type=float, help="ϖ; without it impacts are instants."),
+    click.option("--damping-ratio", type=float, help="ζ of the contact, in place of r."),
+    click.option(
+        "--release",
+        type=click.Choice(["displacement", "force"]),
+        default="displacement",
+        help="Contacts end at the level of the table, or where the force vanishes.",
+    ),
+    click.option("--law", metavar="NAME", help="Contact law, such as tsuji."),
+    click.option("--set", "settings", multiple=True, metavar="NAME=NUMBER", help="Of the law."),
+    click.option("--corrected", is_flag=True, help="Impacts as instants at the force's centroid."),
+    with_table,
+)
+with_start = made(
+    "start",
+    start_of,
+    click.option("--phase", type=float, help="Phase of the table at the first impact."),
+    click.option("--velocity", type=float, help="Absolute velocity of the ball before it."),
+)
+with_branch = made(
+    "branch",
+    branch_of,
+    with_ball,
+    AMPLITUDE,
+    N,
+    with_start,
+    click.option("--along", default="amplitude", show_default=True, help="What changes."),
+    click.option("--to", type=float, required=True, help="Its value at which the branch ends."),
+    click.option(
+        "--doublings", type=int, default=0, help="Follow the orbits after so many doublings."
+    ),
+)
 
 
 def write(found: Any, output: str | None) -> None:
@@ -359,11 +358,11 @@ def follow_special(branch: Any, kind: str, across: str, ranges: Any, output: str
 @commands.command()
 @with_ball
 @AMPLITUDE
-@START
+@with_start
 @click.option("--impacts", type=int, default=2000, show_default=True, help="Followed at most.")
-def motion(ball: Any, phase: float | None, velocity: float | None, **known: Any) -> None:
+def motion(ball: Any, start: dict, **known: Any) -> None:
     """The motion on which a ball ends."""
-    found = bb.motion_of(ball, **known, **given(phase, velocity))
+    found = bb.motion_of(ball, **known, **start)
     for name, value in found.items():
         click.echo(f"{name:20}{value.item()}")
 
@@ -372,7 +371,7 @@ def motion(ball: Any, phase: float | None, velocity: float | None, **known: Any)
 @with_ball
 @click.option("--amplitude", type=(float, float), required=True, help="First and last Λ.")
 @click.option("--points", type=int, default=300, show_default=True, help="Number of amplitudes.")
-@DRAWN
+@DATA
 def diagram(ball: Any, table: Any, amplitude: Any, points: int, output: str | None) -> None:
     """The motions on which balls end, over the amplitude, each with its share of the starts."""
     import numpy as np
@@ -381,29 +380,18 @@ def diagram(ball: Any, table: Any, amplitude: Any, points: int, output: str | No
     found = bb.orbit_diagram(ball, amplitude=np.linspace(low, high, points), table=table)
     motions = found[["kind", "periods", "impacts"]].to_dataframe()
     click.echo(motions.groupby("amplitude").value_counts(normalize=True).to_string())
-    if output is not None and output.endswith(PICTURES):
-        from matplotlib.figure import Figure
-
-        figure = Figure(layout="tight")
-        axes = figure.subplots()
-        dots = {"s": 1, "c": "black", "edgecolors": "none"}
-        found.plot.scatter(x="amplitude", y="impact_phase", ax=axes, **dots)
-        figure.savefig(output)
-    else:
-        write(found, output)
+    write(found, output)
 
 
 @commands.command("simulate")
 @with_ball
 @AMPLITUDE
-@START
+@with_start
 @click.option("--impacts", type=int, default=20, show_default=True, help="Their number.")
 @DATA
-def impacts_after(
-    ball: Any, phase: float | None, velocity: float | None, output: str | None, **known: Any
-) -> None:
+def impacts_after(ball: Any, start: dict, output: str | None, **known: Any) -> None:
     """The impacts that follow a given one."""
-    found = bb.simulate(ball, **known, **given(phase, velocity))
+    found = bb.simulate(ball, **known, **start)
     click.echo(found.to_dataframe().to_string())
     write(found, output)
 

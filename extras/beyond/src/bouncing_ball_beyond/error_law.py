@@ -261,7 +261,9 @@ def law_remainders(
         node = shift / impact.line
         doubling = (node + delay / impact.half) * steepness**2 * small(doubled, impact.doubling)
         return {
-            "max_height": eta * (impact.line * later + impact.speed * delay) / reference["max_height"],
+            "max_height": eta
+            * (impact.line * later + impact.speed * delay)
+            / reference["max_height"],
             "bounce_velocity": eta * (impact.duration - delay) / reference["bounce_velocity"],
             "phase": eta * (later + delay) / reference["phase"],
             "apparent_restitution": eta * loaded(push),
@@ -345,10 +347,8 @@ def _first_stretch(
     errors = error(places, amplitude, *impact)
     beyond = np.abs(errors) > tolerance
     after = np.maximum(beyond.argmax(axis=0), 1)[np.newaxis]
-    low, high, value = (
-        np.take_along_axis(*each, axis=0)[0]
-        for each in ((places, after - 1), (places, after), (errors, after))
-    )
+    low, high = (np.take_along_axis(places, each, axis=0)[0] for each in (after - 1, after))
+    value = np.take_along_axis(errors, after, axis=0)[0]
     found = find_root(
         lambda stretch, bound, *known: error(stretch, *known) - bound,
         (low, high),

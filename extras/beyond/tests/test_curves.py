@@ -222,7 +222,7 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight(ball, to):
 
 def test_wrong_arguments_are_named(rigid):
     doubling = rigid.first("period doubling")
-    with pytest.raises(OrbitNotFound, match="the orbit is an ordinary one: a curve starts at a sp"):
+    with pytest.raises(OrbitNotFound, match="the orbit is an ordinary one: a curve goes through a"):
         special_curve(rigid.orbits[0])
     with pytest.raises(OrbitNotFound, match="the only impact of the orbit vanishes"):
         special_curve(replace(doubling, kind="grazing of an impact"))

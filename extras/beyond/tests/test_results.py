@@ -159,7 +159,7 @@ def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
         read_orbits(file)
     one = orbit(Rigid(0.5), amplitude=1.6)
     several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
-    with pytest.raises(ValueError, match="orbits with 1, 3 impacts"):
+    with pytest.raises(ValueError, match="the same number of impacts"):
         to_dataset([one, *several])
     with pytest.raises(ValueError, match="balls of one kind"):
         to_dataset([one, orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.6)])

@@ -14,7 +14,6 @@ from bouncing_ball_beyond.equations import (
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
-    kind_named,
 )
 from bouncing_ball_beyond.forms import RESONANT
 from bouncing_ball_beyond.march import (
@@ -58,12 +57,12 @@ class FollowedBranch:
     start: str
     end: str
 
-    @property
-    def _name(self) -> str:
-        return "FollowedBranch"
+    _where = "this branch; its special orbits are"
 
     def __repr__(self) -> str:
         first, last = self.values[[0, -1]]
+        kind = self.equations.kind
+        name = type(self).__name__ + (kind and f": {kind}")
         kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
         rows = {
             "orbits": len(self),
@@ -74,7 +73,7 @@ class FollowedBranch:
             "start": self.start,
             "end": self.end,
         }
-        return "\n".join([self._name, *(f"  {name:16}{row}" for name, row in rows.items())])
+        return "\n".join([name, *(f"  {name:16}{row}" for name, row in rows.items())])
 
     def __len__(self) -> int:
         return len(self.z)
@@ -134,16 +133,12 @@ class FollowedBranch:
         return replace(self, z=np.concatenate([z, self.z[-1:]]))
 
     def first(self, kind: str) -> PeriodicOrbit:
-        """The first special orbit of a kind; OrbitNotFound if the branch has none."""
-        return self._first(kind_named(kind), "this branch; its special orbits are")
-
-    def _first(self, kind: str, where: str) -> PeriodicOrbit:
-        """The first special orbit of a kind, with spaces or hyphens in its name."""
+        """The first special orbit of a kind, with spaces or hyphens; OrbitNotFound if none is."""
         for each in self.special:
             if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {kind} on {where}: {others}")
+        raise OrbitNotFound(f"no {kind} on {self._where}: {others}")
 
     def with_special(self) -> list[PeriodicOrbit]:
         """The orbits with the special ones, each in the step where it makes no detour."""
@@ -164,18 +159,12 @@ class SpecialCurve(FollowedBranch):
     Its ``special`` orbits are those of codimension two.
     """
 
-    @property
-    def _name(self) -> str:
-        return f"SpecialCurve: {self.kind}"
+    _where = "this curve; its orbits of codimension two are"
 
     @property
     def kind(self) -> str:
         """The kind of the special orbits."""
         return self.equations.kind
-
-    def first(self, kind: str) -> PeriodicOrbit:
-        """The first orbit of codimension two of a kind; OrbitNotFound if the curve has none."""
-        return self._first(kind, "this curve; its orbits of codimension two are")
 
 
 def joined(back: Any, forth: Any) -> Any:

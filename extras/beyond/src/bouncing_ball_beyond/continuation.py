@@ -13,7 +13,7 @@ import numpy as np
 
 from bouncing_ball_beyond.balls import Ball, brief, whole_number
 from bouncing_ball_beyond.branches import FollowedBranch, followed, joined
-from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
 from bouncing_ball_beyond.one_ball import TURN
 from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts
@@ -65,14 +65,11 @@ def follow(
     >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
     [('period doubling', 1.526824)]
     """
-    many = not isinstance(orbit, PeriodicOrbit)
     wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
     orbits = _listed(orbit, "orbit", wanted)
     points = whole_number("points", points, 2)
     found = _follow_all(orbits, along, to, points, [None] * len(orbits))
-    if not many and isinstance(found[0], OrbitNotFound):
-        raise found[0]
-    return found if many else found[0]
+    return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
 
 
 def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
@@ -112,11 +109,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
                 latest[i] = branch.special[-1]
                 further.append(i)
         going = further
-    if not isinstance(doubling, PeriodicOrbit):
-        return whole
-    if isinstance(whole[0], OrbitNotFound):
-        raise whole[0]
-    return whole[0]
+    return alone(whole[0]) if isinstance(doubling, PeriodicOrbit) else whole
 
 
 def _listed(given: Any, name: str, wanted: str) -> list:

@@ -90,22 +90,18 @@ SUCH = "such as branch.first('period doubling')"
 
 def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray | None]:
     """The equations of special orbits, one of them, and a normal, if not the last parameter's."""
-    allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
-    if not special.kind:
-        raise OrbitNotFound(
-            f"the orbit is an ordinary one: a curve starts at a special one, {SUCH}"
-        )
     if isinstance(along, str) or np.size(along) != 2:
         raise ValueError(
             f"along = {brief(along)}: must be two names or paths, such as"
             " ('amplitude', 'restitution')"
         )
+    allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
     if special.kind not in allowed:
         raise OrbitNotFound(
-            f"kind = {special.kind!r}: a curve goes through a special orbit of a branch:"
-            f" {', '.join(sorted(allowed))}"
+            f"the orbit is {special.kind or 'an ordinary one'}: a curve goes through a special one"
+            f" of a branch: {', '.join(sorted(allowed))}"
         )
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     if len({path.name for path in paths}) != 2:

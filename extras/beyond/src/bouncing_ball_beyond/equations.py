@@ -142,31 +142,25 @@ class OrbitEquations:
         )
 
     @cached_property
-    def _beside_impacts(self) -> tuple[Ball, NDArray]:
-        """The ball and Λ as columns, which go beside arrays of the shape (rows, k)."""
-        ball = self.ball.rows(np.s_[:, np.newaxis])
-        return ball, np.asarray(self.amplitude, float)[..., np.newaxis]
+    def _beside_impacts(self) -> tuple[Ball, NDArray, Table]:
+        """The ball, Λ and the table as columns, beside arrays of the shape (rows, k)."""
+        beside = np.s_[:, np.newaxis]
+        amplitude = np.asarray(self.amplitude, float)[..., np.newaxis]
+        return self.ball.rows(beside), amplitude, self.table.rows(beside)
 
-    def at(self, values: NDArray) -> tuple[Ball, NDArray]:
-        """The ball and Λ, beside impacts, at values of what changes, shape (..., p)."""
-        ball, amplitude = self._beside_impacts
+    def at(self, values: NDArray) -> tuple[Ball, NDArray, Table]:
+        """The ball, Λ and the table, beside impacts, at values of what changes, (..., p)."""
+        here = self._beside_impacts
         for j, path in enumerate(self.along):
-            ball, amplitude = path.apply(ball, amplitude, values[..., j, np.newaxis])
-        return ball, amplitude
-
-    def table_at(self, values: NDArray) -> Table:
-        """The table, beside impacts, at values of what changes."""
-        table = self.table.rows(np.s_[:, np.newaxis])
-        for j, path in enumerate(self.along if table.parameters else ()):
-            table = path.shape(table, values[..., j, np.newaxis])
-        return table
+            here = path.apply(values[..., j, np.newaxis], *here)
+        return here
 
     def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
         """One orbit, shape (N,), with its quantities."""
         return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
-    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray]:
-        """The impacts (rows, k, q) of orbits, their ball and their Λ, both beside impacts."""
+    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
+        """The impacts (rows, k, q) of orbits, and beside them their ball, Λ and table."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
 
@@ -213,14 +207,14 @@ class OrbitEquations:
         of_legs, of_parameters = self._steps
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
         values = z[:, self.size :] + of_parameters
-        legs, flights = self._legs(y, *self.at(values), self.table_at(values))
+        legs, flights = self._legs(y, *self.at(values))
         return Linear(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z: NDArray) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
-        x, ball, amplitude = self.split(z)
+        x, ball, amplitude, table = self.split(z)
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
-        return self._legs(y, ball, amplitude, self.table_at(z[:, self.size :]))[0]
+        return self._legs(y, ball, amplitude, table)[0]
 
     def _legs(
         self, y: NDArray, ball: Ball, amplitude: Any, table: Table
@@ -371,8 +365,7 @@ class OrbitEquations:
 
     def ends(self, z: NDArray) -> Flights:
         """The ends of the contacts and the flights after them."""
-        x, ball, amplitude = self.split(z)
-        table = self.table_at(z[:, self.size :])
+        x, ball, amplitude, table = self.split(z)
         impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude, table=table)
         leaves = x[..., 0] + impact.duration
         time = self.following(x)[..., 0] - leaves
@@ -396,8 +389,7 @@ class OrbitEquations:
         """How far release functions are below zero where they turn back: the least of all."""
         if not self.ball.lasts:
             return np.full(len(z), FAR)
-        x, ball, amplitude = self.split(z)
-        table = self.table_at(z[:, self.size :])
+        x, ball, amplitude, table = self.split(z)
         length = x[..., 2]
         places = samples_in(length)
         slopes = ball.release_slopes(x[..., 0], x[..., 1], length, places, amplitude, table)
@@ -430,7 +422,7 @@ class OrbitEquations:
         if not low.all():
             height[low] = self.rows(low).max_height(z[low])
             return height
-        x, _, _ = self.split(z)
+        x = self.split(z)[0]
         during = self._during(z)
         table = table.rows(np.s_[..., np.newaxis])
 
@@ -447,9 +439,9 @@ class OrbitEquations:
 
     def _during(self, z: NDArray) -> Callable[[NDArray], Impact]:
         """The contacts of orbits as a function of T, shape (rows, k, times)."""
-        x, ball, amplitude = self.split(z)
+        x, ball, amplitude, table = self.split(z)
         beside = ball.rows(np.s_[..., np.newaxis])
-        table = self.table_at(z[:, self.size :]).rows(np.s_[..., np.newaxis])
+        table = table.rows(np.s_[..., np.newaxis])
         given = x[..., 0, np.newaxis], x[..., 1, np.newaxis]
         amplitude = np.asarray(amplitude)[..., np.newaxis]
         return lambda t: beside.contact(*given, t, amplitude, table=table)
@@ -486,7 +478,7 @@ class OrbitEquations:
         """
         if self.impacts % 2:
             return np.ones((len(z), 1))
-        x, _, _ = self.split(z)
+        x = self.split(z)[0]
         half = self.impacts // 2
         periods = np.reshape(self.periods, (-1, 1))
         apart = x[:, :half] - x[:, half:]
@@ -518,7 +510,7 @@ class OrbitEquations:
         """
         if linear is None and self.ball.lasts:
             linear = self.linear(z)
-        x, ball, _ = self.split(z)
+        x, ball, *_ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
         release = self.least_release(linear, z, ends)
@@ -604,6 +596,13 @@ class OrbitNotFound(ValueError):
     """There is no such orbit, or it is not found: one line with what was looked for, and why."""
 
 
+def alone(found: Any) -> Any:
+    """What was found for a single ball or orbit; the reason is raised if there is nothing."""
+    if isinstance(found, OrbitNotFound):
+        raise found
+    return found
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class PeriodicOrbit:
     """A periodic orbit: its equations and their solution.
@@ -667,13 +666,11 @@ class PeriodicOrbit:
 
     @cached_property
     def _changed(self) -> tuple[Ball, float, Table]:
-        ball = self.equations.ball
-        amplitude = self.equations.amplitude
-        table = self.equations.table
-        for path, value in zip(self.equations.along, self.z[self.equations.size :], strict=True):
-            ball, amplitude = path.apply(ball, amplitude, value)
-            table = path.shape(table, float(value)) if table.parameters else table
-        return ball, float(amplitude), table
+        equations = self.equations
+        here = equations.ball, equations.amplitude, equations.table
+        for path, value in zip(equations.along, self.z[equations.size :], strict=True):
+            here = path.apply(value, *here)
+        return here[0], float(here[1]), here[2]
 
     @property
     def ball(self) -> Ball:
@@ -719,14 +716,12 @@ class PeriodicOrbit:
 
     @cached_property
     def _ends(self) -> Flights:
-        ends = self.equations.ends(self.z[np.newaxis])
-        leaves, gap, speed, time, amplitude = (each[0] for each in ends[:5])
-        return Flights(leaves, gap, speed, time, amplitude, self.table)
+        return self.equations.ends(self.z[np.newaxis])
 
     @cached_property
     def _release(self) -> tuple[NDArray, NDArray]:
         """When the ball leaves the table after its impacts, and δ′ then."""
-        return self._ends.leaves, self._ends.speed
+        return self._ends.leaves[0], self._ends.speed[0]
 
     @cached_property
     def _linear(self) -> Linear:
@@ -764,7 +759,7 @@ class PeriodicOrbit:
     @property
     def flight_time(self) -> float | NDArray:
         """Duration of the flight after the contact."""
-        return self._each(self._ends.flight)
+        return self._each(self._ends.flight[0])
 
     @property
     def relative_impact_velocity(self) -> float | NDArray:
@@ -935,18 +930,3 @@ MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 
 RESONANCES = {"saddle-node": "1:1 resonance", "period doubling": "1:2 resonance"}
 """Where on curves of a kind both multipliers are the same: their product is 1."""
-
-
-def kind_named(name: str) -> str:
-    """The name of a kind that is written with spaces or hyphens.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    plain = {kind.replace("-", " "): kind for kind in KINDS}
-    found = plain.get(str(name).replace("-", " ").lower())
-    if found is None:
-        raise ValueError(f"kind = {name!r}: must be one of {', '.join(KINDS)}")
-    return found

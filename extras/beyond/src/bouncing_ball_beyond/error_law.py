@@ -490,7 +490,7 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
 
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
     """Height, velocity, phase and apparent restitution of orbits with one impact, by rows."""
-    impacts, ball, amplitudes = equations.split(z)
+    impacts, ball, amplitudes, _ = equations.split(z)
     touch = impacts[:, 0, 0]
     speed = impacts[:, 0, 1]
     amplitude = amplitudes[:, 0]

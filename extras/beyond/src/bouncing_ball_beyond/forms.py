@@ -255,11 +255,10 @@ def one_impact_more(
     at = _touch(equations, z)
     added = np.array([at.time, 0.0])
     if equations.ball.lasts:
-        _, ball, amplitude = equations.split(z[np.newaxis])
+        _, ball, amplitude, table = equations.split(z[np.newaxis])
         free = float(np.ravel(ball.signature(SLOW).duration)[0])
         u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
         start = at.time - u / at.acceleration
-        table = equations.table_at(z[np.newaxis, equations.size :])
         T = ball.first_release(start, u, amplitude, table=table)
         added = np.array([start, u, np.ravel(T)[0]])
     place = (at.leg + 1) * equations.unknowns

@@ -87,7 +87,7 @@ def newton(
         defect = np.abs(linear.legs).max(axis=(1, 2))
         moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
         # Lengths in the equations are of the size of Λ, or of the times and the speeds.
-        _, amplitude = equations.at(z[:, equations.size :])
+        _, amplitude, _ = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
         # Steps become small, or they are made of nothing but rounding errors of the equations.
         found = (moved < TOLERANCE) | (defect < ROUNDING * (1 + size))

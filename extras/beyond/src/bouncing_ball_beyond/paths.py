@@ -30,16 +30,15 @@ class Path:
 
     name: str
 
-    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
-        """The ball and Λ at a value of the variable, from those at another one."""
+    def apply(
+        self, value: Any, ball: Ball, amplitude: Any, table: Table
+    ) -> tuple[Ball, Any, Table]:
+        """The ball, Λ and the table at a value of the variable, from those at another one."""
         if self.name == "amplitude":
-            return ball, value
-        of_table = self.name.startswith(OF_TABLES)
-        return (ball if of_table else ball.at(**{self.name: value})), amplitude
-
-    def shape(self, table: Table, value: Any) -> Table:
-        """The table at a value of the variable."""
-        return table.at(**{self.name: value}) if self.name in table.parameters else table
+            return ball, value, table
+        if self.name.startswith(OF_TABLES):
+            return ball, amplitude, table.at(**{self.name: value})
+        return ball.at(**{self.name: value}), amplitude, table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """The value of the variable at a ball, an amplitude and a table."""
@@ -64,12 +63,15 @@ class Frequency(Path):
 
     name: str = "frequency"
 
-    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
+    def apply(
+        self, value: Any, ball: Ball, amplitude: Any, table: Table
+    ) -> tuple[Ball, Any, Table]:
         """The ball and Λ = value², from those at another frequency."""
         times = value / np.sqrt(amplitude)
         old = ball.parameters
         powers = ball.frequency_powers.items()
-        return ball.at(**{name: old[name] * times**power for name, power in powers}), value**2
+        new = ball.at(**{name: old[name] * times**power for name, power in powers})
+        return new, value**2, table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """√Λ."""
@@ -116,17 +118,14 @@ class ParameterPath(Path):
             raise ValueError(f"{first} must rise or fall throughout the path {name}")
         vars(self).update(name=name, low=low, high=high, functions=functions)
 
-    def apply(self, ball: Ball, amplitude: Any, value: Any) -> tuple[Ball, Any]:
-        """The ball and Λ at a value of the variable."""
+    def apply(
+        self, value: Any, ball: Ball, amplitude: Any, table: Table
+    ) -> tuple[Ball, Any, Table]:
+        """The ball, Λ and the table at a value of the variable."""
         values = {name: function(value) for name, function in self.functions.items()}
         amplitude = values.pop("amplitude", amplitude)
-        values = {name: x for name, x in values.items() if not name.startswith(OF_TABLES)}
-        return (ball.at(**values) if values else ball), amplitude
-
-    def shape(self, table: Table, value: Any) -> Table:
-        """The table at a value of the variable."""
-        names = self.functions.keys() & table.parameters.keys()
-        return table.at(**{name: self.functions[name](value) for name in names}) if names else table
+        of_table = {name: values.pop(name) for name in table.parameters if name in values}
+        return ball.at(**values), amplitude, table.at(**of_table) if of_table else table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
         """The value of the variable; ValueError if the parameters are not those of the path."""

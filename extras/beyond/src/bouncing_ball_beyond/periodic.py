@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import Ball, brief, check_ball, checked, whole_number
 from bouncing_ball_beyond.continuation import limits
-from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit
+from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import (
     all_orbits,
@@ -77,11 +77,7 @@ def orbit(
         searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
         for i, each in zip(missing, searched, strict=True):
             found[i] = each
-    if shape:
-        return found
-    if isinstance(found[0], OrbitNotFound):
-        raise found[0]
-    return found[0]
+    return found if shape else alone(found[0])
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:

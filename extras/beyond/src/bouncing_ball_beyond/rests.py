@@ -68,15 +68,14 @@ class RestEquations(OrbitEquations):
         """One orbit with a rest."""
         return RestOrbit(self, z, kind)
 
-    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray]:
-        """The impacts (rows, k, 2), the ball and Λ; the lift-off is not among them."""
+    def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
+        """The impacts (rows, k, 2), ball, Λ and table; the lift-off is not among them."""
         x = z[..., : 2 * self.impacts].reshape(*z.shape[:-1], self.impacts, 2)
         return x, *self.at(z[..., self.size :])
 
     def ends(self, z: NDArray) -> Flights:
         """The flights after the lift-off and after all impacts but the last."""
-        x, ball, amplitude = self.split(z)
-        table = self.table_at(z[..., self.size :])
+        x, ball, amplitude, table = self.split(z)
         before = x[..., :-1, :]
         bounce = ball.contact(before[..., 0], before[..., 1], None, amplitude, table=table)
         start = z[..., self.size - 1 : self.size]
@@ -91,7 +90,7 @@ class RestEquations(OrbitEquations):
         The last slow bounces are not counted as flights that may vanish.
         """
         y = z + 1j * H * np.eye(z.shape[1])[:, np.newaxis]
-        x, _, amplitude = self.split(y)
+        x, _, amplitude, _ = self.split(y)
         leaves, gap, speed, time, _, table = self.ends(y)
         gap, rate = flight(time, leaves, gap, speed, amplitude, table)
         lifts = 1 + amplitude * table(leaves[..., :1], 2)
@@ -128,8 +127,7 @@ class RestEquations(OrbitEquations):
         With g = 1 + w″ and g′ = w‴ at the last impact, infinitely many bounces of the speed w take
         T₀ (1 - g′T₀/(3g)), T₀ = 2w/(g (1 - r)).
         """
-        x, ball, amplitude = self.split(z)
-        table = self.table_at(z[..., self.size :])
+        x, ball, amplitude, table = self.split(z)
         tau, u = (x[..., -1:, i] for i in (0, 1))
         w = ball.contact(tau, u, None, amplitude, table=table).speed
         gravity = 1 + amplitude * table(tau, 2)
@@ -141,8 +139,7 @@ class RestEquations(OrbitEquations):
     def fall(self, z: NDArray) -> NDArray:
         """How fast the table falls away at the lift-off, shape (rows,): -w‴, zero if it no longer
         does."""
-        _, _, amplitude = self.split(z)
-        table = self.table_at(z[..., self.size :])
+        _, _, amplitude, table = self.split(z)
         return -(amplitude * table(z[:, self.size - 1 : self.size], 3))[..., 0]
 
     def least_speed(self, z: NDArray) -> NDArray:

@@ -144,13 +144,10 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
     orbits = [each for each in several if isinstance(each, PeriodicOrbit)]
     if not orbits:
         raise ValueError("there is no orbit to make a dataset of")
-    if len({each.impacts for each in orbits}) > 1:
-        counts = ", ".join(str(count) for count in sorted({each.impacts for each in orbits}))
-        raise ValueError(f"orbits with {counts} impacts: those of one dataset have the same number")
-    if len({(type(each), type(each.ball), *each.parameters) for each in orbits}) > 1:
+    if len({(type(each), type(each.ball), each.impacts, *each.parameters) for each in orbits}) > 1:
         raise ValueError(
-            "the orbits of one dataset have balls of one kind and tables of the same harmonics, and"
-            " change along one path"
+            "the orbits of one dataset have the same number of impacts, balls of one kind and"
+            " tables of the same harmonics, and change along one path"
         )
     return orbits
 

@@ -121,7 +121,7 @@ def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Orbits of one ball, also those it does not follow, shape (orbits, N)."""
     z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
     z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
-    x, _, _ = equations.split(z)
+    x = equations.split(z)[0]
     z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
     z = z[(equations.ends(z).flight > 0).all(axis=1)]
     if not len(z):
@@ -204,7 +204,7 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     Orbits of a shorter period, taken several times, are left out.
     """
     k = equations.impacts
-    x, _, _ = equations.split(z)
+    x = equations.split(z)[0]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
     # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.

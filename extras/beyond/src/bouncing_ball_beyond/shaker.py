@@ -455,7 +455,7 @@ def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, tabl
     path = Frequency()
     times = np.sqrt(exact[name] / amplitude)
     for _ in range(30):
-        shaken, there = path.apply(ball, amplitude, times * np.sqrt(amplitude))
+        shaken, there, _ = path.apply(times * np.sqrt(amplitude), ball, amplitude, table)
         given = {"amplitude": there, "n": n, "quantities": [name], "table": table}
         found = contact_values(shaken, **given)[name]
         before = times

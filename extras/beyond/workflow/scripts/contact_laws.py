@@ -31,6 +31,7 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.search import guess_of_instants
+from bouncing_ball_beyond.tables import SINE
 from studies.orbits import damping, flight_height, last_zero, solved
 from studies.variables import VARIABLES
 
@@ -62,12 +63,12 @@ class Ratio:
 
     name: str = "ratio"
 
-    def apply(self, ball: Ball, amplitude, value):
+    def apply(self, value, ball: Ball, amplitude=None, table=SINE):
         """The contacts with other D + κ at the same speed."""
         if isinstance(ball, SpringDamper):
-            return ball.at(frequency_ratio=ball.frequency_ratio * value / np.pi), amplitude
+            return ball.at(frequency_ratio=ball.frequency_ratio * value / np.pi), amplitude, table
         powers = {name: length + time for name, (_, length, time) in ball.units.items()}
-        return scaled(ball, np.pi / value, powers), amplitude
+        return scaled(ball, np.pi / value, powers), amplitude, table
 
 
 @dataclass(frozen=True)
@@ -76,13 +77,12 @@ class Speed:
 
     name: str = "speed"
 
-    def apply(self, ball: Ball, amplitude, value):
+    def apply(self, value, ball: Ball, amplitude=None, table=SINE):
         """The contacts at other speeds; linear contacts are the same at every speed."""
         if isinstance(ball, SpringDamper):
-            return ball, amplitude
-        return scaled(
-            ball, value, {name: length for name, (_, length, _) in ball.units.items()}
-        ), amplitude
+            return ball, amplitude, table
+        powers = {name: length for name, (_, length, _) in ball.units.items()}
+        return scaled(ball, value, powers), amplitude, table
 
 
 def scaled(ball: Ball, factor, powers: dict) -> Ball:
@@ -101,7 +101,7 @@ def unit_contact(law: str, r: float) -> Ball:
         ball = OF_HERTZ[law](restitution=r, duration=1.0, speed=1.0)
     impact = ball.signature(1.0)
     through = float(impact.centroid * (1 + impact.restitution) / impact.restitution)
-    return Ratio().apply(ball, None, np.pi * through)[0]
+    return Ratio().apply(np.pi * through, ball)[0]
 
 
 @dataclass(frozen=True)
@@ -144,16 +144,16 @@ def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDAr
     (model, quantity, ratio).
     """
     unit = unit_contact(law, case["restitution"])
-    row, _ = Ratio().apply(unit, None, ratios)
+    row, *_ = Ratio().apply(ratios, unit)
     n = np.full(ratios.shape, case["n"])
     amplitude = np.full(ratios.shape, case["amplitude"])
-    near, _ = Speed().apply(row, None, np.full(ratios.shape, impact_speed(case)))
+    near, *_ = Speed().apply(np.full(ratios.shape, impact_speed(case)), row)
     # The calibrated speed is in the place of Λ.
     z = guess_of_instants(near, n, amplitude)
     z[:, -1] = z[:, 1]
     equations = OrbitEquations(row, 1, n, amplitude, (Speed(),))
     z = solved(equations, z, lambda z: z[:, [-1]] - z[:, [1]])
-    ball, _ = Speed().apply(row, None, z[:, -1])
+    ball, *_ = Speed().apply(z[:, -1], row)
     ends = equations.ends(z)
     given = {"amplitude": case["amplitude"], "n": case["n"]}
     exact = {
@@ -208,11 +208,12 @@ def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, 
     n = np.array([case["n"] for case in rows])
     amplitude = np.array([case["amplitude"] for case in rows])
     speed = np.array([impact_speed(case) for case in rows])
-    stiff, _ = Ratio().apply(Speed().apply(unit, None, speed)[0], None, STIFF)
+    fast, *_ = Speed().apply(speed, unit)
+    stiff, *_ = Ratio().apply(STIFF, fast)
     error = law_errors(stiff, amplitude=amplitude, n=n)["max_height"]
     tolerance = parameters["tolerance"]
     ratio = STIFF * np.abs(error) / tolerance
-    near, _ = Ratio().apply(Speed().apply(unit, None, speed)[0], None, ratio)
+    near, *_ = Ratio().apply(ratio, fast)
     constant = [free_impact(Rigid(case["restitution"]), case["n"]) for case in rows]
     heights = [
         restitution_values(impact, case["amplitude"])["max_height"]

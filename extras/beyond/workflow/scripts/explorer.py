@@ -117,7 +117,7 @@ def traces(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
 
 def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     """The quantities of orbits, and height and force in the middle of the contact."""
-    impacts, _, amplitudes = equations.split(z)
+    impacts, _, amplitudes, _ = equations.split(z)
     touch, speed, own_time = impacts[:, 0].T
     amplitude = amplitudes[:, 0]
     ends = equations.ends(z)

@@ -49,7 +49,7 @@ class Signature(NamedTuple):
 
 
 class Ball:
-    """What all balls have. A ball that is only compared by its signature needs no `contact`."""
+    """What all balls have."""
 
     lasts: ClassVar[bool] = False
     """Whether contacts have a duration."""

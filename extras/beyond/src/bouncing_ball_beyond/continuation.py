@@ -22,8 +22,8 @@ from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 SHARES = (0.5, 0.9, 0.2, 2.0, 4.0)
 AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
-"""Where `limits` looks for an orbit: in shares of the range between the saddle-node and the period
-doubling of instants, and then at multiples of nπ, the saddle-node of instants with r = 0."""
+"""Where `limits` looks for an orbit: at shares of the -w″ at which instants double, and then at
+multiples of nπ, their saddle-node with r = 0."""
 
 
 def follow(
@@ -31,19 +31,16 @@ def follow(
 ) -> Any:
     """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
 
-    From an ordinary orbit and from the grazing of a release the branch through it is followed; from
-    a saddle-node the branch that is stable there; from a period doubling that of twice the period;
-    from a period halving that of half the period; from the grazing of a flight that with one impact
-    more. At other special orbits branches end.
+    It goes through an orbit, or begins at a special one: stable from a saddle-node, with twice the
+    period from a doubling, half of it from a halving, one impact more from the grazing of a flight.
 
     Parameters
     ----------
     orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
         A sequence has a list of branches, and the reason in place of one that there is not.
     along : str or Path, optional
-        "amplitude", a parameter of the ball or the table, "frequency" (that of a table with a fixed
-        stroke, Ω/√(g/a) = √Λ, along which the ball's parameters change as well), or a
-        `ParameterPath`. By default what changed on the branch of the orbit.
+        "amplitude", a parameter of the ball or the table, "frequency" (at a fixed stroke,
+        Ω/√(g/a) = √Λ), or a `ParameterPath`; by default what changed on the branch of the orbit.
     to : float, array_like or tuple (low, high), optional
         Where a branch ends, one value or one for each orbit; a tuple has both ways. Behind a
         saddle-node the parameter moves back, at most as far beyond its first value. By default it
@@ -55,8 +52,6 @@ def follow(
     ------
     OrbitNotFound
         If a single orbit has no branch, for example towards `to` from a period doubling.
-    ValueError
-        If the parameter is unknown, or `to` out of its range.
 
     Examples
     --------
@@ -75,10 +70,9 @@ def follow(
 def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     """The branches of a cascade of period doublings, each up to the doubling where the next begins.
 
-    Nothing is followed beyond `to`, one value of the parameter or one for each doubling. Orbits
-    have at most so many `impacts`; their branch is followed up to its doubling. A sequence of
-    doublings has a list of cascades, with the OrbitNotFound in place of one; a single one raises it
-    if there is no doubled orbit towards `to`.
+    Nothing is followed beyond `to`, one value or one for each doubling, and orbits have at most so
+    many `impacts`. A sequence of doublings has a list of cascades, with the OrbitNotFound in place
+    of one; a single one raises it.
 
     Examples
     --------
@@ -238,10 +232,9 @@ class Limits(NamedTuple):
 def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     """The saddle-node and the period doubling of the n-T orbits of a ball, as `Limits`.
 
-    An orbit is followed towards smaller and greater Λ. An elastic ball has orbits down to Λ = 0,
-    and those of others may end with the grazing of an impact, for example: in place of a limit
-    there is then an OrbitNotFound with the reason. On any table these are the orbits on both sides
-    of the phase at which it rises fastest. If n or a parameter is an array, there is a list.
+    An orbit is followed towards smaller and greater Λ, around the phase at which the table rises
+    fastest. In place of a limit there may be an OrbitNotFound with the reason, such as the grazing
+    of an impact. If n or a parameter is an array, there is a list.
 
     Examples
     --------
@@ -273,9 +266,7 @@ def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """An orbit with one impact for each row that a ball follows, if possible between the limits of
-    instants; that with the shortest contact where Newton's method leads to another branch.
-    """
+    """For each row an orbit that a ball follows, if possible between the limits of instants."""
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)

@@ -1,9 +1,6 @@
 """Curves of special orbits in two parameters, with their points of codimension two.
 
-A special orbit solves the equations of an orbit and one more: the test of its kind is zero. With
-two free parameters such orbits lie on a curve, which is followed as branches are. docs/orbits.md
-says which points of codimension two there are.
-
+They solve the equations of an orbit and one more, the test of their kind: see docs/orbits.md.
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
 
@@ -48,24 +45,18 @@ def special_curve(
     Parameters
     ----------
     special : PeriodicOrbit
-        A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is a
-        period doubling of half the period, and the grazing of an impact is that of a flight of the
-        orbit without this impact; these are the curves that are followed. From a generalized period
-        doubling it is that of the saddle-nodes of doubled orbits, which begins there.
+        A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
+        followed as the doubling of half the period, the grazing of an impact as that of a flight
+        without it, and a generalized doubling as the saddle-nodes of doubled orbits.
     along : tuple of two names or paths
         As for `follow`.
     ranges : mapping of names to (low, high), optional
-        Where the curve ends; by default at a tenth and at ten times the value of the start, or at
-        10 if that is more, within the limits of the parameter, and after a turn of a phase.
+        Where the curve ends; by default at a tenth and at ten times the value, or at 10 if that
+        is more, and after a turn of a phase.
     points : int
         The largest number of orbits in each direction.
 
-    Raises
-    ------
-    OrbitNotFound
-        If the orbit is no special orbit from which a curve goes on.
-    ValueError
-        If a parameter is unknown or the orbit is outside the ranges.
+    OrbitNotFound if the orbit is no special one from which a curve goes on.
 
     Examples
     --------

@@ -1,9 +1,8 @@
 """Periodic orbits with k impacts in m periods of the table: their equations and their quantities.
 
-The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T.
-Times grow along an orbit, so that a flight ends where the next impact starts, and nothing has to
-be searched for. An orbit is a row z: the unknowns of its k impacts one after the other, and after
-them the values of the parameters that may change. Functions take many rows at once, (rows, N).
+The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T. An
+orbit is a row z: the unknowns of its k impacts one after the other, and after them the values of
+what may change. Functions take many rows at once, (rows, N). docs/orbits.md has the mathematics.
 """
 
 from collections.abc import Callable
@@ -25,8 +24,8 @@ FAR = 10.0
 
 POINT = (1.0,), (1.0,), 1e-7
 CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
-"""Nodes, weights and steps of the differences for gradients of tests. Errors of 1e-7 do not move
-the points that Newton's method finds; tangents of curves have errors of 1e-12."""
+"""Nodes, weights and steps of the differences for gradients of tests, with errors of 1e-7 in
+Newton's method for points and of 1e-12 in tangents of curves."""
 
 LASTING = 4 * np.pi
 """The T from which on its changes count relatively: two free oscillations."""
@@ -36,11 +35,10 @@ VANISHED = 1e-12
 
 
 class Linear(NamedTuple):
-    """The legs of orbits and their derivatives.
+    """Legs (rows, k, q), for q unknowns of an impact, and the times of their flights (rows, k).
 
-    ``legs`` has the shape (rows, k, q) for q unknowns of an impact. ``derivatives`` has the shape
-    (rows, k, q, q + 2 + p): by the unknowns of the impact, by τ and u of the next one, and by the p
-    parameters. ``flights`` are the times between contacts, shape (rows, k).
+    Their derivatives (rows, k, q, q + 2 + p) are by the unknowns of the impact, by τ and u of the
+    next one, and by the p parameters.
     """
 
     legs: NDArray
@@ -49,11 +47,8 @@ class Linear(NamedTuple):
 
 
 class Flights(NamedTuple):
-    """The flights after contacts, each field of the shape (rows, k).
-
-    ``leaves`` is the time of the release, ``gap`` and ``speed`` are δ and δ′ there, ``flight`` is
-    the time to the next impact, ``amplitude`` is Λ, and ``table`` the waveform.
-    """
+    """The flights after contacts, of the shape (rows, k): the time of the release, δ and δ′ there,
+    the time to the next impact, Λ, and the waveform of the table."""
 
     leaves: NDArray
     gap: NDArray
@@ -69,10 +64,7 @@ class Flights(NamedTuple):
         return flight(t, leaves, gap, speed, amplitude, table)
 
     def bends(self) -> NDArray:
-        """Times in the flights at which δ′ is least or greatest, because -w″ = 1 there.
-
-        Shape (rows, k, times), with the end of a flight in place of times after it.
-        """
+        """Times at which δ′ is least or greatest, where -w″ = 1, or ends; (rows, k, times)."""
         phases = self.table.levels(self.amplitude)
         turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
         first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
@@ -92,18 +84,13 @@ class OrbitEquations:
 
     Parameters
     ----------
-    ball : Ball
-        Its parameters are numbers, or arrays of the shape (rows,).
+    ball, periods, amplitude, table
+        A ball, m, Λ where it is not what changes, and a waveform: by numbers, or by arrays of the
+        shape (rows,).
     impacts : int
         Their number k.
-    periods : int or ndarray, shape (rows,)
-        The number m of periods of the table after which the motion repeats.
-    amplitude : float or ndarray, shape (rows,)
-        Λ, where it is not what changes.
     along : tuple of Path
         What may change. Its values are the last entries of z.
-    table : Table
-        The waveform of the table; its parameters are numbers, or arrays of the shape (rows,).
     kind : str
         The kind of special orbits, whose test is one more equation, and "" for all orbits.
     """
@@ -171,10 +158,7 @@ class OrbitEquations:
         return sizes
 
     def scales(self, z: NDArray) -> NDArray:
-        """Units of the unknowns in which steps are measured, shape (rows, N).
-
-        Changes of T count relatively where a contact lasts for many free oscillations.
-        """
+        """Units of the unknowns in which steps are measured, shape (rows, N)."""
         units = np.full(z.shape, np.sqrt(self.impacts))
         if self.ball.lasts:
             lasts = np.s_[:, 2 : self.size : 3]
@@ -196,12 +180,8 @@ class OrbitEquations:
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
     def linear(self, z: NDArray) -> Linear:
-        """The legs and their derivatives.
-
-        A leg is a contact and the flight after it. Its equations are that the contact ends where
-        the release function is zero, and the flight at the gap and with the speed of the next
-        impact.
-        """
+        """The legs, contacts with the flights after them, and their derivatives: the contact ends
+        where its release is zero, and the flight with the gap and the speed of the next impact."""
         q = self.unknowns
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps
@@ -219,10 +199,7 @@ class OrbitEquations:
     def _legs(
         self, y: NDArray, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[NDArray, NDArray]:
-        """Legs between impacts and the next ones, and their times of flight.
-
-        y has the q unknowns of the former, then τ and u of the latter.
-        """
+        """Legs and times of flight from y: q unknowns of an impact, then τ and u of the next."""
         q = self.unknowns
         impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude, table=table)
         leaves = y[..., 0] + impact.duration
@@ -238,11 +215,10 @@ class OrbitEquations:
     def bordered(
         self, z: NDArray, linear: Linear, normal: NDArray, condition: tuple | None = None
     ) -> NDArray:
-        """The step of Newton's method to the plane through z across a normal, and the tangent.
+        """The step of Newton's method to the plane through z across a normal, and the tangent with
+        normal · tangent = 1, shape (rows, N, 2); NaN for singular equations.
 
-        Shape (rows, N, 2); the tangent has normal · tangent = 1. NaN for singular equations. With
-        one parameter special orbits are points, which need no plane. Their :meth:`condition` may be
-        given.
+        Special orbits are points along one parameter, and need no plane.
         """
         border = normal[:, np.newaxis]
         right = np.zeros((len(z), 1, 2))
@@ -271,8 +247,8 @@ class OrbitEquations:
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
 
-        For a multiplier μ = 1 or -1 it is χ = 1 - μ tr + det = 0, and the gradient is that of χ ∏ρ
-        with the rates ρ of the release functions, because χ has poles: see docs/orbits.md.
+        For a multiplier μ it is χ = 1 - μ tr + det = 0, and the gradient is that of χ ∏ρ with the
+        rates ρ of the release functions, which has no poles (docs/orbits.md).
         """
         rows, length = z.shape
         nodes, weights, step = CURVE if len(self.along) > 1 else POINT
@@ -311,10 +287,7 @@ class OrbitEquations:
         )
 
     def tests(self, z: NDArray, linear: Linear) -> NDArray:
-        """What is zero at the special orbits that a march watches, shape (rows, tests).
-
-        That of a period halving is the distance from one.
-        """
+        """What is zero at the special orbits that a march watches, shape (rows, tests)."""
         trace, determinant = self.trace_and_determinant(linear)
         turn = trace / (1 + determinant)
         return np.stack(
@@ -342,12 +315,9 @@ class OrbitEquations:
         return -solved_or_nan(by_others, by_impact)[..., -2:, :]
 
     def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
-        """Those of the derivative of the return map, each of the shape (rows,).
-
-        The determinant is the product of those of the legs, which has all digits where that of
-        the product of the maps has none.
-        """
+        """Those of the derivative of the return map, each of the shape (rows,)."""
         maps = self.maps(linear)
+        # Their product has all digits where the determinant of the product of the maps has none.
         determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
         product = product_of(maps)
         return product[:, 0, 0] + product[:, 1, 1], determinants.prod(axis=-1)
@@ -405,11 +375,8 @@ class OrbitEquations:
         return turns_back(falls, lambda t: -release(t), length, slopes=falling).min(axis=-1)
 
     def max_height(self, z: NDArray) -> NDArray:
-        """The greatest height of the ball, shape (rows,): at a summit of a flight or in a contact.
-
-        In a compliant contact the table may lift the ball higher than it flies, up to its own
-        highest point.
-        """
+        """The greatest height of the ball, shape (rows,): in a flight, or in a compliant contact in
+        which the table lifts it higher than it flies."""
         leaves, gap, speed, time, amplitude, table = self.ends(z)
         bounce = speed + amplitude * table(leaves, 1)
         rise = np.clip(bounce, 0, time)
@@ -456,9 +423,8 @@ class OrbitEquations:
     ) -> NDArray:
         """How well balls leave the table after impacts: the least of all, zero if one does not.
 
-        It is the speed with which the release function passes zero, or the relative speed after an
-        instant. After an instant below the table it is the height of the summit of the flight.
-        Instants need no derivatives.
+        It is the rate of the release function, the relative speed after an instant, or the summit
+        of the flight after an instant below the table. Instants need no derivatives.
         """
         if linear is not None and self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)
@@ -471,11 +437,7 @@ class OrbitEquations:
         return -depth.max(axis=-1)
 
     def halves(self, z: NDArray) -> NDArray:
-        """Differences of the impacts half an orbit apart, shape (rows, kq/2).
-
-        They are zero if the orbit is one of half the period, taken twice, and 1 if the impacts or
-        the periods have no half.
-        """
+        """Differences of the impacts half an orbit apart, shape (rows, kq/2); 1 without halves."""
         if self.impacts % 2:
             return np.ones((len(z), 1))
         x = self.split(z)[0]
@@ -504,10 +466,7 @@ class OrbitEquations:
         return twice, np.concatenate([both, z[:, self.size :]], axis=1)
 
     def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
-        """Whether a ball follows the orbit: nothing else happens in its contacts and flights.
-
-        The derivatives of the legs may be given.
-        """
+        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
         if linear is None and self.ball.lasts:
             linear = self.linear(z)
         x, ball, *_ = self.split(z)
@@ -535,10 +494,7 @@ def _derivative(function: Callable, t: NDArray) -> NDArray:
 def flight(
     s: Any, leaves: Any, gap: Any, speed: Any, amplitude: Any, table: Table = SINE
 ) -> tuple[Any, Any]:
-    """Gap δ and its derivative δ′ a time s after a ball left at the time `leaves` with δ′ = speed.
-
-    The table is at w = ΛW(τ) and 1 is gravity, so that δ″ = -1 - w″.
-    """
+    """δ and δ′ a time s after a ball left at the time `leaves` with δ′ = speed: δ″ = -1 - w″."""
     height, gained = table.rise(leaves, s)
     bounce = speed + amplitude * table(leaves, 1)
     return gap + (bounce - s / 2) * s - amplitude * height, speed - s - amplitude * gained
@@ -566,10 +522,9 @@ def turns_back(
 ) -> NDArray:
     """The least value, or the first one, at a local minimum of functions of the time in (0, ends).
 
-    It is at most FAR, and FAR where there is no minimum. Minima are found if the slope, an analytic
-    positive multiple of the derivative, changes its sign between two of 32 samples in a time of 2π,
-    and of as many for each of the waves of a table. Further times may be among them, (..., m), or
-    the slopes at the samples be known, but for small errors.
+    It is at most FAR, and FAR where there is no minimum. The slope, an analytic positive multiple
+    of the derivative, has 32 samples in each wave of a table. Further times may be among them,
+    (..., m), or the slopes at the samples be known, but for small errors.
     """
     times = ends[..., np.newaxis] * samples_in(ends, waves)
     if among is not None:
@@ -605,20 +560,11 @@ def alone(found: Any) -> Any:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PeriodicOrbit:
-    """A periodic orbit: its equations and their solution.
+    """A periodic orbit: its equations, their solution z, shape (N,), and the kind of a special one.
 
     Quantities of the impacts are floats for one impact, and arrays of the shape (impacts,)
     otherwise. Velocities are absolute unless their names say relative, in units of g/Ω; times are
     in units of 1/Ω, heights in units of g/Ω².
-
-    Parameters
-    ----------
-    equations : OrbitEquations
-        Those of one ball.
-    z : ndarray, shape (N,)
-        τ, u and, in contacts of finite duration, T of each impact, and the values of what changes.
-    kind : str
-        The kind of a special orbit, such as "saddle-node", and "" for others.
     """
 
     equations: OrbitEquations
@@ -700,13 +646,7 @@ class PeriodicOrbit:
         return self.equations.split(self.z[np.newaxis])[0][0]
 
     def on(self, *paths: Path) -> tuple[OrbitEquations, NDArray]:
-        """The equations along paths through this orbit, and its row.
-
-        Raises
-        ------
-        ValueError
-            If the orbit is not on a path.
-        """
+        """The equations along paths, and its row; ValueError if the orbit is not on a path."""
         here = self.ball, self.amplitude, self.table
         equations = replace(
             self.equations, ball=here[0], amplitude=here[1], table=here[2], along=paths
@@ -814,10 +754,7 @@ class PeriodicOrbit:
 
     @property
     def turn(self) -> float:
-        """tr/(1 + det): 1 at a saddle-node, -1 at a period doubling.
-
-        Where an impact grazes or a release is lost, rounding decides on it, and it may be infinite.
-        """
+        """tr/(1 + det): 1 at a saddle-node, -1 at a doubling; it may be infinite at a grazing."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(self.equations.turn(self._linear)[0])
 
@@ -852,11 +789,8 @@ class PeriodicOrbit:
         return float(-np.log10(error.max()))
 
     def distance(self, other: "PeriodicOrbit") -> float:
-        """The largest difference of the impacts of two orbits, from whichever of them one starts.
-
-        It is that of the phases, closing speeds and unknowns T; infinite for other numbers of
-        impacts or periods.
-        """
+        """The largest difference of phases, speeds and T of two orbits, from whichever impact one
+        starts; infinite for other numbers of impacts or periods."""
         if (self.impacts, self.periods) != (other.impacts, other.periods):
             return np.inf
         shifts = [np.roll(other._impacts, j, axis=0) - self._impacts for j in range(self.impacts)]
@@ -874,11 +808,8 @@ def _short(value: Any) -> str:
 
 
 class Kind(NamedTuple):
-    """A kind of special orbit.
-
-    ``test`` is zero there, a function of the equations, orbits and their derivatives; ``end`` says
-    why branches end there, and is empty if they go on.
-    """
+    """A kind of special orbit: what is zero there, a function of equations, orbits and their
+    derivatives, and why branches end there, empty if they go on."""
 
     test: Callable[[Any, NDArray, Linear], NDArray]
     end: str = ""

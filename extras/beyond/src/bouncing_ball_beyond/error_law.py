@@ -1,11 +1,7 @@
 """How far the restitution model is from a contact: by a law in closed form, and exactly.
 
 The error of a quantity q is (q_contact - q)/q, relative to the restitution model (Eqs. 37, 38).
-
-An n-T orbit of the restitution model has the closing speed v₀ = 2nπ/(1 + r), and the table has the
-velocity C = v₀ - nπ at its impacts and Y = -w″. By the law, the orbit on a contact is that with
-C - s in place of C, its phase turned by -s, its impact delayed by t_c. The law and how good it is
-are in docs/error-law.md, and the proof in appendix.md.
+The law, its symbols and how good it is are in docs/error-law.md, the proof in appendix.md.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,23 +28,20 @@ QUANTITIES = (
     "saddle_node",
     "period_doubling",
 )
-"""The greatest height, the absolute velocity after the impact, the phase of the touch and the ratio
-of the relative speeds of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
-
+"""Those of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
 
 POINTS = chebyshev.chebpts2(13)
 ROUNDS = 12
 """Where the logarithm of an error is sampled in a bracket, and how often its intervals are."""
 SMALL = 1e-11
-"""The last coefficients of a polynomial through these samples, from which on it is exact but for
-rounding, which leaves 1e-14 of an error of 1e-2."""
+"""Last coefficients of a polynomial that is exact but for rounding, 1e-14 of an error of 1e-2."""
 
 
 class FreeImpact(NamedTuple):
     """The free impact with the closing speed v₀ of n-T orbits: its signature and derivatives.
 
-    ``slope`` is b = d(rv)/dv and ``curvature`` d²(rv)/dv²; ``centroid_slope`` is e = d(v t_c)/dv,
-    and ``load_slope`` dσ/dv. Each is a number or an array with the shape of the ball's parameters.
+    ``slope`` and ``curvature`` are those of rv over v, ``centroid_slope`` is d(v t_c)/dv, and
+    ``load_slope`` dσ/dv: numbers, or arrays of the shape of the ball's parameters.
     """
 
     n: NDArray
@@ -63,11 +56,8 @@ class FreeImpact(NamedTuple):
     load_slope: NDArray
 
     def stretched(self, factor: ArrayLike) -> "FreeImpact":
-        """The impact on the contact with the force f(p/γ, p′)/γ, for the factor γ.
-
-        It lasts γ times as long, has the same restitution coefficient, and the contact with a
-        spring and a damper becomes that with the frequency ratio ϖ/γ.
-        """
+        """The impact on the contact with the force f(p/γ, p′)/γ, which lasts γ times as long with
+        the same r: for a spring and damper that with ϖ/γ."""
         names = ("duration", "centroid", "centroid_slope", "load", "load_slope")
         return self._replace(**{name: factor * getattr(self, name) for name in names})
 
@@ -153,15 +143,13 @@ def law_errors(
     amplitude
         Λ, a number or an array that broadcasts with the parameters of the ball.
     table
-        The waveform, by default a sine. Of other tables the orbits are those after the phase at
-        which the table rises fastest, and the error of a phase is relative to it as it is counted.
+        The waveform; the orbits are those after the phase at which it rises fastest.
 
     Returns
     -------
     dict
-        Signed errors by the names in :data:`QUANTITIES`. They are right to the second order in the
-        duration of the contact, and next to the saddle-node to the order 3/2. NaN where the
-        restitution model or, by the law, the contact has no orbit.
+        Signed errors by the names in :data:`QUANTITIES`, right to the second order in the duration,
+        and next to the saddle-node to the order 3/2; NaN where a model has no orbit.
 
     Examples
     --------
@@ -196,8 +184,7 @@ def law_errors(
 
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
-    """The shifts of the period doubling, of first order: those of w′ from C and of -w″ from Y_D,
-    the relative one of Λ, and that of the phase of the instant."""
+    """The shifts of the period doubling to first order: of w′, -w″, Λ (relative) and the phase."""
     amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
     jolt = -amplitude * table(phase, 3)
     b = impact.slope
@@ -220,10 +207,9 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
 def law_coefficients(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """The coefficients K of the errors Kγ, far above the saddle-node, for a contact stretched by γ.
+    """The coefficients K of the errors Kγ of a contact stretched by γ, far above the saddle-node.
 
-    The K of K/ϖ are those of the contact with ϖ = 1. At the saddle-node the coefficients of the
-    height and of the phase are infinite, because their errors are of the order √γ there.
+    The K of K/ϖ are those with ϖ = 1. At the saddle-node those of height and phase are infinite.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
@@ -285,12 +271,11 @@ def law_thresholds(
     Parameters
     ----------
     contacts
-        A ball with a spring and a damper, whose ϖ is disregarded. Or one with a contact law that
-        has units, whose stiffness is disregarded: π/(D + κ) takes the place of ϖ, with the duration
-        D and κ = -δ/δ′ at the end of the free impact, where t_c = r (D + κ)/(1 + r). Or a function
-        from a number in the place of ϖ to the ball; the duration is in proportion to its inverse.
-    amplitude
-        Λ, a number or an array that broadcasts with the parameters of the ball.
+        A spring and a damper, whose ϖ is disregarded; or a contact law that has units, with
+        π/(D + κ) of the free impact in place of ϖ, κ = -δ/δ′ at its end; or a function from a
+        number in the place of ϖ to the ball, with a duration in proportion to its inverse.
+    amplitude, table
+        As in :func:`law_errors`.
     tolerance
         Largest modulus ε of the relative error.
 
@@ -298,8 +283,7 @@ def law_thresholds(
     -------
     dict
         By the names in :data:`QUANTITIES`: |K|/ε, but for the height and for the phase, which feel
-        the saddle-node in the first order. As functions of 1/ϖ their errors are concave: they
-        leave the tolerance downwards, or first upwards (Eq. R7 of the article).
+        the saddle-node in the first order (Eq. R7 of the article).
 
     Examples
     --------
@@ -410,22 +394,17 @@ def contact_values(
 
     Parameters
     ----------
-    ball
-        Its parameters are numbers or arrays that broadcast with the amplitude.
-    amplitude
-        Λ, a number or an array.
+    ball, amplitude, n, table
+        As in :func:`law_errors`; parameters and numbers broadcast.
     quantities
         Names from :data:`QUANTITIES`.
-    table
-        The waveform, by default a sine; of other tables as in :func:`law_errors`.
 
     Returns
     -------
     dict
-        By these names: arrays, NaN where there is no orbit on the stable side of the saddle-node.
-        For a corrected ball, phase, velocity and apparent restitution are those of the contact
-        around its instant, which starts t_c before it and lasts D. Whether a ball follows an orbit
-        is not examined here, but by ``orbit``.
+        By these names: arrays, NaN where there is no orbit on the stable side of the saddle-node,
+        also if no ball follows it. For a corrected ball, phase, velocity and apparent restitution
+        are those of a contact from t_c before its instant to D - t_c after it.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
         raise ValueError(f"quantities = {quantities!r}: must be a list of {', '.join(QUANTITIES)}")
@@ -530,8 +509,8 @@ def exact_errors(
     ball, amplitude, n, quantities, table
         As in :func:`contact_values`.
     simple
-        A function from a ball to the ball in its place, such as ``Corrected``. By default this is
-        the restitution model with the r(v) of the ball; its :func:`free_impact` may be given.
+        A function from a ball to the ball in its place, such as ``Corrected``; by default the
+        restitution model with the r(v) of the ball, whose :func:`free_impact` may be given.
 
     Returns
     -------
@@ -563,8 +542,8 @@ class ErrorThreshold(NamedTuple):
     """From which frequency ratio on an error is within a tolerance: arrays of one shape.
 
     The status is "found"; "within" if the error is within the tolerance at all ratios; "outside" if
-    it is not so at the largest; and "no orbit" if no orbit is found at the largest, or if the error
-    is within the tolerance at all ratios at which it is found. The ratio is NaN if it is not found.
+    it is not so at the largest; and "no orbit" if there is none at the largest, or at the smallest
+    within the tolerance. The ratio is NaN if it is not found.
     """
 
     ratio: NDArray
@@ -595,9 +574,8 @@ def error_thresholds(
     tolerance
         Largest modulus of the relative error.
     low, high, samples
-        The range of ϖ and the number of samples in it, at equal ratios. Between the last one that
-        exceeds the tolerance and the next one the threshold is the zero of a polynomial through
-        some errors. Two crossings between two samples are not noticed.
+        The range of ϖ and the number of samples in it, at equal ratios. Two crossings between two
+        samples are not noticed.
 
     Returns
     -------

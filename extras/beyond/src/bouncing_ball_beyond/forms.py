@@ -56,8 +56,7 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 def curvature(
     equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
-    """Derivatives of the legs along a vector v that comes back multiplied by ±1: those of the first
-    half of the orbit taken twice, along which v is periodic."""
+    """Derivatives along a vector v that comes back times ±1, periodic on the orbit taken twice."""
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
@@ -96,10 +95,7 @@ def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
 
 @np.errstate(all="ignore")
 def degeneracy(equations: OrbitEquations, z: NDArray, linear: Linear | None) -> NDArray:
-    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance.
-
-    The derivatives of the legs may be given.
-    """
+    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance."""
     linear = linear or equations.linear(z)
     apart = equations.trace_and_determinant(linear)[1] - 1
     values = np.full(len(z), np.nan)
@@ -113,12 +109,8 @@ def degeneracy(equations: OrbitEquations, z: NDArray, linear: Linear | None) -> 
 
 @dataclass(frozen=True)
 class NormalForm:
-    """What `normal_form` returns.
-
-    ``coefficient`` is a or b, ``error`` its uncertainty, ``rate`` that of the parameter ``along``,
-    ``direction`` the unit vector of ξ in (τ, δ′) of the first impact, ``other`` the other
-    multiplier.
-    """
+    """The coefficient a or b of `normal_form` with its uncertainty, the rate of the parameter, the
+    unit vector of ξ in (τ, δ′) of the first impact, and the other multiplier."""
 
     kind: str
     coefficient: float
@@ -130,11 +122,8 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether a period doubling has b > 0; ValueError for a saddle-node.
-
-        The orbits of twice the period are then where the orbit is unstable, and they are stable if
-        the other multiplier is inside the unit circle.
-        """
+        """Whether a period doubling has b > 0, with the doubled orbits where the orbit is unstable,
+        and stable if the other multiplier is inside the unit circle; ValueError for others."""
         if self.kind != "period doubling":
             raise ValueError("a saddle-node is neither supercritical nor subcritical")
         return self.coefficient > 0
@@ -148,9 +137,8 @@ class NormalForm:
 def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     """The normal form of a saddle-node or a period doubling; ValueError for other orbits.
 
-    On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, whose orbits
-    are at ξ² = -rate dλ/a, and ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling, whose doubled
-    orbits are at ξ² = rate dλ/b.
+    On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
+    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling.
 
     Examples
     --------
@@ -201,8 +189,7 @@ TOUCHES = 1e-9
 """A flight touches the table if its lowest point is this near: grazings are located to 1e-12."""
 
 SLOW = 1e-3
-"""The speed of an added impact over aD², for free impacts of duration D ≤ 1: orbits of a stiff
-contact can turn back at a few hundredths."""
+"""The speed of an added impact over aD²: orbits of a stiff contact turn back at some hundredths."""
 
 
 class Touch(NamedTuple):
@@ -246,11 +233,8 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
 def one_impact_more(
     equations: OrbitEquations, z: NDArray
 ) -> tuple[OrbitEquations, NDArray, NDArray]:
-    """The orbits with one impact more that branch off where a flight touches the table.
-
-    z, shape (N,), is an orbit of one ball along one parameter. Returns the equations of k + 1
-    impacts, their first orbit, and the direction in which the added impact gets faster by 1.
-    OrbitNotFound if no flight touches the table, or the ball has no slow impacts.
+    """The equations of k + 1 impacts, their first orbit where a flight of z, shape (N,), touches
+    the table, and the direction in which the added impact gets faster by 1; else OrbitNotFound.
     """
     at = _touch(equations, z)
     added = np.array([at.time, 0.0])
@@ -287,14 +271,13 @@ def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquatio
 
 @dataclass(frozen=True)
 class GrazingForm:
-    """What `grazing_form` returns.
+    """What `grazing_form` returns: the impact ``leg``, from 0, before the flight, the phase of the
+    table and a = δ″ at the touch, and S.
 
-    ``leg`` is the number of the impact before the flight, counted from 0, ``phase`` the phase of
-    the table at the touch, ``acceleration`` a = δ″ there, and ``coefficient`` S. ``slope`` is the
-    derivative of the parameter ``along`` by the speed of the added impact, and 0 for contacts of
-    finite duration. The orbits with one impact more are at larger values of the parameter if the
-    form ``opens_upwards``, and where the flight would be below the table if it ``persists``;
-    otherwise both orbits exist on one side and disappear together.
+    ``slope`` is the derivative of the parameter by the speed of the added impact, 0 for contacts of
+    finite duration. The orbits with one impact more are at larger parameters if the form
+    ``opens_upwards``, and where the flight would be below the table if it ``persists``; otherwise
+    both orbits disappear together.
     """
 
     leg: int
@@ -310,10 +293,9 @@ class GrazingForm:
 def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     """The square root of the return map at a grazing flight, and the orbits with one impact more.
 
-    Where a neighbouring flight would be a depth d below the table, the added impact changes the
-    velocity by S √d, with S = (1 + r) √(2a) and r at the speed 0; a contact of finite duration has
-    S = 0 (derived in docs/orbits.md). OrbitNotFound if no flight touches the table, or if the ball
-    has no slow impacts.
+    Where a flight would be d below the table, the added impact changes the velocity by S √d, with
+    S = (1 + r) √(2a), r at the speed 0, and S = 0 for contacts of finite duration
+    (docs/orbits.md). OrbitNotFound if no flight touches, or the ball has no slow impacts.
 
     Examples
     --------

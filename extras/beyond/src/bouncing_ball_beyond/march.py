@@ -1,8 +1,8 @@
 """One Newton's method and one march for all curves of solutions.
 
-A problem is F(z) = 0 with one equation less than unknowns. Its curves are followed by
-pseudo-arclength continuation: the predictor goes along the tangent, and the corrector is Newton's
-method on the plane across it. Many of them, rows, are followed side by side.
+A problem F(z) = 0 has one equation less than unknowns. Its curves, many of them as rows side by
+side, are followed by pseudo-arclength continuation: along the tangent, and by Newton's method on
+the plane across it.
 
 Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
 """

@@ -55,11 +55,8 @@ AMPLITUDE = Path("amplitude")
 
 @dataclass(frozen=True)
 class Frequency(Path):
-    """A table that changes its frequency Ω at a fixed stroke a, below the same ball and contact.
-
-    The variable is Ω/√(g/a) = √Λ. The parameters of the ball change by their own powers of Ω
-    (`Ball.frequency_powers`): ϖ is proportional to 1/Ω.
-    """
+    """A table that changes its frequency Ω at a fixed stroke a, by Ω/√(g/a) = √Λ; parameters of the
+    ball change by their `Ball.frequency_powers`."""
 
     name: str = "frequency"
 
@@ -93,8 +90,7 @@ class ParameterPath(Path):
         The name of the variable, which is in [low, high].
     **functions : callable
         For each parameter that changes, an analytic function of the variable that takes arrays,
-        also complex ones. The first one must rise or fall throughout: it tells where on the path
-        an orbit is. ValueError if one is not analytic or not monotonic.
+        also complex ones. The first one tells where an orbit is, and must rise or fall throughout.
 
     The shaker of docs/orbits.md, in hertz, is an example.
     """
@@ -177,11 +173,8 @@ def path_of(along: str | Path, ball: Ball, table: Table = SINE) -> Path:
 
 
 def usual_range(path: Path, value: float, least: float, greatest: float) -> tuple[float, float]:
-    """Where a curve through a value ends, within the limits of a parameter, if nothing is said.
-
-    After a turn around a phase; else at a tenth of a value and at ten times, or at 10 if that is
-    more, and at as much below zero if the value is not positive.
-    """
+    """Where a curve ends if nothing is said, within the limits: after a turn of a phase; else at a
+    tenth and at ten times a value or at 10, and as much below zero if it is not positive."""
     if path.name.startswith("phase_"):
         return value - np.pi, value + np.pi
     far = max(10.0, 10 * abs(value))

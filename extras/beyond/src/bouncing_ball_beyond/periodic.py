@@ -43,16 +43,13 @@ def orbit(
         Numbers, or arrays: then there is a list of orbits, with the OrbitNotFound in place of one
         that there is not.
     side : {"stable", "unstable"}
-        The side of the saddle-node on which the orbit is: impacts after or before the phase at
-        which the table rises fastest. A table that rises several times in a period has more orbits,
-        which `orbits` lists.
+        The side of the saddle-node: impacts after or before the phase at which the table rises
+        fastest. Tables that rise several times in a period have more orbits: see `orbits`.
 
     Raises
     ------
     OrbitNotFound
         If all arguments are numbers and there is no orbit.
-    ValueError
-        If an argument is out of its range.
 
     Examples
     --------
@@ -81,11 +78,8 @@ def orbit(
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
-    """The orbits with one impact and the shortest contact on a side of the saddle-node, by rows.
-
-    If a ball follows no such orbit, it is one that no ball follows, if possible that of ``near``.
-    Below the saddle-node of the branch it is the reason.
-    """
+    """The orbits with the shortest contact on a side of the saddle-node, by rows; else those that
+    no ball follows, if possible of ``near``; and the reason below the saddle-node of the branch."""
     found: list = [None] * len(near)
     admissible = np.zeros(len(near), bool)
     # With a number r and a sine the instants are the impacts, so that there are no others.
@@ -130,10 +124,8 @@ def orbits(
 ) -> list[PeriodicOrbit]:
     """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
 
-    With one impact, the speeds at which a ball comes back are found at 96 phases, or at as many for
-    each wave of the table, and from there all orbits. With several impacts this is a search:
-    Newton's method closes the motions of 2592 first impacts, and orbits may be missed. The list is
-    in the order of the durations of the contacts, then of the first phases.
+    With one impact the list is complete; with several this is a search from 2592 first impacts, and
+    orbits may be missed. They are in the order of the durations of their contacts, then of phases.
 
     Examples
     --------
@@ -164,9 +156,8 @@ def orbit_near(
 ) -> PeriodicOrbit:
     """The periodic orbit near a guess: phases and absolute velocities before its impacts.
 
-    Both have the shape (impacts,). The number of periods follows from the velocities, because a
-    flight lasts as long as its velocity falls by. OrbitNotFound if Newton's method does not
-    converge.
+    Both have the shape (impacts,). The number of periods follows from the velocities.
+    OrbitNotFound if Newton's method does not converge.
     """
     check_ball(ball)
     amplitude = one_amplitude(amplitude)

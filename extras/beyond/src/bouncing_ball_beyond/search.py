@@ -37,10 +37,9 @@ def guess_of_instants(
 ) -> NDArray:
     """Rows z near n-T orbits, from impacts as instants of free impacts (the corrected model).
 
-    At the centroid of its force, which is at the phase ψ, an impact has the speed u with
-    (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node, ψ is the phase at
-    which the table rises fastest. On the side 1 of it orbits are stable next to it, on -1 not.
-    Parameters of the ball and n have the shape (rows,) or none, the amplitude (rows,).
+    At the centroid of its force, at the phase ψ, an impact has the speed u with
+    (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn; below the saddle-node the table rises
+    fastest at ψ. Orbits are stable on the side 1 and not on -1. The amplitude is that of rows.
     """
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))

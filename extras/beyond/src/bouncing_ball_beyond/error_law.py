@@ -618,8 +618,7 @@ def error_thresholds(
             # It is about in proportion to 1/ϖ, and its logarithm is about linear.
             return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
 
-        scan = np.array([np.abs(errors[name]).reshape(samples, -1) for name in names])
-        scan = scan.swapaxes(0, 1).reshape(samples, -1)
+        scan = np.stack([np.abs(errors[name]) for name in names], axis=1).reshape(samples, -1)
         beyond = ~(scan <= tolerance)
         last = samples - 1 - beyond[::-1].argmax(axis=0)
         places = np.arange(last.size)

@@ -90,7 +90,26 @@ def to_dataset(found: Found) -> xr.Dataset:
     orbits = _listed(found)
     first = orbits[0]
     along = [path.name for path in first.equations.along]
+    of_impacts = {
+        name: [np.atleast_1d(getattr(each, name)) for each in orbits] for name in OF_IMPACTS
+    }
+    of_impacts["impact_time"] = [each.times for each in orbits]
+    if first.ball.lasts:
+        of_impacts["scaled_duration"] = [each.z[2 : each.equations.size : 3] for each in orbits]
+    of_orbits = {name: [getattr(each, name) for each in orbits] for name in OF_ORBITS}
+    resting = [each for each in orbits if isinstance(each, RestOrbit)]
+    if resting:
+        of_orbits["lift_off_time"] = [each.z[each.equations.size - 1] for each in resting]
+        of_orbits["rest"] = [each.rest for each in resting]
+    of_orbits |= {name: [each.parameters[name] for each in orbits] for name in first.parameters}
+    multipliers = np.array([each.multipliers for each in orbits])
     data = xr.Dataset(
+        {
+            **{name: (("point", "impact"), values) for name, values in of_impacts.items()},
+            **{name: ("point", values) for name, values in of_orbits.items()},
+            "multiplier_real": (("point", "multiplier"), multipliers.real),
+            "multiplier_imag": (("point", "multiplier"), multipliers.imag),
+        },
         attrs={
             "source": "bouncing_ball_beyond",
             "impacts": first.impacts,
@@ -98,31 +117,12 @@ def to_dataset(found: Found) -> xr.Dataset:
             "table": json.dumps(list(first.table.harmonics)),
             "along": json.dumps(along),
             "form": type(found).__name__,
-        }
+        },
     )
     if isinstance(found, FollowedBranch):
         data.attrs |= {"start": found.start, "end": found.end}
     if isinstance(found, SpecialCurve):
         data.attrs["kind"] = found.kind
-    for name in OF_IMPACTS:
-        values = np.array([np.atleast_1d(getattr(each, name)) for each in orbits])
-        data[name] = ("point", "impact"), values
-    for name in OF_ORBITS:
-        data[name] = "point", np.array([getattr(each, name) for each in orbits])
-    multipliers = np.array([each.multipliers for each in orbits])
-    data["multiplier_real"] = ("point", "multiplier"), multipliers.real
-    data["multiplier_imag"] = ("point", "multiplier"), multipliers.imag
-    resting = [each for each in orbits if isinstance(each, RestOrbit)]
-    if resting:
-        lifts = [each.z[each.equations.size - 1] for each in resting]
-        data["lift_off_time"] = "point", np.array(lifts)
-        data["rest"] = "point", np.array([each.rest for each in resting])
-    data["impact_time"] = ("point", "impact"), np.array([each.times for each in orbits])
-    if first.ball.lasts:
-        lasts = np.array([each.z[2 : each.equations.size : 3] for each in orbits])
-        data["scaled_duration"] = ("point", "impact"), lasts
-    for name in first.parameters:
-        data[name] = "point", np.array([each.parameters[name] for each in orbits])
     texts = OF_IMPACTS | OF_ORBITS | OF_EQUATIONS | PARAMETERS
     for label, variable in data.items():
         text = texts.get(str(label), (str(label).replace("_", " "), "", "1"))

@@ -449,21 +449,20 @@ class OrbitEquations:
 
     def halved(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
         """The equations of half the period, and the mean of the halves of orbits."""
-        k = self.impacts // 2
-        half = replace(self, impacts=k, periods=np.asarray(self.periods) // 2)
-        x = z[:, : self.size].reshape(len(z), 2 * k, -1).copy()
-        x[:, k:, 0] -= 2 * np.pi * np.reshape(half.periods, (-1, 1))
-        mean = ((x[:, :k] + x[:, k:]) / 2).reshape(len(z), -1)
+        half = replace(self, impacts=self.impacts // 2, periods=np.asarray(self.periods) // 2)
+        mean = z[:, : half.size] - self.halves(z) / 2
         return half, np.concatenate([mean, z[:, self.size :]], axis=1)
 
     def doubled(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
         """The equations of twice the period, and orbits taken twice."""
         twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
-        x = z[:, : self.size].reshape(len(z), self.impacts, -1)
-        again = x.copy()
-        again[..., 0] += 2 * np.pi * np.reshape(self.periods, (-1, 1))
-        both = np.concatenate([x, again], axis=1).reshape(len(z), -1)
-        return twice, np.concatenate([both, z[:, self.size :]], axis=1)
+        return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
+
+    def later(self, z: NDArray, turns: Any) -> NDArray:
+        """Orbits that begin so many turns of the table later, by rows."""
+        z = z.copy()
+        z[:, : self.size : self.unknowns] += 2 * np.pi * np.reshape(turns, (-1, 1))
+        return z
 
     def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""

@@ -329,9 +329,8 @@ def ends_at(kind: str, until: str | None) -> bool:
 
 def _from_start(equations: OrbitEquations, first: Points, here: Points, units: NDArray) -> NDArray:
     """How far branches are from their starts, up to whole turns of the table."""
-    away = here.z - first.z
-    turns = 2 * np.pi * np.round(away[:, [0]] / (2 * np.pi))
-    away[:, : equations.size : equations.unknowns] -= turns
+    turns = np.round((here.z - first.z)[:, 0] / (2 * np.pi))
+    away = equations.later(here.z - first.z, -turns)
     return np.linalg.norm(away / units, axis=1)
 
 
@@ -339,8 +338,7 @@ def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDA
     """The points of one row; a closed branch ends exactly at its start."""
     if end == CLOSED:
         ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0
-        turns = 2 * np.pi * np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
-        z = path[0].z.copy()
-        z[:, : equations.size : equations.unknowns] += turns
+        turns = np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))
+        z = equations.later(path[0].z, turns)
         path = [*(path[:-1] if ahead else path), path[0]._replace(z=z)]
     return Points(*(np.concatenate(each) for each in zip(*path, strict=True)))

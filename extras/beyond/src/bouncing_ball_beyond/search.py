@@ -26,10 +26,7 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
 
 def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Orbits whose first impact is in the first period of the table, at a time in [0, 2π)."""
-    z = z.copy()
-    turns = 2 * np.pi * np.floor(z[:, [0]] / (2 * np.pi))
-    z[:, : equations.size : equations.unknowns] -= turns
-    return z
+    return equations.later(z, -np.floor(z[:, 0] / (2 * np.pi)))
 
 
 def guess_of_instants(

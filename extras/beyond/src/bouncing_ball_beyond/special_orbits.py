@@ -186,9 +186,8 @@ def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))
     if not found[0]:
         return None
-    z = half.doubled(solution)[1][0]
-    turns = 2 * np.pi * np.round((ends[0, 0] - z[0]) / (2 * np.pi))
-    z[: equations.size : equations.unknowns] += turns
+    twice = half.doubled(solution)[1]
+    z = equations.later(twice, np.round((ends[0, 0] - twice[0, 0]) / (2 * np.pi)))[0]
     units = equations.scales(ends[:1])[0]
     reach = np.abs((ends[1] - ends[0]) / units).max()
     return z if np.abs((z - ends[0]) / units).max() < 3 * reach else None

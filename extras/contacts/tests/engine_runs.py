@@ -213,11 +213,7 @@ def pybullet(trial):
     for body in (one, other):
         pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
     pybullet.resetBaseVelocity(other, [trial.slide, 0, -trial.speed], [0, trial.spin, 0])
-    # If one body alone is set, it is the one that falls.
-    names = {"pybullet": pybullet, "one": one, "other": other}
-    if trial.design.one_body:
-        names["one"] = other
-    exec(trial.design.snippet, names)
+    exec(trial.design.snippet, {"pybullet": pybullet, "one": one, "other": other})
     poses = []
     others = []
     peak = 0.0
@@ -254,13 +250,8 @@ def drake(trial):
         # Its surface is at the height of 0, and the body starts above.
         table = pydrake.Box(18, 18, 0.02) if trial.table == "slab" else pydrake.HalfSpace()
         here = pydrake.RigidTransform([0, 0, -0.01 if trial.table == "slab" else 0])
-        properties = names["properties"]
-        if trial.design.one_body:
-            properties = pydrake.ProximityProperties()
-            friction = pydrake.CoulombFriction(0, 0)
-            pydrake.AddContactMaterial(friction=friction, properties=properties)
         world = plant.world_body()
-        plant.RegisterCollisionGeometry(world, here, table, "table", properties)
+        plant.RegisterCollisionGeometry(world, here, table, "table", names["properties"])
     plant.Finalize()
     log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, trial.step)
     simulator = pydrake.Simulator(builder.Build())

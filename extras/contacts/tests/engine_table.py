@@ -54,7 +54,7 @@ CASES = [
         "ball",
         dict(mass="1 kg", restitution=0.5, radius="5 cm"),
         "1 ms",
-        {"one_body": True},
+        {"pick": "your step"},
     ),
     ("pybullet", "box", BOX, "1 ms", {}),
     (
@@ -224,7 +224,7 @@ def cells(name, shape, wanted, time_step, more, friction):
     """Return the further cells of a row of the table, and whether the engine agrees."""
     found = design(Bounce(**wanted, friction=friction), name, time_step, **more)
     outcome = found.row.outcome
-    problem = Problem(found.bounce, engine_named(name), found.one_body)
+    problem = Problem(found.bounce, engine_named(name))
     law = problem.law_of(found.parameters, found.row.step)
     # The design is for neighbouring steps as well, and the engine has this one.
     here = problem.outcome(law, found.row.step, exact(offsets(401)))

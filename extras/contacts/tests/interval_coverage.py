@@ -6,9 +6,6 @@ That of recordings without scatter is the interval for no scatter, if the answer
 whose interval holds the true r; the median of its half width; how many times wider the intervals
 are than ones about the same r that hold it in 95 %; and the share in which the true law is
 rejected, if it is one of the fitted laws.
-
-``python tests/interval_coverage.py both [RECORDINGS]`` prints how often the second interval is
-shown, and how often both hold the true r.
 """
 
 import math
@@ -496,67 +493,7 @@ def study(kind, recordings, seed):
     return held, np.median(widths) * math.exp(truth[-1]), wider, int(np.sum(rejected))
 
 
-# As above. The scatter of ln r is that of r, divided by r.
-BOTH = [
-    (
-        "7 impacts heard to 0.3 ms, scatter 0.01, resolution stated",
-        partial(FLAT, 0.8),
-        None,
-        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
-        3e-4,
-    ),
-    (
-        "the same, resolution not stated",
-        partial(FLAT, 0.8),
-        None,
-        partial(flights, impacts=7, error=3e-4, scatter=0.0125, start=3.55),
-    ),
-    (
-        "6 impacts heard to 0.3 ms, r = 0.6, scatter 0.02",
-        partial(FLAT, 0.6),
-        None,
-        partial(flights, impacts=6, error=3e-4, scatter=0.033, start=3.75),
-    ),
-    (
-        "4 impacts heard to 0.1 ms, r = 0.85, scatter 0.01",
-        partial(FLAT, 0.85),
-        None,
-        partial(flights, impacts=4, error=1e-4, scatter=0.0118, start=3.75),
-    ),
-    (
-        "7 impacts heard to 1 ms, no scatter, v^-0.1",
-        partial(power, 0.8, -0.1),
-        None,
-        partial(flights, impacts=7, error=1e-3, scatter=0, start=3.35),
-    ),
-    (
-        "5 impacts heard to 1 ms, r = 0.9, no scatter",
-        partial(FLAT, 0.9),
-        None,
-        partial(flights, impacts=5, error=1e-3, scatter=0, start=2.8),
-    ),
-]
-
-
-def both(recordings):
-    print("| recording | second interval shown | it holds r | first one holds r |")
-    print("| --- | --- | --- | --- |")
-    for kind in BOTH:
-        rng = np.random.default_rng(900)
-        first = []
-        second = []
-        for _ in range(recordings):
-            scattering, still, _, truth, _ = answer(kind, rng)
-            first.append(scattering.low <= truth <= scattering.high)
-            if still is not None:
-                second.append(still.low <= truth <= still.high)
-        print(f"| {kind[0]} | {len(second)} | {sum(second)} | {sum(first)} |", flush=True)
-
-
 def main():
-    if sys.argv[1:2] == ["both"]:
-        both(int((sys.argv[2:] or ["500"])[0]))
-        return
     recordings = int(sys.argv[1]) if len(sys.argv) > 1 else 1000
     chosen = [int(each) for each in sys.argv[2:]] or range(len(KINDS))
     print("| recording | held, % | half width | wider than needed | true law rejected, % |")

@@ -76,7 +76,10 @@ def _written(parameters):
 
 def test_a_least_change_keeps_the_tolerance_if_need_be_at_a_shorter_step():
     found = asked(0.5, "mujoco", {"solref": "-1e5 -200"}, "2 ms")
-    assert found.change.outcome.deviation(0.5) <= 0.02 and found.change.step < found.time_step
+    assert (
+        found.change.outcome.restitution.deviation(0.5) <= 0.02
+        and found.change.step < found.time_step
+    )
     # Then the nearest damping at this step is named, and the design of this step.
     reason = "; ".join(found.reasons)
     assert "damping of this contact keeps r within 0.02 at this step; the nearest: solref" in reason
@@ -501,9 +504,8 @@ def test_parameters_may_have_units():
 
 
 @pytest.mark.parametrize("rule", [SERIES, SUM, MEAN, PRODUCT, PAIR], ids=lambda rule: rule.text)
-def test_a_rule_and_its_inverses_agree(rule):
+def test_a_rule_and_its_inverse_agree(rule):
     assert rule.of(rule.alike(0.3), rule.alike(0.3)) == pytest.approx(0.3)
-    assert rule.of(rule.alone(0.3, 0.9), 0.9) == pytest.approx(0.3)
 
 
 def test_two_bodies_may_have_two_materials():
@@ -542,7 +544,7 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
         ("physx", {"restitutionCombineMode": "mean"}, "none of average, min, multiply, max"),
         ("pybullet", {"contactStiffness": -2}, "not between 0 and inf"),
         # Names that the engine has and the row has not; E was read as e, and the last one counted.
-        ("gazebo", {"min_depth": 1e-3}, "the row of gazebo does not use 'min_depth'"),
+        ("gazebo", {"min_depth": 1e-3}, "gazebo does not use 'min_depth'"),
         ("lammps-hertz", {"kn": 1e7, "e": 0.7, "E": 0.5}, "does not use 'E'"),
         ("lammps", {"kn": 1e5, "gamma_n": 2, "Kn": 2e5}, "'Kn' gives kn twice"),
         # These were an AttributeError.

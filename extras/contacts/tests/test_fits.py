@@ -67,9 +67,14 @@ def test_intervals_hold_the_truth(kind):
 
 
 def test_few_readings_have_an_interval_for_each_assumption():
-    """One interval for both covered 99.8 % of recordings without scatter, 4.5 times too wide."""
+    """One interval for both covered 99.8 % of recordings without scatter, 4.5 times too wide.
+
+    Without the error of a reading the second one held r in 201 of 500 recordings that scatter.
+    """
     times = np.array([0.0, 0.7323, 1.3192, 1.7874, 2.1634, 2.4636])
-    found = fit(Recording("heard", "flights", (np.diff(times),)))
+    recording = Recording("heard", "flights", (np.diff(times),))
+    assert fit(recording).without_scatter is None
+    found = fit(recording, resolution="0.5 ms")
     low, high = found.interval
     least, most = found.without_scatter
     assert low < least < 0.8 < most < high and 3 * (most - least) < high - low
@@ -222,26 +227,19 @@ def test_a_resolution_far_below_the_scatter_does_not_hide_it():
 def test_the_second_interval_is_left_out_where_impacts_contradict_it():
     """It was shown for 487 of 500 such recordings, and held r in 146."""
     rng = np.random.default_rng(8)
-
-    def shown(known, count):
-        recordings = [impacts_of(heard(rng, 3e-4, 0.0125)) for _ in range(count)]
-        found = [estimates(each, curves_of(each, known, 2.0))[1] for each in recordings]
-        return sum(each is not None for each in found)
-
-    # Of 500 it is shown for 3 with a stated error, and for 303 without one.
-    assert shown(3e-4, 15) <= 1
-    assert shown(None, 30) <= 25
+    recordings = [impacts_of(heard(rng, 3e-4, 0.0125)) for _ in range(15)]
+    found = [estimates(each, curves_of(each, 3e-4, 2.0))[1] for each in recordings]
+    # Of 500 it is shown for 3.
+    assert sum(each is not None for each in found) <= 1
 
 
-@pytest.mark.parametrize("known", [None, 1e-3])
-def test_recordings_without_scatter_are_rejected_as_one_in_twenty(known):
+def test_recordings_without_scatter_are_rejected_as_one_in_twenty():
     """Of 300 recordings 15 ± 4 are below 5 %, and 150 ± 9 below 50 %."""
     rng = np.random.default_rng(2)
     found = []
     for _ in range(300):
         impacts = impacts_of(heard(rng, 1e-3, 0.0))
-        curves = curves_of(impacts, known, 2.0)
-        found.append(without_scatter(impacts, curves))
+        found.append(without_scatter(impacts, curves_of(impacts, 1e-3, 2.0)))
     assert 3 <= np.sum(np.array(found) < 0.05) <= 30
     assert 115 <= np.sum(np.array(found) < 0.5) <= 185
 
@@ -250,7 +248,8 @@ def test_recordings_without_scatter_are_rejected_as_one_in_twenty(known):
 def test_two_impacts_contradict_nothing(known):
     impacts = impacts_of(Recording("", "flights", (np.array([0.8, 0.62, 0.51]),)))
     curves = curves_of(impacts, known, 2.0)
-    assert without_scatter(impacts, curves) == 1
+    # Rounding errors are left.
+    assert without_scatter(impacts, curves) == pytest.approx(1)
     assert {law.verdict for law in judge(impacts, curves, 2.0)} == {"undecided"}
 
 
@@ -272,7 +271,6 @@ def test_r_of_exactly_1_everywhere_contradicts_nothing():
     pairs = np.array([[1.0, 1.0], [2.0, 1.0], [3.0, 1.0], [4.0, 1.0]])
     found = fit(Recording("exact", "coefficients", (pairs,)), laws=True)
     assert found.restitution == found.interval[1] == 1
-    assert without_scatter(found.impacts, curves_of(found.impacts, None, 2.0)) == 1
     assert not [law for law in found.laws if law.probability < 0.05]
 
 

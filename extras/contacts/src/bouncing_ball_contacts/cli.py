@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, design
-from bouncing_ball_contacts.engines import ENGINES, engine_named
+from bouncing_ball_contacts.engines import ENGINES, as_compared, engine_named
 from bouncing_ball_contacts.scripts import drop_script
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
@@ -64,7 +64,6 @@ def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
 _ENGINE = click.Option(
     ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
 )
-_ONE_BODY = click.Option(["--one-body"], is_flag=True, help="The other body keeps its defaults.")
 _JSON = click.Option(["--json", "as_json"], is_flag=True, help="All numbers, in SI units.")
 
 
@@ -90,82 +89,84 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-def _values(found: Any) -> dict[str, Any]:
-    from bouncing_ball_contacts.rebounds import Rebound
+def _without_source(fields: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Return the fields of an answer without the row of its engine, which has functions."""
+    return {name: value for name, value in fields if name != "source"}
 
+
+def _values(found: Any) -> dict[str, Any]:
+    """Return the numbers and texts of an answer, or of several."""
     if isinstance(found, dict):
         return {name: _values(each) for name, each in found.items()}
-    values = dataclasses.asdict(found)
-    if isinstance(found, Rebound):
-        values |= {"snippet": found.snippet, "notes": found.notes}
-    if isinstance(found, Design):
-        values |= {"parameters": found.parameters, "snippet": found.snippet}
-    values.pop("source", None)
+    values = dataclasses.asdict(found, dict_factory=_without_source)
+    texts = ("parameters", "snippet", "notes")
+    values |= {name: getattr(found, name) for name in texts if hasattr(found, name)}
     return values
 
 
 def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None) -> None:
-    if not as_json:
-        if isinstance(found, dict):
-            found = "\n\n".join(f"{name}\n{each}" for name, each in found.items())
-        click.echo("\n\n".join(str(each) for each in (found, written) if each is not None))
+    if as_json:
+        values = _values(found) | ({} if written is None else {"design": _values(written)})
+        # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
+        text = json.dumps(values, default=lambda array: array.tolist())
+        plain = json.loads(text, parse_constant=lambda _: None)
+        click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
-    values = _values(found)
-    if written is not None:
-        values["design"] = _values(written)
-    # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
-    text = json.dumps(values, default=lambda array: array.tolist())
-    plain = json.loads(text, parse_constant=lambda _: None)
-    click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
+    several = found.items() if isinstance(found, dict) else [("", found)]
+    answers = [f"{name}\n{each}".lstrip("\n") for name, each in several]
+    click.echo("\n\n".join([*answers, *([] if written is None else [str(written)])]))
 
 
-def _write_script(found: Design, path: str | None) -> None:
-    if path is None:
-        return
+def _write_script(found: Design, path: Path) -> None:
     text = drop_script(found)
     imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
-    if Path(path).stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
-        raise Refused(f"a script named {Path(path).name} hides the module of the engine: rename it")
-    if Path(path).exists():
+    if path.stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
+        raise Refused(f"a script named {path.name} hides the module of the engine: rename it")
+    if path.exists():
         raise Refused(f"{path} exists, and is not overwritten")
-    Path(path).write_text(text, "utf-8")
+    path.write_text(text, "utf-8")
 
 
-@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _ONE_BODY, _JSON])
-def design_command(
+def _written_for(
     engine: str,
+    body: dict[str, Any],
+    contact: dict[str, Any],
     time_step: str | None,
     tolerance: str | None,
-    one_body: bool,
     pick: str | None,
     script: str | None,
-    as_json: bool,
-    **bounce: Any,
-) -> None:
-    """Write the contact of an engine, or its restitution number, for the bounce that you want."""
+) -> "Design | Rebound":
+    """Return what is written into an engine; the contact is for one with springs."""
     # Other names than those of springs may be known where the restitution is a number.
     if engine not in ENGINES:
         from bouncing_ball_contacts.rebounds import engine_by_number, falling, number_for
 
         row = engine_by_number(engine)
         if row is not None and row.name not in ENGINES:
-            options = {"--one-body": one_body, "--pick": pick, "--script": script}
-            for option, value in options.items():
+            for option, value in {"pick": pick, "script": script}.items():
                 if value:
-                    raise Refused(f"{option} has no place where the restitution is a number")
-            _print(number_for(falling(**bounce), row, time_step), as_json)
-            return
+                    raise Refused(f"--{option} has no place where the restitution is a number")
+            return number_for(falling(**body), row, time_step)
         engine = row.name if row else engine
-    found = design(
-        Bounce(**bounce),
-        engine_named(engine),
-        time_step,
-        tolerance=tolerance or TOLERANCE,
-        one_body=one_body,
-        pick=pick,
-    )
-    _write_script(found, script)
-    _print(found, as_json)
+    bounce = Bounce(**body, **contact)
+    found = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
+    if script is not None:
+        _write_script(found, Path(script))
+    return found
+
+
+@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _JSON])
+def design_command(
+    engine: str,
+    time_step: str | None,
+    tolerance: str | None,
+    pick: str | None,
+    script: str | None,
+    as_json: bool,
+    **bounce: Any,
+) -> None:
+    """Write the contact of an engine, or its restitution number, for the bounce that you want."""
+    _print(_written_for(engine, bounce, {}, time_step, tolerance, pick, script), as_json)
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
@@ -198,7 +199,7 @@ def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]
         _FRICTION,
         _ENGINE,
         _STEP,
-        _ONE_BODY,
+        click.Option(["--one-body"], is_flag=True, help="The other body keeps its defaults."),
         _JSON,
         click.Option(
             ["--other"], multiple=True, help="NAME=VALUE of the other body, if it differs."
@@ -226,8 +227,9 @@ def diagnose_command(
         typed = _own_of_ode(typed, time_step)
     beside = _assigned(other) if other or one_body else None
     row = engine_by_number(engine)
-    names = {name.lower() for name in typed}
-    if row is not None and row.springs and (not names or names - row.names.keys()):
+    # An engine with both has springs, unless all names are those of its number.
+    by_number = row and typed and set(map(as_compared, typed)) <= row.names.keys()
+    if row is not None and row.springs and not by_number:
         engine = row.springs
         row = None
     if row is not None:
@@ -240,14 +242,6 @@ def diagnose_command(
     _print(diagnose(body, known, typed, time_step, other=beside), as_json)
 
 
-def _lines(text: str | None) -> tuple[int, ...]:
-    """Return the numbers of a text such as '4,7'."""
-    try:
-        return tuple(int(part) for part in (text or "").replace(",", " ").split())
-    except ValueError:
-        raise Refused(f"--leave-out {text!r}: give numbers of lines, such as 4,7") from None
-
-
 @main.command(
     "fit",
     params=[
@@ -258,7 +252,9 @@ def _lines(text: str | None) -> tuple[int, ...]:
         click.Option(["--resolution"], help="Standard deviation of a reading, such as '0.7 ms'."),
         click.Option(["--mass"], help="Of the ball, for the drag of the air and the engine."),
         click.Option(["--diameter"], help="Of the ball, for the drag of the air."),
-        click.Option(["--leave-out"], help="Lines of the file, such as 4,7."),
+        click.Option(
+            ["--leave-out"], type=int, multiple=True, help="A line of the file; may be repeated."
+        ),
         click.Option(["--ball"], help="One of several in the file."),
         click.Option(["--read-at"], help="Of rebound heights, off the ball: bottom or top."),
         click.Option(["--laws"], is_flag=True, help="Judge contact laws by r over the speed."),
@@ -273,7 +269,7 @@ def _lines(text: str | None) -> tuple[int, ...]:
 )
 def fit_command(
     recording: str,
-    leave_out: str | None,
+    leave_out: tuple[int, ...],
     ball: str | None,
     engine: str | None,
     time_step: str | None,
@@ -292,17 +288,10 @@ def fit_command(
     RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
     from bouncing_ball_contacts.fits import fit
-    from bouncing_ball_contacts.rebounds import engine_by_number, falling, number_for
     from bouncing_ball_contacts.recordings import read
 
-    balls = read("/dev/stdin" if recording == "-" else recording, _lines(leave_out), ball)
+    balls = read("/dev/stdin" if recording == "-" else recording, leave_out, ball)
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
-    if len(fits) > 1:
-        if engine is not None:
-            raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
-        _print(fits, as_json)
-        return
-    found = next(iter(fits.values()))
     contact = {
         "density": density,
         "penetration": penetration,
@@ -310,21 +299,18 @@ def fit_command(
         "friction": friction,
     }
     of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
-    given = [name for name, value in (contact | of_design).items() if value is not None]
-    written: Design | Rebound | None = None
-    row = None if engine is None else engine_by_number(engine)
-    if row is not None and row.name not in ENGINES:
-        of_ball = {"mass": found.mass, "radius": found.diameter and found.diameter / 2}
-        wanted = {"restitution": found.restitution, "speed": found.speed}
-        written = number_for(falling(**of_ball, **wanted, **contact), row, time_step)
-    elif engine is not None:
-        bounce = found.bounce(**contact)
-        written = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
-        _write_script(written, script)
-    elif given:
-        option = given[0].replace("_", "-")
-        raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
-    _print(found, as_json, written)
+    given = {name: value for name, value in (contact | of_design).items() if value is not None}
+    if engine is None:
+        for name in given:
+            option = name.replace("_", "-")
+            raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
+        _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json)
+        return
+    if len(fits) > 1:
+        raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
+    (found,) = fits.values()
+    body, by_time = found.wanted({name: value for name, value in contact.items() if value})
+    _print(found, as_json, _written_for(engine, body, by_time, **of_design))
 
 
 @main.command("engines")
@@ -347,14 +333,11 @@ def run() -> None:
     """Run the command; a mistake is one line, and the exit status is 2."""
     try:
         sys.exit(main(standalone_mode=False))
-    except (Refused, click.ClickException, OSError) as mistake:
+    except (Refused, click.ClickException, OSError, ArithmeticError) as mistake:
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
-        click.echo(f"bounce: {' '.join(str(text).split())}", err=True)
-        sys.exit(2)
-    except ArithmeticError as too_far:
-        click.echo(
-            f"bounce: a quantity is too large or too small to be computed: {too_far}", err=True
-        )
+        is_far = isinstance(mistake, ArithmeticError)
+        said = "a quantity is too large or too small to be computed: " if is_far else ""
+        click.echo(f"bounce: {said}{' '.join(str(text).split())}", err=True)
         sys.exit(2)
     except click.Abort:
         sys.exit(130)

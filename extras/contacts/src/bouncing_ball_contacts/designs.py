@@ -22,7 +22,6 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
-from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -33,11 +32,10 @@ from bouncing_ball_contacts.engines import (
     Setting,
     engine_named,
     filled,
-    gripping,
     snippet_of,
 )
 from bouncing_ball_contacts.schemes import (
-    MOST_STEPS,
+    Array,
     Drops,
     Impedance,
     Implicit,
@@ -67,9 +65,6 @@ Quantity = Any
 
 TOLERANCE = 0.02
 """Of r, if none is given."""
-LIGHTEST = 1.2
-HEAVIEST = 22600.0
-"""Densities of air and of osmium in kg/m³, between which those of bodies are."""
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
 
@@ -276,16 +271,6 @@ class Bounce:
         return self.radius or (volume / solid) ** (1 / 3)
 
     @property
-    def oddity(self) -> str:
-        """What is said of a body that is lighter than air or heavier than osmium; else empty."""
-        solid = 8 if self.points > 1 else 4 / 3 * math.pi
-        density = self.mass / (solid * self.size**3)
-        compared = "less than air" if density < LIGHTEST else "more than osmium"
-        if LIGHTEST <= density <= HEAVIEST:
-            return ""
-        return f"the body has {density:.2g} kg/m³, {compared}: are its mass and size right?"
-
-    @property
     def other_size(self) -> float:
         """The size of a second free body of the same density in m, infinite of the ground."""
         return self.size * ((self.other_mass or math.inf) / self.mass) ** (1 / 3)
@@ -307,7 +292,7 @@ class Bounce:
         return any(getattr(self, name) is not None for name in _CONTACT)
 
     @property
-    def assumed_body(self) -> list[str]:
+    def assumed(self) -> list[str]:
         """What was not given of the drop and of the body, in words."""
         solid = "a solid cube" if self.points > 1 else "a solid ball"
         of = "this density" if self.density else "steel (give its size or --density)"
@@ -324,44 +309,43 @@ class Bounce:
             ]
         )
 
-    @property
-    def assumed(self) -> list[str]:
-        """What was not given of a design, in words."""
-        tenth = f"a tenth of the {self.size_name}"
-        share = tenth if self.limit == self.size / 10 else "a fifth of the drop height"
-        depth = f"it may sink {show(self.limit, 'm')}, {share} (--penetration)"
-        return self.assumed_body + holding([(not self.gives_contact, depth)])
+
+class Range(NamedTuple):
+    """The least, the mean and the greatest r of a contact."""
+
+    low: float
+    mean: float
+    high: float
+
+    @classmethod
+    def of(cls, restitutions: Array) -> "Range":
+        """Return those of drops."""
+        return cls(*(float(f(restitutions)) for f in (np.min, np.mean, np.max)))
+
+    def deviation(self, wanted: float) -> float:
+        """Return the largest distance from the r that is wanted."""
+        return max(wanted - self.low, self.high - wanted)
+
+    def __str__(self) -> str:
+        """Return mean ± largest distance, or the ends if that reaches 0."""
+        error = self.deviation(self.mean)
+        is_wide = 0 < self.mean <= error
+        return span(self.low, self.high) if is_wide else f"{self.mean:.3f} ± {error:.3f}"
 
 
 @dataclass(frozen=True)
 class Outcome:
     """What a contact does in the steps of an engine, over all instants of the impact.
 
-    Pairs are least and greatest values; ``depth`` and ``rest`` are in m, ``force`` in N, and
-    ``restitution`` has the least, the mean and the greatest value. ``rest`` is NaN if the body
-    never rests, or lies less deep than the engine resolves.
+    ``depth`` and ``rest``, the depth at rest, are in m, and ``force`` is in N; pairs are least and
+    greatest values. ``rest`` is NaN if the body never rests, or lies less deep than the engine
+    resolves.
     """
 
     depth: tuple[float, float]
     rest: float
     force: tuple[float, float]
-    restitution: tuple[float, float, float]
-
-    def deviation(self, wanted: float) -> float:
-        """Return the largest distance of r from the wanted one."""
-        low, _, high = self.restitution
-        return max(wanted - low, high - wanted)
-
-    @property
-    def error(self) -> float:
-        """The largest distance of r from its mean."""
-        return self.deviation(self.restitution[1])
-
-    @property
-    def around(self) -> str:
-        """r as it is printed: mean ± largest distance, or the range if that reaches 0."""
-        low, mean, high = self.restitution
-        return span(low, high) if 0 < mean <= self.error else f"{mean:.3f} ± {self.error:.3f}"
+    restitution: Range
 
 
 @dataclass(frozen=True)
@@ -395,15 +379,10 @@ def _written(value: Any) -> Any:
 
 @dataclass(frozen=True)
 class Problem:
-    """A bounce in an engine, for which contacts are tried.
-
-    ``one_body`` is whether the other body keeps its defaults, and ``tolerance`` the largest
-    deviation of r.
-    """
+    """A bounce in an engine with the largest deviation of r, for which contacts are tried."""
 
     bounce: Bounce
     engine: Engine
-    one_body: bool = False
     tolerance: float = TOLERANCE
 
     @property
@@ -413,9 +392,8 @@ class Problem:
         A ball that sinks by more than its radius may leave a table on its other side, and two free
         bodies that overlap by more than a quarter of one slide past each other.
         """
-        if self.bounce.other_mass is None:
-            return self.bounce.size
-        return min(self.bounce.size, self.bounce.other_size) / 4
+        share = 1 if self.bounce.other_mass is None else 4
+        return min(self.bounce.size, self.bounce.other_size) / share
 
     @property
     def deepest(self) -> float:
@@ -426,12 +404,9 @@ class Problem:
     @property
     def lost(self) -> str:
         """What happens beyond the deepest depth."""
-        depth = show(self.deepest, "m")
-        return (
-            f"{self.engine.name} loses a body that sinks more than {depth}"
-            if self.bounce.other_mass is None
-            else f"bodies that sink more than {depth} pass through each other"
-        )
+        if self.bounce.other_mass is None:
+            return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
+        return f"bodies that sink more than {show(self.deepest, 'm')} pass through each other"
 
     def setting(self, step: float) -> Setting:
         """Return where a contact is used at a time step in s."""
@@ -448,91 +423,65 @@ class Problem:
         return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
 
     def law_of(self, parameters: Parameters, step: float) -> Law:
-        """Return the contact of written parameters at a time step in s."""
-        one = {**self.engine.defaults, **parameters}
-        other = self.engine.defaults if self.one_body else one
-        return self.engine.read(self.engine.combined(one, other), self.setting(step))
+        """Return the contact of parameters that both bodies have, at a time step in s."""
+        body = {**self.engine.defaults, **parameters}
+        return self.engine.read(self.engine.combined(body, body), self.setting(step))
 
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
         """Return the drops of contacts at a time step in s."""
-        return drop(
-            law,
-            OfSolver() if isinstance(law, Solved) else self.engine.scheme,
-            step,
-            self.bounce.impact_speed,
-            self.bounce.load,
-            trials,
-        )
+        scheme = OfSolver() if isinstance(law, Solved) else self.engine.scheme
+        return drop(law, scheme, step, self.bounce.impact_speed, self.bounce.load, trials)
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
         """Return what one contact does at a time step in s."""
         found = self.drops(law, step, trials)
-        r = found.restitution
         force = found.peak * self.bounce.reduced_mass
         rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
-        least = self.engine.resolution * self.bounce.size
-        if isinstance(law, Impedance):
-            # It hardly feels gravity: the body hops by what gravity moves it in a step.
-            least = max(least, self.bounce.load * step**2)
-        is_resolved = rest == 0 or rest >= least
+        # A contact of MuJoCo hardly feels gravity: the body hops by what this moves it in a step.
+        hop = self.bounce.load * step**2 if isinstance(law, Impedance) else 0.0
+        is_resolved = rest == 0 or rest >= max(self.engine.resolution * self.bounce.size, hop)
         return Outcome(
             # A body that creeps is not followed until it is at rest.
             depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
             rest=rest if is_resolved else math.nan,
             force=(float(force.min()), float(force.max())),
-            restitution=(float(r.min()), float(r.mean()), float(r.max())),
+            restitution=Range.of(found.restitution),
         )
 
-    def restless(self, law: Law, step: float, found: Outcome) -> str:
+    def hops(self, law: Law, step: float, found: Outcome) -> str:
         """Return why a body never lies still, and by how much it hops; empty if it does.
 
         A rebound leaves r of a speed, and a step of gravity, which is thrown back by a number and
         by MuJoCo's contact, adds g h to it: the body leaves with about g h/(1 - r).
         """
         fall = self.bounce.load * step
-        _, r, _ = found.restitution
         speed = 0.0
-        # All bodies hop a little in MuJoCo.
-        slight = self.bounce.size / 100 if isinstance(law, Impedance) else 0.0
-        if isinstance(law, Impedance) and r < 1:
-            speed = fall / max(1 - r, LEAST_RESTITUTION)
-        elif r < 1 and isinstance(law, Solved) and np.any(np.isnan(law.rest(self.bounce.load))):
+        if isinstance(law, Impedance):
+            speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
+        elif isinstance(law, Solved) and math.isnan(found.rest):
             speed = min(float(np.max(law.settling(fall))), self.bounce.impact_speed)
         height = speed**2 / (2 * self.bounce.load) if speed else 0.0
-        return (height > slight) * (
+        # All bodies hop a little in MuJoCo.
+        is_seen = height > (self.bounce.size / 100 if isinstance(law, Impedance) else 0.0)
+        return is_seen * (
             f"it never lies still, but hops by up to about {show(height, 'm', 2)}, because each "
             "step of gravity is thrown back: a shorter one less"
         )
 
-    def slides(self, law: Impedance, damping: float, step: float) -> str:
-        """Return what is left of a sliding speed by a damping along the surface in 1/s.
+    def slides(self, law: Law, step: float) -> str:
+        """Return how weakly friction acts in MuJoCo, where it is a damper as that of the contact.
 
-        A body at rest leaves a contact of MuJoCo for one or two steps each time, in which it is
-        not held on a slope.
+        A body at rest leaves the contact for one or two steps each time, in which it is not held on
+        a slope.
         """
-        share = damping / math.sqrt(float(law.stiffness))
-        creeps = 2 * self.bounce.load * math.sin(math.radians(10)) * step / (math.pi * share)
-        on_a_slope = f", and a body at rest on 10° creeps at up to {1e3 * creeps:.2g} mm/s"
+        share = float(law.damping) / math.sqrt(float(law.stiffness))
+        if not share:
+            return "friction acts as a damper: nothing of a sliding speed is taken"
+        creeps = 2e3 * self.bounce.load * math.sin(math.radians(10)) * step / (math.pi * share)
         return (
-            f"a bounce leaves {100 * math.exp(-math.pi * share):.2g} % of a sliding speed that "
-            f"Coulomb's friction would take{on_a_slope if self.bounce.load else ''}"
-        )
-
-    def grip(self, parameters: Parameters, step: float) -> str:
-        """Return the pair of geoms with which friction in MuJoCo acts more strongly, or nothing."""
-        law: Any = self.law_of(parameters, step)
-        friction = self.bounce.friction or 0.0
-        if not friction or "solref" not in parameters:
-            return ""
-        damping = gripping(law, friction)
-        if damping <= float(law.damping):
-            return ""
-        stiffness, _ = parameters["solref"]
-        values = {"friction": friction, "grips": (stiffness, -_written(damping)), **parameters}
-        return (
-            f"{filled(snippet_of('mujoco-grip'), values).rstrip()}\nWith this pair in place of the "
-            f"class, {self.slides(law, damping, step)}; r of one that slides as fast as it falls "
-            "is lower by 0.01 at most"
+            f"friction acts as a damper: a bounce leaves {100 * math.exp(-math.pi * share):.2g} % "
+            "of a sliding speed that Coulomb's friction would take"
+            f"{f', and a body at rest on 10° creeps at up to {creeps:.2g} mm/s' if creeps else ''}"
         )
 
     @property
@@ -576,6 +525,10 @@ class Problem:
         law = self.law(depth, ratio)
         return Candidate(law, step, self.outcome(law, step))
 
+    def at(self, depth: float, step: float) -> Candidate:
+        """Return the contact of an undamped depth in m at a time step in s."""
+        return self.candidate(depth, self.ratio(depth, step), step)
+
     @property
     def permitted(self) -> float:
         """The depth in m that must not be exceeded, infinite of a contact that was given."""
@@ -583,13 +536,8 @@ class Problem:
 
     def keeps(self, found: Outcome, depth: float) -> bool:
         """Return whether r is within the tolerance, and the body sinks by a depth at most."""
-        return (
-            found.deviation(self.bounce.restitution) <= self.tolerance and found.depth[1] <= depth
-        )
-
-    def at(self, depth: float, step: float) -> Candidate:
-        """Return the contact of an undamped depth in m at a time step in s."""
-        return self.candidate(depth, self.ratio(depth, step), step)
+        deviation = found.restitution.deviation(self.bounce.restitution)
+        return deviation <= self.tolerance and found.depth[1] <= depth
 
     def step_of(self, count: float) -> Callable[[float], float]:
         """Return the step of an undamped depth with which a contact has so many steps."""
@@ -622,9 +570,14 @@ class Problem:
             contact = self.keeping(self.step_of(count))
             if self.keeps(contact.outcome, self.permitted):
                 return contact
-            is_deep = contact.outcome.depth[1] > self.permitted
-            tried.append((is_deep, contact.outcome.deviation(self.bounce.restitution), contact))
-        return min(tried, key=itemgetter(0, 1))[2]
+            tried.append(contact)
+        return min(
+            tried,
+            key=lambda each: (
+                each.outcome.depth[1] > self.permitted,
+                each.outcome.restitution.deviation(self.bounce.restitution),
+            ),
+        )
 
     def stiffest(self, step: float) -> Candidate:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
@@ -632,25 +585,23 @@ class Problem:
         It is found by halving, because r misses less the more steps there are. If there is none,
         it is the most compliant one.
         """
-        depths = [count * step / self.duration for count in _FINE_COUNTS]
 
         @functools.cache
-        def contact(place: int) -> Candidate:
-            return self.at(depths[place], step)
+        def contact(count: float) -> Candidate:
+            return self.at(count * step / self.duration, step)
 
-        places = range(len(depths))
-        place = bisect_left(places, True, key=lambda i: self.keeps(contact(i).outcome, math.inf))
-        return contact(min(place, places[-1]))
+        place = bisect_left(
+            _FINE_COUNTS, True, key=lambda count: self.keeps(contact(count).outcome, math.inf)
+        )
+        return contact(_FINE_COUNTS[min(place, len(_FINE_COUNTS) - 1)])
 
     def row(self, contact: Candidate) -> Row:
         """Return a contact with the parameters as they are written, and what these do."""
-        law = contact.law
-        combined = {**self.engine.write(law, self.setting(contact.step)), **self.engine.beside}
-        values = self.engine.of_one if self.one_body else self.engine.of_each
-        parameters = {name: _written(value) for name, value in values(combined).items()}
+        law, step, _ = contact
+        combined = {**self.engine.write(law, self.setting(step)), **self.engine.beside}
+        parameters = {n: _written(value) for n, value in self.engine.of_each(combined).items()}
         stiffness = float(law.deep.stiffness) * self.bounce.reduced_mass
-        outcome = self.outcome(self.law_of(parameters, contact.step), contact.step)
-        return Row(contact.step, stiffness, outcome, parameters)
+        return Row(step, stiffness, self.outcome(self.law_of(parameters, step), step), parameters)
 
     def promised(self, found: Outcome) -> tuple[float, float]:
         """Return the least and the greatest r of a contact in a scene, where bodies may slide."""
@@ -690,9 +641,11 @@ class Problem:
             outcome = self.outcome(self.law_of(parameters, step), step)
             tried.append(Row(step, math.nan, outcome, parameters))
             # Half of it, because r may depend on the number by jumps.
-            short = (self.bounce.restitution - outcome.restitution[1]) / 2
+            short = (self.bounce.restitution - outcome.restitution.mean) / 2
             number = float(np.clip(number + short, 0, 1))
-        return min(tried, key=lambda row: row.outcome.deviation(self.bounce.restitution))
+        return min(
+            tried, key=lambda row: row.outcome.restitution.deviation(self.bounce.restitution)
+        )
 
     def best(self, rows: Mapping[str, Row], keeps: bool) -> str:
         """Return the name of the row that is written if none is picked.
@@ -704,10 +657,13 @@ class Problem:
             return YOURS if keeps else WANTED
         # The impulse also keeps r of boxes and of bodies that slide, which implicit springs of
         # several points do not; if nothing is to rebound, a spring stops the body more softly.
-        for name in (IMPULSE, YOURS) if self.bounce.restitution > 0 else (YOURS, IMPULSE):
-            if name in rows and self.keeps(rows[name].outcome, self.usable_depth):
-                return name
-        return WANTED
+        order = (IMPULSE, YOURS) if self.bounce.restitution > 0 else (YOURS, IMPULSE)
+        usable = (
+            name
+            for name in order
+            if name in rows and self.keeps(rows[name].outcome, self.usable_depth)
+        )
+        return next(usable, WANTED)
 
 
 def design(
@@ -716,7 +672,6 @@ def design(
     time_step: Quantity = None,
     *,
     tolerance: Quantity = TOLERANCE,
-    one_body: bool = False,
     pick: str | None = None,
 ) -> "Design":
     """Return the contacts of an engine with which a body bounces as wanted, and what they do.
@@ -731,8 +686,6 @@ def design(
         within the tolerance, it is the stiffest contact whose r is.
     tolerance : Quantity
         The largest deviation of r.
-    one_body : bool
-        Whether the parameters of one body are written, and the other one keeps its defaults.
     pick : str, optional
         The row that is written, by default the one that keeps what was given.
 
@@ -743,12 +696,8 @@ def design(
     """
     if not isinstance(bounce, Bounce):
         raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
-    problem = Problem(
-        bounce=bounce,
-        engine=engine_named(engine),
-        one_body=one_body,
-        tolerance=within("tolerance", tolerance, 1e-4, 1),
-    )
+    problem = Problem(bounce, engine_named(engine), within("tolerance", tolerance, 1e-4, 1))
+    known = problem.engine
     refuse(
         [
             (
@@ -756,8 +705,8 @@ def design(
                 "the restitution is missing: --restitution 0.8 or restitution=0.8",
             ),
             (
-                bounce.stiffness is not None and problem.engine.unit != "N/m",
-                f"{problem.engine.name} has no stiffness in N/m: give the penetration",
+                bounce.stiffness is not None and known.unit != "N/m",
+                f"{known.name} has no stiffness in N/m: give the penetration",
             ),
         ]
     )
@@ -767,14 +716,15 @@ def design(
     rows = {WANTED: problem.row(strict.wanted())}
     keeps = False
     if step is not None:
-        kept = problem.keeping(lambda _: step)
-        keeps = problem.keeps(kept.outcome, problem.permitted)
-        contact = kept if keeps else problem.stiffest(step)
+        contact = problem.keeping(lambda _: step)
+        keeps = problem.keeps(contact.outcome, problem.permitted)
+        if not keeps:
+            contact = problem.stiffest(step)
         # Beyond these the engine loses the body, or the ground swallows it.
         is_held = not contact.outcome.rest >= bounce.size
         if keeps or (is_held and problem.keeps(contact.outcome, problem.deepest)):
             rows[YOURS] = problem.row(contact)
-    if problem.engine.number and not one_body and (step or bounce.restitution):
+    if known.number and (step or bounce.restitution):
         rows[IMPULSE] = problem.impulse(step or problem.short_step)
         is_usable = problem.keeps(rows[IMPULSE].outcome, problem.usable_depth)
         if not (is_usable or bounce.gives_contact):
@@ -782,16 +732,7 @@ def design(
     chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
     names = ", ".join(map(repr, rows))
     refuse([(chosen not in rows, f"row {pick!r} is not one that is written here: {names}")])
-    found = Design(
-        bounce=bounce,
-        engine=problem.engine.name,
-        source=problem.engine,
-        one_body=one_body,
-        time_step=step,
-        rows=rows,
-        chosen=chosen,
-        notes=(),
-    )
+    found = Design(bounce, known.name, known, step, rows, chosen, ())
     return replace(found, notes=tuple(_notes(found, problem, keeps)))
 
 
@@ -800,67 +741,60 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
     bounce = problem.bounce
     row = found.row
     outcome = row.outcome
-    low, mean, high = outcome.restitution
+    r = outcome.restitution
     law = problem.law_of(row.parameters, row.step)
-    restless = problem.restless(law, row.step, outcome)
+    hops = problem.hops(law, row.step, outcome)
     # The threshold is of the speed with that of a step of gravity.
     slowest = 0.0
-    if bounce.load and law.is_number and not restless:
+    if bounce.load and law.is_number and not hops:
         slowest = row.parameters[problem.engine.threshold] - bounce.load * row.step
-    lowest = slowest**2 / (2 * bounce.load) if bounce.load else 0.0
-    is_undamped = not law.is_number and float(law.damping) == 0 and mean < bounce.restitution
+    lowest = slowest**2 / (2 * bounce.load) if slowest else 0.0
     slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
-    slow = replace(problem, bounce=slower).outcome(law, row.step)
+    slow = replace(problem, bounce=slower).outcome(law, row.step).restitution
+    is_undamped = not law.is_number and float(law.damping) == 0 and r.mean < bounce.restitution
     wanted = found.rows[WANTED]
+    step = found.time_step or wanted.step
+    is_none = found.time_step is not None and YOURS not in found.rows
     depth = found.rows.get(YOURS, wanted).outcome.depth[1]
     is_deeper = depth > 1.01 * wanted.outcome.depth[1] and not keeps and found.chosen != IMPULSE
-    is_unusable = (
-        found.chosen == WANTED and depth > problem.usable_depth and not bounce.gives_contact
-    )
-    share = f"{100 * depth / bounce.size:.3g} % of its {bounce.size_name}"
-    thickness = show(2 * (depth - bounce.size), "m")
-    passes = f"its centre passes the surface (a table has to be thicker than {thickness})"
-    step = found.time_step or wanted.step
-    at_yours = show(step, "s", 4)
-    moves = (
-        f"because it moves {show(bounce.impact_speed * step, 'm')} in a step; at "
-        f"{show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
-    )
-    quarter = "" if bounce.other_mass is None else "a quarter of "
-    is_shorter = found.chosen == IMPULSE and row.step < (found.time_step or 0.0)
-    unusable = (
-        f"; more than {quarter}the {bounce.size_name} is too deep for a scene, and the row for "
-        f"{show(wanted.step, 's')} is written (--pick {YOURS!r} for the other one)"
-    )
+    is_unusable = depth > problem.usable_depth and found.chosen == WANTED
     size = f"{bounce.size_name} of {show(bounce.size, 'm')}"
+    at_yours = show(step, "s", 4)
+    moves = f"it moves {show(bounce.impact_speed * step, 'm')} in a step"
+    instead = f"at {show(wanted.step, 's')} it sinks {show(wanted.outcome.depth[1], 'm')}"
     no_deeper = (
         f"sinks less than {show(problem.deepest, 'm')}"
         if math.isfinite(problem.deepest)
         else f"lies less deep than the {size}"
     )
+    unusable = (
+        f"; more than {'' if bounce.other_mass is None else 'a quarter of '}the {bounce.size_name} "
+        f"is too deep for a scene, and the row for {show(wanted.step, 's')} is written (--pick "
+        f"{YOURS!r} for the other one)"
+    )
     return holding(
         [
             (outcome.depth[1] > problem.deepest, problem.lost),
-            (high >= 1.0005, f"r is up to {high:.3f}: at some instants the body gains energy"),
+            (r.high >= 1.0005, f"r is up to {r.high:.3f}: at some instants the body gains energy"),
             (
-                is_shorter,
-                f"the impulse is for {show(row.step, 's')}: at {at_yours} the body moves "
-                f"{show(bounce.impact_speed * step, 'm')} in a step, or r leaves its tolerance",
+                found.chosen == IMPULSE and row.step < step and found.time_step,
+                f"the impulse is for {show(row.step, 's')}: at {at_yours} {moves}, or r leaves its "
+                "tolerance",
             ),
             (
-                found.time_step and YOURS not in found.rows and found.chosen == WANTED,
+                is_none and found.chosen == WANTED,
                 f"at {at_yours} no spring works in {found.engine}: none keeps r within "
-                f"{problem.tolerance:g} and {no_deeper}, {moves}",
+                f"{problem.tolerance:g} and {no_deeper}, because {moves}; {instead}",
             ),
             (
-                found.time_step and YOURS not in found.rows and 0 < bounce.restitution < 0.1,
+                is_none and 0 < bounce.restitution < 0.1,
                 "bodies that hardly bounce rest at once at longer steps: try --restitution 0",
             ),
             (
                 is_deeper,
-                f"at your step it sinks {show(depth, 'm')}, "
-                f"{passes if depth > bounce.size else share}, {moves}"
-                f"{unusable if is_unusable else ''}",
+                f"at your step it sinks {show(depth, 'm')}, {100 * depth / bounce.size:.3g} % of "
+                f"its {bounce.size_name}, because {moves}; {instead}"
+                f"{unusable if is_unusable and not bounce.gives_contact else ''}",
             ),
             (
                 YOURS in found.rows and bounce.gives_contact and not keeps,
@@ -878,8 +812,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 and outcome.depth[1] > bounce.limit,
                 f"no contact was found that sinks less than {show(bounce.limit, 'm')}",
             ),
-            (restless, restless),
-            (bounce.oddity, bounce.oddity),
+            (hops, hops),
             (math.isnan(outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
             (
                 10 * slowest > bounce.impact_speed,
@@ -887,39 +820,25 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
                 "than this one the body would not come to rest",
             ),
             (
-                law.duration(bounce.impact_speed) > MOST_STEPS * row.step,
-                f"a contact takes more than {MOST_STEPS} of these steps; finer ones than that were "
-                "not computed, and change r by less than 0.001",
-            ),
-            (
                 is_undamped,
-                f"this contact has no damping, and r is still {mean:.3f} at most, because the "
+                f"this contact has no damping, and r is still {r.mean:.3f} at most, because the "
                 "steps damp by themselves: a shorter step has more",
             ),
             (
-                outcome.deviation(bounce.restitution) > problem.tolerance and not is_undamped,
-                f"r is {span(low, high)}: no contact that is nearer was found",
+                r.deviation(bounce.restitution) > problem.tolerance and not is_undamped,
+                f"r is {span(r.low, r.high)}: no contact that is nearer was found",
             ),
             (
-                abs(slow.restitution[1] - mean) > TOLERANCE / 2
-                and 3 * slowest < bounce.impact_speed,
-                f"at a third of the speed r is {slow.around}",
+                abs(slow.mean - r.mean) > TOLERANCE / 2 and 3 * slowest < bounce.impact_speed,
+                f"at a third of the speed r is {slow}",
             ),
             (
-                problem.promised(outcome) != (low, high) and found.chosen != IMPULSE,
+                problem.promised(outcome) != (r.low, r.high) and found.chosen != IMPULSE,
                 "r is without friction: of a body that slides up to 1.4 times as fast as it falls "
                 f"it is {span(*problem.promised(outcome))}",
             ),
             (bounce.friction, problem.engine.friction),
-            (
-                bounce.friction and isinstance(law, Impedance),
-                "friction acts as a damper: "
-                + (
-                    problem.slides(law, float(law.damping), row.step)
-                    if isinstance(law, Impedance) and float(law.damping)
-                    else "nothing of a sliding speed is taken"
-                ),
-            ),
+            (bounce.friction and isinstance(law, Impedance), problem.slides(law, row.step)),
             (
                 bounce.friction and not re.search("@friction@|@rubs@", found.template),
                 f"a friction of {bounce.friction or 0:g} is not in what is pasted",
@@ -938,7 +857,6 @@ class Design(Page):
     bounce: Bounce
     engine: str
     source: Engine
-    one_body: bool
     time_step: float | None
     rows: dict[str, Row]
     chosen: str
@@ -970,8 +888,6 @@ class Design(Page):
         values = {
             "step": self.row.step,
             "friction": mu,
-            "bodies": "one of both bodies" if self.one_body else "both bodies alike",
-            "names": "(one,)" if self.one_body else "(one, other)",
             "rubs": self.source.rubs[bool(mu)].format(mu=mu, root=math.sqrt(mu)),
             "condim": 1 if self.bounce.friction == 0 else 3,
         }
@@ -991,7 +907,7 @@ class Design(Page):
                     show(row.outcome.depth[1], "m"),
                     show(row.outcome.rest, "m") if self.bounce.load else "–",
                     show(row.outcome.force[1], "N"),
-                    row.outcome.around,
+                    str(row.outcome.restitution),
                 ]
                 for name, row in self.rows.items()
             ),
@@ -1002,12 +918,17 @@ class Design(Page):
         """The lines below the snippet: what was given and assumed, and what the engine needs."""
         bounce = self.bounce
         engine = self.source
-        at = "" if self.time_step is None else f", time step {show(self.time_step, 's', 4)}"
-        given = ", ".join(f"{name} {value}" for name, value in bounce.given.items()) + at
+        given = [f"{name} {value}" for name, value in bounce.given.items()]
+        if self.time_step is not None:
+            given.append(f"time step {show(self.time_step, 's', 4)}")
+        is_tenth = bounce.limit == bounce.size / 10
+        share = f"a tenth of the {bounce.size_name}" if is_tenth else "a fifth of the drop height"
+        depth = f"it may sink {show(bounce.limit, 'm')}, {share} (--penetration)"
+        assumed = bounce.assumed + holding([(not bounce.gives_contact, depth)])
         is_impulse = self.chosen == IMPULSE
         said = [
-            (True, f"Given: {given}"),
-            (bounce.assumed, f"Assumed: {'; '.join(bounce.assumed)}"),
+            (True, f"Given: {', '.join(given)}"),
+            (assumed, f"Assumed: {'; '.join(assumed)}"),
             (
                 bounce.other_mass,
                 f"Two free bodies act as one of {show(bounce.reduced_mass, 'kg', 4)}, their "
@@ -1020,7 +941,7 @@ class Design(Page):
             (not engine.ran, f"The row of {self.engine} was never run in its engine"),
             *((True, note) for note in engine.notes),
             (isinstance(engine.scheme, Implicit) and not is_impulse, STEP_ONLY),
-            (bounce.points > 1, engine.box),
+            (bounce.points > 1 and engine.box, engine.box),
             (
                 bounce.points > 1,
                 "A box that falls some degrees off flat hits twice, and friction turns one that "
@@ -1031,10 +952,9 @@ class Design(Page):
                 "r is along the line of their centres, which turns while they slide past each "
                 "other: no contact keeps r then",
             ),
-            (bounce.other_mass is None, engine.floor),
-            (True, Problem(bounce, engine).grip(self.parameters, self.row.step)),
+            (bounce.other_mass is None and engine.floor, engine.floor),
         ]
-        return [f"{text}." for text in holding(said) if text]
+        return [f"{text}." for text in holding(said)]
 
     def __repr__(self) -> str:
         return "\n".join([*aligned(self.table), *(f"! {note}" for note in self.notes)])

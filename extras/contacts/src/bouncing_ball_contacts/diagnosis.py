@@ -12,9 +12,9 @@ reads and which bounces as a design does. Three questions are asked of it.
   given step if it keeps the tolerance there, and else at a half, a quarter, … of it.
 """
 
-import difflib
 import math
 import re
+from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -33,8 +33,19 @@ from bouncing_ball_contacts.designs import (
     Quantity,
     design,
     holding,
+    refuse,
 )
-from bouncing_ball_contacts.engines import CONES, ENGINES, MODES, Engine, Parameters, engine_named
+from bouncing_ball_contacts.engines import (
+    CONES,
+    ENGINES,
+    MODES,
+    Engine,
+    Parameters,
+    as_compared,
+    engine_named,
+    one_of,
+    parameters_of,
+)
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
@@ -68,7 +79,7 @@ _VECTORS = {
     "friction": (1, 3, "up to three numbers"),
 }
 """The least and the most numbers of parameters that have several, in figures and in words."""
-_WORDS = {"restitutionCombineMode": tuple(MODES), "cone": CONES}
+_WORDS = {"restitutionCombineMode": MODES, "cone": CONES, "condim": ("1", "3", "4", "6")}
 """Parameters that are one of several words."""
 _WHY = {
     "contactProcessingThreshold": "PyBullet sees the surface ahead, and ",
@@ -82,6 +93,8 @@ _FEW = 10
 _MEAN = exact(offsets(21))
 # At a step and at half of it.
 _BOTH = Trials(np.tile(_MEAN.at, 2), np.repeat([1.0, 0.5], 21), np.ones(42))
+# Between numbers that are tried for a least change.
+_FINE = 1 + 2e-4
 
 
 @dataclass(frozen=True)
@@ -126,11 +139,6 @@ class Contact:
         longest = self.step * max(1.0, self.steps / MOST_STEPS)
         explicit = isinstance(self.problem.engine.scheme, SemiImplicit) and not self.is_ratio
         return explicit and float(self.law.damping) * longest > 1
-
-    @property
-    def mean(self) -> float:
-        """The mean r."""
-        return float(self.problem.drops(self.law, self.step, _MEAN).mean)
 
     def outcome(self, *trials: Trials) -> Outcome:
         """Return what the contact does."""
@@ -180,39 +188,42 @@ class Diagnosis(Page):
     free: float
     stiffness: float
     damping_ratio: float
-    reasons: tuple[str, ...]
-    change: Change | None
+    reasons: tuple[str, ...] = ()
+    change: Change | None = None
     lost: str = ""
     """Why the body is lost; empty if it is not."""
 
     def __str__(self) -> str:
         row = self.source
+        r = self.outcome.restitution
         wanted = self.bounce.restitution
-        given = [
-            _assigned(self.given),
-            ""
-            if self.other is None
-            else f"of the other body {_assigned(self.other) or 'the defaults'}",
-            ", ".join(f"{name} {value}" for name, value in self.bounce.given.items()),
-        ]
-        defaults = {name: self.parameters[name] for name in row.defaults if name not in self.given}
-        assumed = [f"the defaults {_assigned(defaults)}" if defaults else ""]
-        if self.other:
-            rest = {name: row.defaults[name] for name in row.defaults if name not in self.other}
-            assumed.append(f"of the other body the defaults {_assigned(rest)}" if rest else "")
-        is_kept = ""
-        if wanted is not None and self.outcome.deviation(wanted) <= TOLERANCE:
-            is_kept = f", and kept within {TOLERANCE:g}"
+        goal = "" if wanted is None else f"; {wanted:g} is wanted"
+        if wanted is not None and r.deviation(wanted) <= TOLERANCE and not self.lost:
+            goal += f", and kept within {TOLERANCE:g}"
         lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest) and not self.lost
-        said = f"r = {self.outcome.around}"
-        if self.lost:
-            said = f"lost, because {self.lost}"
-            is_kept = ""
+        others = {} if self.other is None else self.other
+        defaults = {name: row.defaults[name] for name in row.defaults if name not in self.given}
+        rest = {name: row.defaults[name] for name in row.defaults if name not in others}
+        given = [
+            (self.given, _assigned(self.given)),
+            (
+                self.other is not None,
+                f"of the other body {_assigned(others) or 'the defaults'}",
+            ),
+            (True, ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())),
+        ]
+        assumed = holding(
+            [
+                (defaults, f"the defaults {_assigned(defaults)}"),
+                (others and rest, f"of the other body the defaults {_assigned(rest)}"),
+                *((True, each) for each in self.bounce.assumed),
+            ]
+        )
         lines = [
             (
                 True,
-                f"{row.name} at a step of {show(self.time_step, 's')}: {said}"
-                + ("" if wanted is None else f"; {wanted:g} is wanted{is_kept}"),
+                f"{row.name} at a step of {show(self.time_step, 's')}: "
+                f"{f'lost, because {self.lost}' if self.lost else f'r = {r}'}{goal}",
             ),
             (
                 True,
@@ -231,11 +242,8 @@ class Diagnosis(Page):
                 wanted is None,
                 "With --restitution there is a least change, for the r that is wanted.",
             ),
-            (True, f"Given: {'; '.join(filter(None, given))}."),
-            (
-                defaults or self.bounce.assumed_body,
-                f"Assumed: {'; '.join(filter(None, [*assumed, *self.bounce.assumed_body]))}.",
-            ),
+            (True, f"Given: {'; '.join(holding(given))}."),
+            (assumed, f"Assumed: {'; '.join(assumed)}."),
             (not row.ran, f"The row of {row.name} was never run in its engine."),
         ]
         return "\n".join(holding(lines))
@@ -306,25 +314,23 @@ def diagnose(
         free=_in_short_steps(contact, 0.0),
         stiffness=float(spring.stiffness) * bounce.reduced_mass,
         damping_ratio=float(spring.damping / spring.stiffness**0.5 / 2),
-        reasons=(),
-        change=None,
     )
+    wanted = bounce.restitution
     if found.outcome.depth[1] > contact.problem.deepest:
-        why = [] if bounce.restitution is None else _of_design(contact)
+        why = [] if wanted is None else _of_design(contact)
         return replace(found, lost=contact.problem.lost, reasons=(*_facts(contact, found), *why))
     reasons = [*_dangers(found), *_causes(contact, found), *_facts(contact, found)]
-    if bounce.restitution is None or found.outcome.deviation(bounce.restitution) <= TOLERANCE:
+    if wanted is None or found.outcome.restitution.deviation(wanted) <= TOLERANCE:
         return replace(found, reasons=tuple(reasons))
     reasons += _guesses(contact, found)
     change = _least_change(contact)
     if change is None or change.step != contact.step:
-        reasons += _at_this_step(contact)
+        what = row.number if contact.law.is_number else "damping of this contact"
+        reasons.append(
+            f"no {what} keeps r within {TOLERANCE:g} at this step; the nearest: {_nearest(contact)}"
+        )
+        reasons += _of_design(contact)
     return replace(found, reasons=tuple(reasons), change=change)
-
-
-def _plain(name: str) -> str:
-    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not."""
-    return name if len(name) == 1 else re.sub(r"^set(?!$)|[\W_]", "", name.lower())
 
 
 def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
@@ -335,50 +341,39 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     Refused
         If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
-    names = {_plain(name): name for name in engine.rules}
-    found: dict[str, Any] = {}
-    for each, value in typed.items():
-        name = names.get(_plain(str(each)))
-        if name is None:
-            raise Refused(_unknown(engine, str(each)))
-        if name in found:
-            raise Refused(f"{str(each)!r} gives {name} twice")
-        found[name] = _value(engine, name, value)
+    names = {as_compared(name): name for name in engine.rules}
+    has = ", ".join(engine.rules)
+    found = parameters_of(engine.name, names, has, typed)
+    found = {name: _value(engine, name, value) for name, value in found.items()}
     body = {**engine.defaults, **found}
-    if missing := [name for name in engine.rules if name not in body]:
-        raise Refused(
-            f"{missing[0]} is missing: give {' and '.join(missing)}; {engine.name} has no default"
-        )
-    # PyBullet's -1 stands for a spring and a damper that are off.
-    if len({body[name] == -1 for name in engine.names}) > 1:
-        raise Refused(f"{engine.name} refuses {' or '.join(engine.names)} alone: give both")
+    missing = [name for name in engine.rules if name not in body]
+    refuse(
+        [
+            (
+                missing,
+                f"{''.join(missing[:1])} is missing: give {' and '.join(missing)}; {engine.name} "
+                "has no default",
+            ),
+            (
+                # PyBullet's -1 stands for a spring and a damper that are off.
+                len({body.get(name) == -1 for name in engine.names}) > 1,
+                f"{engine.name} refuses {' or '.join(engine.names)} alone: give both",
+            ),
+        ]
+    )
     return found
-
-
-def _unknown(engine: Engine, typed: str) -> str:
-    """Return what is said of a name that the row of an engine does not have."""
-    near = difflib.get_close_matches(typed, engine.rules, 1)
-    hints = [f"did you mean {name}?" for name in near] or [
-        f"{row.name} has it" for row in ENGINES.values() if typed in row.rules
-    ]
-    has = f"the row of {engine.name} does not use {typed!r}: it has {', '.join(engine.rules)}"
-    return "; ".join([has, *hints])
 
 
 def _value(engine: Engine, name: str, value: Any) -> Any:
     """Return a parameter as a number, as several numbers or as a word."""
-    if name in ("solref", "solimp"):
-        return _vector(name, value)
     if name in _WORDS:
-        if str(value).lower() not in _WORDS[name]:
-            raise Refused(f"{name} = {value} is none of {', '.join(_WORDS[name])}")
-        return str(value).lower()
-    if name == "friction":
-        # Of several numbers, the first acts along the surface.
-        value = _vector(name, value)[0]
+        word = one_of(name, f"{value:g}" if isinstance(value, float) else value, _WORDS[name])
+        return float(word) if word.isdigit() else word
+    if name in _VECTORS:
+        value = _vector(name, value)
+        # Of several numbers of friction the first one acts along the surface.
+        return value if name != "friction" else within(name, value[0], 0, math.inf)
     number = in_si(name, value, engine.units.get(name, ""))
-    if name == "condim" and number not in (1, 3, 4, 6):
-        raise Refused(f"condim = {value} is none of 1, 3, 4, 6")
     if number == engine.defaults.get(name):
         return number
     if number == 0 and name in (engine.names[0], *_DIVISORS):
@@ -418,8 +413,8 @@ def _assigned(values: Parameters) -> str:
     return ", ".join(f"{name} = {_spelled(value)}" for name, value in values.items())
 
 
-def _gives(parameters: Parameters, step: float, outcome: Outcome) -> str:
-    return f"{_assigned(parameters)} at a step of {show(step, 's')} gives r = {outcome.around}"
+def _gives(parameters: Parameters, step: float, found: Outcome) -> str:
+    return f"{_assigned(parameters)} at a step of {show(step, 's')} gives r = {found.restitution}"
 
 
 def _spring(law: Law) -> Law:
@@ -460,19 +455,16 @@ def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
     designed = {name: value for name, value in row.beside.items() if name != "solimp"}
     if contact.law.is_number:
         designed = {**{name: row.defaults[name] for name in row.names}, **row.undisturbed}
-    without = {}
+    without = []
     for name, value in designed.items():
         what = _assigned({name: contact.one[name]})
+        other = contact.other and {**contact.other, name: value}
+        contact = replace(contact, one={**contact.one, name: value}, other=other)
         instead = f"; {_WHY.get(name, '')}designs have {_spelled(value)}"
-        contact = replace(
-            contact,
-            one={**contact.one, name: value},
-            other=contact.other and {**contact.other, name: value},
-        )
-        without[what, instead] = contact.outcome().restitution[1]
-    without |= {("the step", ""): found.limit, ("gravity during the contact", ""): found.free}
-    r = found.outcome.restitution[1]
-    for (what, instead), less in without.items():
+        without.append((what, contact.outcome().restitution.mean, instead))
+    without += [("the step", found.limit, ""), ("gravity during the contact", found.free, "")]
+    r = found.outcome.restitution.mean
+    for what, less, instead in without:
         if abs(r - less) > _VISIBLE:
             how = "lowers" if r < less else "raises"
             yield f"{what} {how} r from {less:.3f} to {r:.3f}{instead}"
@@ -481,17 +473,17 @@ def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
 
 def _dangers(found: Diagnosis) -> list[str]:
     """Return what makes a contact useless in a scene."""
-    highest = found.outcome.restitution[2]
-    size = f"{found.bounce.size_name} of {show(found.bounce.size, 'm')}"
+    bounce = found.bounce
+    high = found.outcome.restitution.high
     return holding(
         [
             (
-                highest > 1 + TOLERANCE,
-                f"unstable: the body leaves up to {highest:.3g} times as fast as it came",
+                high > 1 + TOLERANCE,
+                f"unstable: the body leaves up to {high:.3g} times as fast as it came",
             ),
             (
-                found.outcome.depth[1] > found.bounce.size,
-                f"it sinks deeper than its {size}",
+                found.outcome.depth[1] > bounce.size,
+                f"it sinks deeper than its {bounce.size_name} of {show(bounce.size, 'm')}",
             ),
         ]
     )
@@ -502,12 +494,13 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
     row = contact.problem.engine
     bounce = found.bounce
     law = contact.law
-    restless = contact.problem.restless(law, contact.step, found.outcome)
+    r = found.outcome.restitution.mean
+    hops = contact.problem.hops(law, contact.step, found.outcome)
     # Of a friction pyramid without friction, and of an elliptic cone.
     smooth, cone = (
-        contact.problem.outcome(replace(law, edges=edges), contact.step, _MEAN).restitution[1]
+        contact.problem.outcome(replace(law, edges=edges), contact.step, _MEAN).restitution.mean
         if isinstance(law, Impedance)
-        else found.outcome.restitution[1]
+        else r
         for edges in (0.0, 1.0)
     )
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
@@ -531,18 +524,14 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
             f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
             "oscillation",
         ),
-        (
-            restless,
-            restless,
-        ),
+        (hops, hops),
         (math.isnan(found.outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
         (
-            abs(smooth - cone) > _VISIBLE or abs(smooth - found.outcome.restitution[1]) > _VISIBLE,
+            max(abs(smooth - cone), abs(smooth - r)) > _VISIBLE,
             f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
             f"with the elliptic cone {cone:.3f} at every friction; at solimp = "
             f"{_spelled(row.beside.get('solimp', ''))}, as designs have, none changes it",
         ),
-        (bounce.oddity, bounce.oddity),
         (row.caution, row.caution),
         (bounce.points > 1 and row.box, row.box),
         (bounce.other_mass is None and row.floor, row.floor),
@@ -561,12 +550,12 @@ def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
         for name in row.names
         if units_of.get(name) in ("1/s", "1/s^2")
     }
-    r = replace(contact, one={**contact.one, **divided}).outcome().restitution[1]
+    r = replace(contact, one={**contact.one, **divided}).outcome().restitution.mean
     ratio = min(found.damping_ratio, 1 - 1e-9)
     pulled = math.exp(-math.pi * ratio / math.sqrt(1 - ratio**2))
     guesses = [
         (
-            abs(r - wanted) < TOLERANCE <= abs(found.outcome.restitution[1] - wanted),
+            abs(r - wanted) < TOLERANCE <= abs(found.outcome.restitution.mean - wanted),
             f"{' and '.join(divided)} is per unit of mass in {row.name}: divided by "
             f"{found.bounce.mass:g} kg, r is {r:.3f}",
         ),
@@ -589,16 +578,18 @@ def _nearest(contact: Contact) -> Change:
     target = max(contact.problem.bounce.restitution, LEAST_RESTITUTION)
     # Ratios beyond these are springs that throw the body away, or hardly act.
     low, high = (1e-3, 1e2) if contact.is_ratio else (1e-12, 1.0 if raises else 1e12)
-    while high > (1 + 1e-4) * low:
-        middle = math.sqrt(low * high)
-        tried = contact.damped(middle)
-        is_above = not tried.diverges and tried.mean > target
-        if is_above == raises:
-            high = middle
-        else:
-            low = middle
-    # The least damping is as good as none.
-    found = contact.damped(float(f"{high:.4g}") if high > 2e-12 else 0.0)
+
+    def is_beyond(place: int) -> bool:
+        tried = contact.damped(low * _FINE**place)
+        found = contact.problem.drops(tried.law, contact.step, _MEAN)
+        is_above = not tried.diverges and bool(found.mean > target)
+        return is_above == raises
+
+    count = math.floor(math.log(high / low, _FINE))
+    place = bisect_left(range(count), True, key=is_beyond)
+    # The least damping is as good as none, but no ratio is 0.
+    is_some = place > 0 or contact.is_ratio
+    found = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
     return Change(contact.damper, found.one[contact.damper], contact.step, found.outcome())
 
 
@@ -607,7 +598,8 @@ def _least_change(contact: Contact) -> Change | None:
     deviations: list[float] = []
     for halvings in range(12):
         change = _nearest(replace(contact, step=contact.step / 2**halvings))
-        deviations.append(change.outcome.deviation(contact.problem.bounce.restitution))
+        wanted = contact.problem.bounce.restitution
+        deviations.append(change.outcome.restitution.deviation(wanted))
         if deviations[-1] <= TOLERANCE:
             return change
         # If a quarter of a step that is short does not help, shorter ones do not.
@@ -617,26 +609,15 @@ def _least_change(contact: Contact) -> Change | None:
     return None
 
 
-def _at_this_step(contact: Contact) -> Iterator[str]:
-    """Yield that a step does not allow what is wanted, and what is the nearest that it allows."""
-    row = contact.problem.engine
-    what = row.number if contact.law.is_number else "damping of this contact"
-    yield f"no {what} keeps r within {TOLERANCE:g} at this step; the nearest: {_nearest(contact)}"
-    yield from _of_design(contact)
-
-
 def _of_design(contact: Contact) -> Iterator[str]:
     """Yield what a design has at this step."""
-    row = contact.problem.engine
     try:
-        found = design(contact.problem.bounce, row, contact.step)
+        found = design(contact.problem.bounce, contact.problem.engine, contact.step)
     except Refused:
         return
     bodies = "" if contact.other is None else ", of both bodies"
-    yield (
-        f"what a design has{bodies}: {_gives(found.parameters, found.row.step, found.row.outcome)}"
-    )
-    if row.number and IMPULSE in found.rows:
-        impulse = found.rows[IMPULSE]
-        gives = _gives(impulse.parameters, impulse.step, impulse.outcome)
-        yield f"without a spring{bodies}: {gives}"
+    rows = {"what a design has": found.row}
+    if IMPULSE in found.rows:
+        rows["without a spring"] = found.rows[IMPULSE]
+    for what, row in rows.items():
+        yield f"{what}{bodies}: {_gives(row.parameters, row.step, row.outcome)}"

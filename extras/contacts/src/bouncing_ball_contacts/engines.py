@@ -8,7 +8,7 @@ body. Laws are per unit of mass (:mod:`.schemes`); for two free bodies m is thei
 import difflib
 import math
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any, NamedTuple
@@ -61,28 +61,22 @@ class Setting:
 class Rule:
     """How an engine combines a number of two bodies.
 
-    ``of`` combines two numbers, ``alike`` gives the number that both bodies need for a combined
-    one, and ``alone`` the number of one body if the other one keeps its default.
+    ``of`` combines two numbers, and ``alike`` gives the number that both bodies need for a combined
+    one.
     """
 
     text: str
     of: Callable[[Any, Any], Any]
     alike: Callable[[Any], Any]
-    alone: Callable[[Any, Any], Any]
 
 
-SERIES = Rule(
-    "in series",
-    lambda a, b: a * b / (a + b),
-    lambda x: 2 * x,
-    lambda x, other: x / (1 - x / other),
-)
-SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2, lambda x, other: x - other)
-MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x, lambda x, other: 2 * x - other)
-PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt, lambda x, other: x / other)
-LEAST = Rule("the least of both", min, lambda x: x, lambda x, other: x)
-LARGER = Rule("the larger of both counts", max, lambda x: x, lambda x, other: x)
-PAIR = Rule("of the pair", lambda a, b: a, lambda x: x, lambda x, other: x)
+SERIES = Rule("in series", lambda a, b: a * b / (a + b), lambda x: 2 * x)
+SUM = Rule("added", lambda a, b: a + b, lambda x: x / 2)
+MEAN = Rule("averaged", lambda a, b: (a + b) / 2, lambda x: x)
+PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt)
+LEAST = Rule("the least of both", min, lambda x: x)
+LARGER = Rule("the larger of both counts", max, lambda x: x)
+PAIR = Rule("of the pair", lambda a, b: a, lambda x: x)
 
 
 class Sliding(NamedTuple):
@@ -192,28 +186,6 @@ class Engine:
         """Return the parameters that both bodies need alike for those of their contact."""
         return {name: self.rules[name].alike(value) for name, value in combined.items()}
 
-    def of_one(self, combined: Parameters) -> dict[str, Any]:
-        """Return the parameters of one body if the other one has the defaults.
-
-        Raises
-        ------
-        Refused
-            If the contact is of the pair in this engine, or cannot be made by one body.
-        """
-        if self.sets_pair or not combined.keys() <= self.defaults.keys():
-            raise Refused(f"{self.name} has no contact that one body alone sets")
-        values = {
-            name: self.rules[name].alone(value, self.defaults[name])
-            for name, value in combined.items()
-        }
-        for name, value in values.items():
-            if np.min(value) < 0 and name != "solref":
-                raise Refused(
-                    f"one body alone cannot make this contact in {self.name}: with the default of "
-                    f"the other one it would need {name} = {value:.3g}"
-                )
-        return values
-
 
 @dataclass(frozen=True)
 class DrakeDissipation(Engine):
@@ -227,12 +199,7 @@ class DrakeDissipation(Engine):
         return {stiffness: SERIES.of(k1, k2), dissipation: mean}
 
 
-MODES: Mapping[str, Callable[[Any, Any], Any]] = {
-    "average": MEAN.of,
-    "min": min,
-    "multiply": PRODUCT.of,
-    "max": max,
-}
+MODES = {"average": MEAN, "min": LEAST, "multiply": PRODUCT, "max": LARGER}
 """How PhysX combines a restitution; of two materials the later one in this list counts."""
 
 
@@ -246,7 +213,7 @@ class PhysX(Engine):
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         modes = [body["restitutionCombineMode"] for body in (one, other)]
-        of_mode = MODES[max(modes, key=list(MODES).index)]
+        of_mode = MODES[max(modes, key=list(MODES).index)].of
         restitution = of_mode(one["restitution"], other["restitution"])
         found = super().combined(one, other) | {"restitution": restitution}
         stiffness, damping = self.names
@@ -265,17 +232,42 @@ class NewtonMujoco(Engine):
         return super().combined(one, other) | {"ke": 1 / (time * ratio) ** 2, "kd": 2 / time}
 
 
-def gripping(law: Impedance, friction: float) -> float:
-    """Return a damping along the surface of MuJoCo in 1/s, with which r stays as it is.
+def as_compared(name: str) -> str:
+    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not."""
+    return name if len(name) == 1 else re.sub(r"^set(?!$)|[\W_]", "", name.lower())
 
-    In a contact of the time π/ω, ω² = K, a damping b leaves exp(-π b/ω) of a sliding speed s. Where
-    friction is too weak for that, MuJoCo's cone raises the normal force N, per unit of mass, of a
-    ball to (N + μ b s)/(1 + 3.5 μ²), which takes from r. At b = ω min(μ/2, 0.35) r stayed within
-    0.01 of its range in MuJoCo, for r up to 0.95, frictions of 0.1 to 1.5 and s up to the speed of
-    the fall.
+
+def parameters_of(
+    engine: str, known: Mapping[str, str], has: str, typed: Parameters
+) -> dict[str, Any]:
+    """Return what was typed by the names of the engine.
+
+    ``known`` has the name that each one stands for which may be typed, and ``has`` says them.
+
+    Raises
+    ------
+    Refused
+        If a name is unknown, or given twice.
     """
-    grips = math.sqrt(float(law.stiffness)) * min(friction / 2, 0.35)
-    return max(grips, float(law.damping))
+    found: dict[str, Any] = {}
+    for each, value in typed.items():
+        name = known.get(as_compared(str(each)))
+        if name is None:
+            near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, known, 1)]
+            others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
+            raise Refused(f"{engine} does not use {each!r}: it has {has}{''.join(near or others)}")
+        if name in found:
+            raise Refused(f"{each!r} gives {name} twice")
+        found[name] = value
+    return found
+
+
+def one_of(name: str, value: Any, words: Iterable[str]) -> str:
+    """Return the word whose first three letters are given, and refuse others."""
+    for word in words:
+        if str(value).lower()[:3] == word[:3]:
+            return word
+    raise Refused(f"{name} = {value} is none of {', '.join(words)}")
 
 
 def snippet_of(name: str) -> str:
@@ -366,19 +358,12 @@ def _mix_solimp(one: Any, other: Any) -> tuple[float, ...]:
     return tuple((np.asarray(_solimp(one)) + np.asarray(_solimp(other))) / 2)
 
 
-def _alone_solimp(value: Any, other: Any) -> tuple[float, ...]:
-    raise Refused(
-        "one geom alone cannot make this contact, because solimp is averaged: set both, or in "
-        "MuJoCo give the geom a higher priority"
-    )
-
-
 _BY_TIMES = replace(MEAN, text="by averaged time constants and damping ratios")
-_SOLIMP = Rule("averaged", _mix_solimp, lambda x: x, _alone_solimp)
+_SOLIMP = Rule("averaged", _mix_solimp, lambda x: x)
 _DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
 _DESIGNED_SOLIMP = (IMPEDANCE, IMPEDANCE, 0.001)
 _MUJOCO_RULES = {
-    "solref": Rule("least of both", _mix_solref, lambda x: x, lambda x, other: x),
+    "solref": Rule("least of both", _mix_solref, lambda x: x),
     "solimp": _SOLIMP,
     "refsafe": PAIR,
     "friction": LARGER,
@@ -420,7 +405,7 @@ def _if_set(rule: Rule, default: float) -> Rule:
     def of(a: float, b: float) -> float:
         return -1.0 if max(a, b) < 0 else rule.of(*(default if x < 0 else x for x in (a, b)))
 
-    return Rule(rule.text, of, rule.alike, lambda x, other: rule.alone(x, default))
+    return replace(rule, of=of)
 
 
 _BULLET = _forces(("contactStiffness", "contactDamping"))
@@ -554,8 +539,6 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
     )
 
 
-# The default of the other body is rigid.
-_COMPLIANT = Rule("averaged", MEAN.of, MEAN.alike, lambda x, other: x)
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
@@ -616,7 +599,7 @@ _MUJOCO = Engine(
         "Give both geoms the class, because MuJoCo averages their solimp",
         _WEIGHTLESS,
     ),
-    friction=_EVERY_FRICTION,
+    friction=f"{_EVERY_FRICTION}; a pair of geoms with a solreffriction of its own grips more",
     rubs=("", ' friction="{mu:g} 0.005 0.0001"'),
     sliding=_PUSHED_UP,
 )
@@ -835,8 +818,8 @@ ENGINES: Mapping[str, Engine] = {
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
-                "compliantContactStiffness": _COMPLIANT,
-                "compliantContactDamping": _COMPLIANT,
+                "compliantContactStiffness": MEAN,
+                "compliantContactDamping": MEAN,
                 "restitution": replace(MEAN, text="combined by the mode of both"),
                 "restitutionCombineMode": PAIR,
                 "bounceThresholdVelocity": PAIR,

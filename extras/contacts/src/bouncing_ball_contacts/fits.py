@@ -111,20 +111,24 @@ class Fit(Page):
             lines += ["", *aligned(table)] if len(table) > 1 else []
         return "\n".join(lines)
 
-    def bounce(self, mass: Quantity = None, **more: Any) -> Bounce:
-        """Return the bounce at this speed, with the contact time of the recording if it has one.
+    def wanted(self, given: Mapping[str, Quantity]) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Return the quantities of the bounce at this speed, and the contact time if it was read.
 
         That of a bounce is the one of a linear contact without damping.
         """
-        given = {name: value for name, value in more.items() if value is not None}
+        body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
-            given["radius"] = self.diameter / 2
-        if self.times and not given.keys() & {"penetration", "stiffness", "contact_time"}:
-            # The linear law is the first one, and its stiffness may be that of one kilogram.
-            ratio = (self.mass or 1.0) / self.times[0].stiffness
-            given["contact_time"] = math.pi * math.sqrt(ratio)
-        mass = self.mass if mass is None else mass
-        return Bounce(mass=mass, restitution=self.restitution, speed=self.speed, **given)
+            body["radius"] = self.diameter / 2
+        if not self.times or given.keys() & {"penetration", "stiffness", "contact_time"}:
+            return body, {}
+        # The linear law is the first one, and its stiffness may be that of one kilogram.
+        ratio = (self.mass or 1.0) / self.times[0].stiffness
+        return body, {"contact_time": math.pi * math.sqrt(ratio)}
+
+    def bounce(self, **given: Quantity) -> Bounce:
+        """Return the bounce at this speed."""
+        body, contact = self.wanted(given)
+        return Bounce(**body, **contact)
 
 
 def lowest_points(recording: Recording, diameter: float | None) -> Recording:

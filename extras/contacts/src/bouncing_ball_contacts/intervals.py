@@ -29,7 +29,8 @@ the probability of a scatter below s is that of a larger sum than the one at s (
 has a probability of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004)
 1060, have such intervals for laboratories that measure the same.) Above its middle the prior of
 scatter multiplies this distribution. Two impacts leave no deviation, and have the posterior for all
-s > 0. The interval without scatter is left out if both are alike or if a test of s = 0 at 5 %
+s > 0. The interval without scatter is left out if the errors of the readings are not given, because
+few impacts do not tell then whether they scatter, if both are alike, or if a test of s = 0 at 5 %
 rejects it (`without_scatter`).
 """
 
@@ -37,7 +38,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import integrate, linalg, optimize, special
+from scipy import linalg, optimize, special
 
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
@@ -340,40 +341,26 @@ def _estimate(curves: Curves, weights: Array) -> Estimate:
 def without_scatter(impacts: Impacts, curves: Curves) -> float:
     """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
 
-    The deviations from a power of the speed are sums of independent uᵢ with variances τ² λᵢ. If τ
-    is known, Σ u²/(τ² λ) has the χ² distribution. Otherwise the statistic is q = (Σ u²/λ)/(Σ u²):
-    it is larger than the measured one if a sum of squares of normal numbers with the factors
-    1 - q λᵢ is positive, whose probability is an integral of J. P. Imhof, Biometrika 48 (1961) 419.
+    The sum of the squares of the deviations from the nearest curve, over their known variances, has
+    a χ² distribution then.
     """
-    # Sums of ln r in which powers of the speed vanish.
-    free = linalg.null_space(np.vander(np.log(impacts.speed), 2).T)
-    turned = free.T @ curves.basis
-    eigenvalues, turn = np.linalg.eigh((turned * curves.variances[0]) @ turned.T)
-    squares = (impacts.log_r @ free @ turn) ** 2
-    statistic = float(np.sum(squares / eigenvalues))
-    if curves.is_known:
-        # Two impacts leave no deviations, which any number of degrees of freedom allows.
-        return float(special.chdtrc(max(len(squares), 1), statistic / curves.sizes[0] ** 2))
-    # A single deviation has no pattern, and neither have errors of the arithmetic.
-    if len(squares) < 2 or squares.sum() <= curves.rounded**2 * eigenvalues.sum():
-        return 1.0
-    factors = 1 - statistic / squares.sum() * eigenvalues
-    # The integrand is smooth in ln u, and vanishes on both sides.
-    log_u = np.linspace(-40.0, 60.0, 2001)
-    products = np.exp(log_u)[:, None] * factors / np.abs(factors).max()
-    angle = np.sum(np.arctan(products), axis=1) / 2
-    decay = np.exp(-np.sum(np.log1p(products**2), axis=1) / 4)
-    return float(0.5 + integrate.trapezoid(np.sin(angle) * decay, log_u) / math.pi)
+    y = impacts.log_r @ curves.basis
+    left, _ = deviations(1 / curves.variances[:1], curves.columns, y)
+    squares = np.sum(left**2, axis=(2, 3)) / curves.sizes[0] ** 2
+    # Two impacts leave no deviations, which any number of degrees of freedom allows.
+    return float(special.chdtrc(max(len(y) - 2, 1), squares.min()))
 
 
 def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:
     """Return what a recording says if impacts scatter, and if they do not.
 
-    The second one is None if the impacts contradict it, or if it says the same.
+    The second one is None if the errors of the readings are not given, if the impacts contradict
+    it, or if it says the same.
     """
     scattering = _estimate(curves, curves.confidence)
+    if not curves.is_known or without_scatter(impacts, curves) < ACCEPTED:
+        return scattering, None
     still = _estimate(curves, special.softmax(curves.posterior[:1]))
     # An interval of nearly the same width says the same.
     says_more = still.high - still.low < 0.8 * (scattering.high - scattering.low)
-    is_possible = still.low <= 0 and without_scatter(impacts, curves) >= ACCEPTED
-    return scattering, still if says_more and is_possible else None
+    return scattering, still if says_more and still.low <= 0 else None

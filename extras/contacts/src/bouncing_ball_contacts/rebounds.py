@@ -11,26 +11,42 @@ instants.
 import difflib
 import math
 import re
+from bisect import bisect_left
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball_contacts import step_rules
-from bouncing_ball_contacts.designs import SETTLED, TOLERANCE, Bounce, Page, Quantity
-from bouncing_ball_contacts.engines import LARGER, LEAST, MEAN, PAIR, PRODUCT, Rule
+from bouncing_ball_contacts.designs import (
+    SETTLED,
+    TOLERANCE,
+    Bounce,
+    Page,
+    Quantity,
+    Range,
+    holding,
+    refuse,
+)
+from bouncing_ball_contacts.engines import (
+    LARGER,
+    MEAN,
+    MODES,
+    PAIR,
+    PRODUCT,
+    Rule,
+    as_compared,
+    one_of,
+    parameters_of,
+)
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
-from bouncing_ball_contacts.units import Refused, in_si, show, span, step_in_si, within
+from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
 
-_CLAMPED_SUM = Rule(
-    "added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2, lambda x, other: x
-)
-COMBINED = {"average": MEAN, "minimum": LEAST, "multiply": PRODUCT, "maximum": LARGER}
-"""The modes of PhysX materials."""
+_CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
 INSTANTS = 24
 """Of the impact within a step; a sixth of them in short steps, where r hardly depends on them."""
 # Where a body flies freely: no engine finds its contact farther away, in m.
@@ -76,23 +92,15 @@ class ByNumber:
 
     @property
     def names(self) -> dict[str, str]:
-        """What the names that may be typed stand for, in small letters."""
-        known = {"restitution": "number", self.parameter.lower(): "number"}
-        if self.set_by:
-            last = re.split(r"[.:/]", self.set_by.lower())[-1]
-            known |= {"threshold": "threshold", last: "threshold"}
-        if self.is_physx:
-            known |= dict.fromkeys(
-                ("combine", "bouncecombine", "restitutioncombinemode"), "combine"
-            )
-        if self.damped_by:
-            known |= {self.damped_by.lower(): "damping"}
-        return known
-
-    def fall(self, number: float, bounce: Bounce, step: float, threshold: float) -> Fall:
-        """Return how a ball falls, with the number of both bodies together."""
-        keeps = self.kept(self.damping, step)
-        return Fall(number, step, bounce.load, threshold, bounce.size, keeps)
+        """What the names that may be typed stand for, as they are compared."""
+        modes = ("combine", "bounceCombine", "restitutionCombineMode")
+        typed = {
+            "number": ("restitution", self.parameter),
+            "threshold": ("threshold", re.split("[.:/]", self.set_by)[-1]) if self.set_by else (),
+            "combine": modes if self.is_physx else (),
+            "damping": (self.damped_by,) if self.damped_by else (),
+        }
+        return {as_compared(name): what for what, names in typed.items() for name in names}
 
 
 _JOLT = ByNumber(
@@ -352,54 +360,29 @@ def engine_by_number(name: str) -> ByNumber | None:
     return BY_NUMBER.get(found or "")
 
 
-def _damped(engine: ByNumber, at: Fall, z: float, v: float) -> tuple[Array, Array]:
-    """Return heights and velocities of a free flight with a linear damping, until it is low."""
+def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, Array]:
+    """Return the ways upwards and the velocities before and after the steps of free flights."""
     # A step far above the surface.
     pull = -next(engine.rule(at, 1e6, 0.0))[1]
-    time = (v + math.sqrt(v * v + 2 * at.gravity * z)) / at.gravity
-    n = np.arange(1, math.ceil(2 * time / at.step) + 10)
+    n = np.arange(math.ceil(steps) + 10)
     left = at.keeps**n
-    speeds = left * v - pull * (1 - left) / (1 - at.keeps)
-    return z + at.step * np.cumsum(speeds), speeds
+    speeds = left * v - pull * (n if at.keeps == 1 else (1 - left) / (1 - at.keeps))
+    moves = speeds + (1 - engine.sinks) * at.added
+    return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
 
-def _first_rebound(engine: ByNumber, at: Fall, height: float, speed: float) -> float:
-    """Return r of a ball that is dropped from a height, or without gravity arrives with a speed."""
-    z = height
-    v = 0.0 if at.gravity else -speed
-    near = _REACH + 4 * speed * at.step
-    drop = at.added * at.step
-    if at.keeps < 1 and drop:
-        heights, speeds = _damped(engine, at, z, v)
-        n = max(int(np.argmax(heights < near)) - engine.remembers, 0)
-        if n:
-            z = float(heights[n - 1])
-            v = float(speeds[n - 1])
-    elif drop:
-        # Down to where a contact may be found the ball flies n steps freely.
-        n = math.floor(math.sqrt(2 * max(z - near, 0.0) / drop))
-        n = max(n - engine.remembers, 0)
-        z -= drop * (n * (n - 1) / 2 + engine.sinks * n)
-        v -= at.added * n
+def _after(steps: Steps, z: float) -> tuple[float, float]:
+    """Return height and velocity of a ball from z that flies up again, both 0 if it does not."""
     rises = False
-    most = 2000 + math.ceil(6 * near / (speed * at.step))
-    steps = engine.rule(at, z, v)
-    for z_next, v in islice(steps, most):
+    for z_next, v in steps:
         if rises and z_next < z:
-            return math.sqrt(max(z, 0.0) / height)
+            return z, 0.0
         rises |= z_next > z
         z = z_next
         if v > 0 and z > _REACH and rises:
-            if not drop:
-                return v / speed
-            # And so it flies up to its top.
-            if at.keeps < 1:
-                return math.sqrt(max(z, float(_damped(engine, at, z, v)[0].max())) / height)
-            n = max(math.floor(v / at.added - engine.sinks) + 1, 0)
-            z += n * at.step * v - drop * (n * (n - 1) / 2 + engine.sinks * n)
-            return math.sqrt(z / height)
+            return z, v
     # It lies still, or is pushed out slowly.
-    return 0.0
+    return 0.0, 0.0
 
 
 def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None = None) -> Array:
@@ -412,22 +395,46 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     0.83
     """
     way = speed * at.step
-    if not 1e-7 < way < 1e3:
-        raise Refused(
-            f"a ball with {show(speed, 'm/s')} moves {show(way, 'm')} in a step of "
-            f"{show(at.step, 's')}: between 0.1 µm and 1 km are computed"
-        )
     # Of 0.1 mm.
     instants = instants or (INSTANTS if way > 1e-4 else INSTANTS // 6)
-    fraction = np.arange(instants) / instants - 0.5
-    height = speed**2 / (2 * at.gravity) if at.gravity else _REACH + speed * at.step
-    heights = height + speed * at.step * fraction
-    if heights[0] <= 0:
-        raise Refused(
-            f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
-            "greater height"
-        )
-    return np.array([_first_rebound(engine, at, float(h), speed) for h in heights])
+    height = speed**2 / (2 * at.gravity) if at.gravity else _REACH + way
+    refuse(
+        [
+            (
+                not 1e-6 < way < 1e3,
+                f"a ball with {show(speed, 'm/s')} moves {show(way, 'm')} in a step of "
+                f"{show(at.step, 's')}: between 1 µm and 1 km are computed",
+            ),
+            (
+                height <= way / 2,
+                f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
+                "greater height",
+            ),
+        ]
+    )
+    heights = height + way * (np.arange(instants) / instants - 0.5)
+    z = heights
+    v = np.full(instants, -speed)
+    near = _REACH + 4 * way
+    if at.gravity:
+        # Down to where a contact may be found the ball flies freely, longer if it is damped.
+        longest = 2 * math.sqrt(2 * height / at.gravity) / at.step
+        ways, speeds = _flight(engine, at, np.zeros(1), longest)
+        n = np.argmax(ways < near - heights[:, None], axis=1) - 1 - engine.remembers
+        n = np.maximum(n, 0)
+        z = heights + ways[n]
+        v = speeds[n]
+    most = 2000 + math.ceil(6 * near / way)
+    after = [
+        _after(islice(engine.rule(at, *start), most), start[0])
+        for start in zip(z.tolist(), v.tolist(), strict=True)
+    ]
+    z, v = np.array(after).T
+    if not at.gravity:
+        return v / speed
+    # And so it flies up to its top.
+    ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
+    return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
 
 
 # Of a body that is not given: no rule depends on the mass, and on the radius for fast bodies only.
@@ -442,13 +449,15 @@ def falling(**quantities: Quantity) -> Bounce:
     Refused
         If a quantity cannot be read, or has no place here.
     """
-    given = {name: value for name, value in quantities.items() if value is not None}
-    for name in ("penetration", "stiffness", "contact_time", "other_mass"):
-        if name in given:
-            option = name.replace("_", "-")
-            raise Refused(f"--{option} has no place where the restitution is a number")
-    if given.get("points", 1) != 1:
-        raise Refused("--points has no place where the restitution is a number: a ball is dropped")
+    given = {name: value for name, value in quantities.items() if value not in (None, "")}
+    place = "has no place where the restitution is a number"
+    springs = ("penetration", "stiffness", "contact_time", "other_mass")
+    refuse(
+        [
+            *((name in given, f"--{name.replace('_', '-')} {place}") for name in springs),
+            (given.get("points", 1) != 1, f"--points {place}: a ball is dropped"),
+        ]
+    )
     body = {} if given.keys() & {"mass", "radius", "density"} else _BODY
     return Bounce(**({"mass": 1.0} | dict(body) | given))
 
@@ -458,23 +467,21 @@ class Rebound(Page):
     """What a restitution number does in an engine.
 
     ``written`` is the number of a body: of both alike, or of one if ``other`` has that of the other
-    one. ``number`` is that of both together, ``threshold`` in m/s, and ``restitution`` has the
-    least, the mean and the greatest r; ``slower`` has those at a third of the speed. ``change``
-    is the same with r nearest to the wanted one, and ``shorter`` that at the longest step at which
-    r is within the tolerance; they are None if this one is.
+    one. ``number`` is that of both together, ``threshold`` in m/s, and ``slower`` is r at a third
+    of the speed. ``change`` is the same with r nearest to the wanted one, and ``shorter`` that at
+    the longest step at which r is within the tolerance; they are None if this one is.
     """
 
     engine: str
+    source: ByNumber
     bounce: Bounce
     time_step: float
     written: float
     other: float | None
     number: float
     threshold: float
-    restitution: tuple[float, float, float]
-    slower: tuple[float, float, float]
-    damping: float = 0.0
-    combine: str = ""
+    restitution: Range
+    slower: Range
     change: "Rebound | None" = None
     shorter: "Rebound | None" = None
     is_beyond: bool = False
@@ -483,64 +490,76 @@ class Rebound(Page):
     @property
     def deviation(self) -> float:
         """The largest distance of r from the wanted one."""
-        low, _, high = self.restitution
-        return max(self.bounce.restitution - low, high - self.bounce.restitution)
+        return self.restitution.deviation(self.bounce.restitution)
 
     @property
     def snippet(self) -> str:
         """What is pasted into the engine."""
-        row = BY_NUMBER[self.engine]
-        line = row.written.format(number=f"{self.written:.4g}")
-        lowered = row.lowered.format(threshold=f"{self.threshold:.2g}")
+        row = self.source
+        # Also a whole number has a decimal point, which C++ wants before an f.
+        line = row.written.format(number=float(f"{self.written:.4g}"))
+        lowered = row.lowered.format(threshold=float(f"{self.threshold:.2g}"))
         return line if self.threshold == row.threshold else f"{line}\n{lowered}"
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What a user has to know, the severest first."""
-        row = BY_NUMBER[self.engine]
+        row = self.source
         speed = self.bounce.impact_speed
-        mean = self.restitution[1]
+        r = self.restitution
         limit = f"{show(self.threshold, 'm/s')}" + (f", {row.set_by}" if row.set_by else "")
         slowest = self.threshold / (max(self.number, 1e-9) if row.is_of_rebound else 1.0)
-        is_slow = self.number > 0 and 0 < speed <= slowest
+        is_slow = 0 < speed <= slowest
         lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
         way = speed * self.time_step
         settling = self.bounce.load * self.time_step / max(1 - self.number, 1e-9)
-        hops = row.is_physx and 0 < self.number < 1 and self.threshold < settling
-        said = {
-            f"nothing bounces: the other body has 0, and the numbers are {self.combine}": (
-                self.number == 0 < self.written
+        said = [
+            (
+                self.number == 0 < self.written,
+                f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
             ),
-            f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of {limit}": (
-                is_slow and mean < 0.1
+            (
+                self.number > 0 and is_slow and r.mean < 0.1,
+                f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of {limit}",
             ),
-            f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold of "
-            f"{limit}": self.restitution[0] == 0 < mean and slowest < speed < 2 * slowest,
-            f"r is up to {self.restitution[2]:.3f}: at some instants the ball gains energy": (
-                self.restitution[2] >= 1.0005
+            (
+                r.low == 0 < r.mean and slowest < speed < 2 * slowest,
+                f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold "
+                f"of {limit}",
             ),
-            f"at a third of the speed r is {_around(self.slower)}": speed / 3 > slowest
-            and abs(self.slower[1] - mean) > TOLERANCE / 2,
-            f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}": (
-                not is_slow and lowest > 0 and self.number > 0
+            (
+                r.high >= 1.0005,
+                f"r is up to {r.high:.3f}: at some instants the ball gains energy",
             ),
-            f"it may hop for ever: above a threshold of {show(settling, 'm/s')} it comes to rest": (
-                hops
+            (
+                speed / 3 > slowest and abs(self.slower.mean - r.mean) > TOLERANCE / 2,
+                f"at a third of the speed r is {self.slower}",
             ),
-            f"no number keeps r within {TOLERANCE:g} at this step": self.is_beyond,
-            f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
-            "table": way > self.bounce.size,
-        }
-        return tuple(text for text, holds in said.items() if holds)
+            (
+                self.number > 0 and not is_slow and lowest > 0,
+                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}",
+            ),
+            (
+                row.is_physx and 0 < self.number < 1 and self.threshold < settling,
+                f"it may hop for ever: above a threshold of {show(settling, 'm/s')} it comes to "
+                "rest",
+            ),
+            (self.is_beyond, f"no number keeps r within {TOLERANCE:g} at this step"),
+            (
+                way > self.bounce.size,
+                f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
+                "table",
+            ),
+        ]
+        return tuple(holding(said))
 
     @property
     def gives(self) -> str:
         """What the number does, in words."""
-        row = BY_NUMBER[self.engine]
-        lowered = "" if self.threshold == row.threshold else f" and {row.set_by} = "
-        lowered += f"{self.threshold:.2g}" if lowered else ""
-        number = f"{row.parameter} = {self.written:.4g}{lowered}"
-        return f"{number} gives r = {_around(self.restitution)}"
+        row = self.source
+        lowered = f" and {row.set_by} = {self.threshold:.2g}"
+        also = "" if self.threshold == row.threshold else lowered
+        return f"{row.parameter} = {self.written:.4g}{also} gives r = {self.restitution}"
 
     def __repr__(self) -> str:
         wanted = self.bounce.restitution
@@ -549,128 +568,135 @@ class Rebound(Page):
         return "\n".join([head, *(f"! {note}" for note in self.notes)])
 
     def __str__(self) -> str:
-        row = BY_NUMBER[self.engine]
-        other = "alike" if self.other is None else f"and {self.other:g} of the other body"
-        given = dict(self.bounce.given)
-        for name, value in _BODY.items():
-            if getattr(self.bounce, name) == value:
-                given.pop(name, None)
-        step = f"time step {show(self.time_step, 's', 4)}"
-        lines = [repr(self)]
-        if self.change is not None:
-            of_both = (
-                " (of both bodies)" if self.other is not None and self.change.other is None else ""
-            )
-            lines.append(f"Least change: {self.change.gives}{of_both}.")
-        if self.shorter is not None:
-            step_of = show(self.shorter.time_step, "s", 4)
-            lines.append(f"At a step of {step_of} {self.shorter.gives}.")
-        elif self.is_beyond:
-            lines.append("Nor does one at a half, a quarter, … a 128th of the step.")
-        lines += [
-            "",
-            (self.change or self).snippet,
-            "",
-            f"Given: {', '.join([*(f'{name} {value}' for name, value in given.items()), step])}.",
-            f"The numbers of both bodies, {other}: {self.combine}; together {self.number:.4g}.",
-            f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}.",
-            *(f"{note}." for note in row.notes),
+        row = self.source
+        change = self.change
+        bounce = self.bounce
+        given = [
+            f"{name} {value}"
+            for name, value in bounce.given.items()
+            if getattr(bounce, name.replace(" ", "_")) != _BODY.get(name)
         ]
-        if row.damped_by:
-            default = ", the default" if self.damping == row.damping else ""
-            lines.append(
-                f"The flights are damped by {row.damped_by} = {self.damping:g}{default}, which "
-                "lowers r: it holds for this height only."
-            )
-        if self.bounce.friction is not None:
-            lines.append("Friction acts along the surface only: r is computed without it.")
-        if self.bounce.drop_height is self.bounce.speed is None:
-            lines.append("Assumed: a drop from 1 m (--drop-height or --speed).")
-        return "\n".join(lines)
+        given.append(f"time step {show(self.time_step, 's', 4)}")
+        of_both = " (of both bodies)" if change and change.other is None is not self.other else ""
+        is_default = row.damping == BY_NUMBER[self.engine].damping
+        lines = [
+            (True, repr(self)),
+            (change, f"Least change: {change.gives if change else ''}{of_both}."),
+            (
+                self.shorter,
+                f"At a step of {show(self.shorter.time_step, 's', 4)} {self.shorter.gives}."
+                if self.shorter
+                else "",
+            ),
+            (
+                self.is_beyond and not self.shorter,
+                "Nor does one at a half, a quarter, … a 128th of the step.",
+            ),
+            (True, f"\n{(change or self).snippet}\n"),
+            (True, f"Given: {', '.join(given)}."),
+            (
+                True,
+                "The numbers of both bodies, "
+                + ("alike" if self.other is None else f"and {self.other:g} of the other body")
+                + f": {row.pair.text}; together {self.number:.4g}.",
+            ),
+            (True, f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}."),
+            *((True, f"{note}.") for note in row.notes),
+            (
+                row.damped_by,
+                f"The flights are damped by {row.damped_by} = {row.damping:g}"
+                f"{', the default' if is_default else ''}, which lowers r: it holds for this "
+                "height only.",
+            ),
+            (
+                bounce.friction is not None,
+                "Friction acts along the surface only: r is computed without it.",
+            ),
+            (
+                bounce.drop_height is bounce.speed is None,
+                "Assumed: a drop from 1 m (--drop-height or --speed).",
+            ),
+        ]
+        return "\n".join(holding(lines))
 
 
-def _around(restitution: tuple[float, float, float]) -> str:
-    low, mean, high = restitution
-    error = max(mean - low, high - mean)
-    return span(low, high) if 0 < mean <= error else f"{mean:.3f} ± {error:.3f}"
+class Case(NamedTuple):
+    """A ball in an engine at a step in s, with the number of the other body if it is not alike."""
 
+    engine: ByNumber
+    bounce: Bounce
+    step: float
+    threshold: float
+    other: float | None = None
 
-def _rebound(
-    engine: ByNumber,
-    bounce: Bounce,
-    step: float,
-    threshold: float,
-    written: float,
-    other: float | None = None,
-) -> Rebound:
-    """Return what a number does."""
-    number = engine.pair.of(written, written if other is None else other)
-    at = engine.fall(number, bounce, step, threshold)
-    speed = bounce.impact_speed
-    found = restitutions(engine, at, speed)
-    try:
-        slower = restitutions(engine, at, speed / 3)
-    except Refused:
-        slower = found
-    return Rebound(
-        engine=engine.name,
-        bounce=bounce,
-        time_step=step,
-        written=written,
-        other=other,
-        number=number,
-        threshold=threshold,
-        restitution=(float(found.min()), float(found.mean()), float(found.max())),
-        slower=(float(slower.min()), float(slower.mean()), float(slower.max())),
-        damping=engine.damping,
-        combine=engine.pair.text,
-    )
+    def number(self, written: float) -> float:
+        """Return the number of both bodies together."""
+        return self.engine.pair.of(written, written if self.other is None else self.other)
 
+    def restitutions(self, written: float, speed: float) -> Array:
+        """Return r of impacts with a speed in m/s, at instants within a step."""
+        keeps = self.engine.kept(self.engine.damping, self.step)
+        load = self.bounce.load
+        number = self.number(written)
+        at = Fall(number, self.step, load, self.threshold, self.bounce.size, keeps)
+        return restitutions(self.engine, at, speed)
 
-def _nearest(
-    engine: ByNumber, bounce: Bounce, step: float, threshold: float, other: float | None
-) -> Rebound:
-    """Return the rebound whose mean r is the wanted one, or the nearest to it, by bisection."""
-    speed = bounce.impact_speed
-    low = 0.0
-    high = 1.0
-    while high - low > 1e-4:
-        written = (low + high) / 2
-        number = engine.pair.of(written, written if other is None else other)
-        at = engine.fall(number, bounce, step, threshold)
-        if restitutions(engine, at, speed).mean() < bounce.restitution:
-            low = written
-        else:
-            high = written
-    written = float(f"{high:.4f}")
-    return _rebound(engine, bounce, step, threshold, written, other)
+    def rebound(self, written: float) -> Rebound:
+        """Return what a number does."""
+        speed = self.bounce.impact_speed
+        found = self.restitutions(written, speed)
+        try:
+            slower = self.restitutions(written, speed / 3)
+        except Refused:
+            slower = found
+        return Rebound(
+            engine=self.engine.name,
+            source=self.engine,
+            bounce=self.bounce,
+            time_step=self.step,
+            written=written,
+            other=self.other,
+            number=self.number(written),
+            threshold=self.threshold,
+            restitution=Range.of(found),
+            slower=Range.of(slower),
+        )
 
+    def nearest(self) -> Rebound:
+        """Return the rebound whose mean r is the wanted one, or the nearest to it, by bisection."""
+        speed = self.bounce.impact_speed
+        place = bisect_left(
+            range(10_000),
+            self.bounce.restitution,
+            key=lambda place: self.restitutions(place / 10_000, speed).mean(),
+        )
+        return self.rebound(place / 10_000)
 
-def _wanted(
-    engine: ByNumber, bounce: Bounce, step: float, threshold: float, other: float | None
-) -> Rebound:
-    """Return the nearest rebound, with a lower threshold if this one is in the way.
+    def wanted(self) -> Rebound:
+        """Return the nearest rebound, with a lower threshold if this one is in the way.
 
-    It is lowered to a quarter of the speed, or to what lets the ball come to rest.
-    """
-    found = _nearest(engine, bounce, step, threshold, other)
-    if found.deviation > TOLERANCE and engine.set_by and bounce.impact_speed < 1.5 * threshold:
-        settling = SETTLED * bounce.load * step / max(1 - bounce.restitution, 1e-9)
-        settles = engine.is_physx and settling < 0.9 * bounce.impact_speed
-        least = max(bounce.impact_speed / 4, settling * settles)
-        lowered = float(f"{least:.2g}")
-        lower = _nearest(engine, bounce, step, lowered, other)
+        It is lowered to a quarter of the speed, or to what lets the ball come to rest.
+        """
+        found = self.nearest()
+        speed = self.bounce.impact_speed
+        if found.deviation <= TOLERANCE or not self.engine.set_by or speed >= 1.5 * self.threshold:
+            return found
+        fall = self.bounce.load * self.step
+        settling = SETTLED * fall / max(1 - self.bounce.restitution, 1e-9)
+        settles = self.engine.is_physx and settling < 0.9 * speed
+        lowered = float(f"{max(speed / 4, settling * settles):.2g}")
+        lower = self._replace(threshold=lowered).nearest()
         return min(found, lower, key=lambda each: each.deviation)
-    return found
 
-
-def _shorter(found: Rebound, engine: ByNumber) -> Rebound | None:
-    """Return the rebound at a half, a quarter, … of the step, where r is within the tolerance."""
-    if found.deviation <= TOLERANCE:
-        return None
-    steps = [found.time_step / 2**n for n in range(1, 8)]
-    tried = (_wanted(engine, found.bounce, h, found.threshold, found.other) for h in steps)
-    return next((each for each in tried if each.deviation <= TOLERANCE), None)
+    def at_shorter_steps(self, found: Rebound) -> Rebound:
+        """Return a rebound with the one at a half, a quarter, … of the step which keeps r."""
+        if found.deviation <= TOLERANCE:
+            return found
+        steps = (self.step / 2**n for n in range(1, 8))
+        case = self._replace(threshold=found.threshold, other=found.other)
+        tried = (case._replace(step=step).wanted() for step in steps)
+        shorter = next((each for each in tried if each.deviation <= TOLERANCE), None)
+        return replace(found, shorter=shorter, is_beyond=True)
 
 
 def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound:
@@ -683,9 +709,8 @@ def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound
     """
     if bounce.restitution is None:
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
-    found = _wanted(engine, bounce, _step(time_step), engine.threshold, None)
-    is_beyond = found.deviation > TOLERANCE
-    return replace(found, shorter=_shorter(found, engine), is_beyond=is_beyond)
+    case = Case(engine, bounce, _step(time_step), engine.threshold)
+    return case.at_shorter_steps(case.wanted())
 
 
 def rebound(
@@ -718,29 +743,27 @@ def rebound(
     step = _step(time_step)
     if "number" not in given:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
-    engine = replace(
-        engine,
-        damping=given.get("damping", engine.damping),
-        pair=given.get("combine", engine.pair),
+    case = Case(
+        engine=replace(
+            engine,
+            damping=given.get("damping", engine.damping),
+            pair=given.get("combine", engine.pair),
+        ),
+        bounce=bounce,
+        step=step,
+        threshold=given.get("threshold", engine.threshold),
+        other=None if other is None else _given(engine, other).get("number", engine.default),
     )
-    beside = None
-    if other is not None:
-        beside = _given(engine, other).get("number", engine.default)
-    threshold = given.get("threshold", engine.threshold)
-    found = _rebound(engine, bounce, step, threshold, given["number"], beside)
+    found = case.rebound(given["number"])
     if bounce.restitution is None or found.deviation <= TOLERANCE:
         return found
-    change = _wanted(engine, bounce, step, threshold, beside)
-    if beside is not None and change.deviation > TOLERANCE:
+    change = case.wanted()
+    if other is not None and change.deviation > TOLERANCE:
         # The number of one body may not be enough.
-        alike = _wanted(engine, bounce, step, threshold, None)
+        alike = case._replace(other=None).wanted()
         change = min(change, alike, key=lambda each: each.deviation)
-    return replace(
-        found,
-        change=change,
-        shorter=_shorter(change, engine),
-        is_beyond=change.deviation > TOLERANCE,
-    )
+    further = case.at_shorter_steps(change)
+    return replace(found, change=change, shorter=further.shorter, is_beyond=further.is_beyond)
 
 
 def _step(time_step: Quantity) -> float:
@@ -749,25 +772,17 @@ def _step(time_step: Quantity) -> float:
     return step_in_si(time_step)
 
 
+_READ: Mapping[str, Callable[[str, Any], Any]] = {
+    "number": lambda name, value: within(name, value, 0, 1),
+    "threshold": lambda name, value: within(name, in_si(name, value, "m/s"), 0, math.inf),
+    "damping": lambda name, value: within(name, value, 0, math.inf),
+    "combine": lambda name, value: MODES[one_of(name, value, MODES)],
+}
+
+
 def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the number, the threshold, the damping and how two numbers are combined, as typed."""
-    found: dict[str, Any] = {}
-    for name, value in typed.items():
-        meant = engine.names.get(name.lower())
-        if meant == "number":
-            found[meant] = within(name, value, 0, 1)
-        elif meant == "threshold":
-            found[meant] = within(name, in_si(name, value, "m/s"), 0, math.inf)
-        elif meant == "damping":
-            found[meant] = within(name, value, 0, math.inf)
-        elif meant == "combine":
-            modes = [mode for mode in COMBINED if mode.startswith(str(value).lower()[:3])]
-            if len(str(value)) < 3 or not modes:
-                raise Refused(f"{name} = {value} is none of {', '.join(COMBINED)}")
-            found[meant] = COMBINED[modes[0]]
-        else:
-            combine = "combine" if "combine" in engine.names else ""
-            known = [engine.parameter, engine.set_by, engine.damped_by, combine]
-            has = " and ".join(filter(None, known))
-            raise Refused(f"{engine.name} does not use {name!r}: it has {has}")
-    return found
+    combine = "combine" if engine.is_physx else ""
+    names = [engine.parameter, engine.set_by, engine.damped_by, combine]
+    found = parameters_of(engine.name, engine.names, " and ".join(filter(None, names)), typed)
+    return {what: _READ[what](what, value) for what, value in found.items()}

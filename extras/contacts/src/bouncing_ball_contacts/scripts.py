@@ -58,8 +58,6 @@ def drop_script(design: Design) -> str:
         raise Refused("a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points")
     if not (bounce.gravity or is_pair):
         raise Refused("a script drops a body: it needs gravity")
-    if design.one_body:
-        raise Refused("a script gives both bodies the same numbers: leave out --one-body")
     row = design.row
     speed = bounce.impact_speed
     low, _, high = row.outcome.restitution

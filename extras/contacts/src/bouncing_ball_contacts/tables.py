@@ -189,18 +189,10 @@ def _text_of(source: Any) -> tuple[str, str]:
 
 
 def _columns_as_text(columns: Mapping[str, Any]) -> str:
-    """Return columns below their headings; the unit of a quantity stands behind its heading."""
-    texts = []
-    for heading, column in columns.items():
-        unit = f" ({column.units:~C})" if hasattr(column, "units") else ""
-        cells = np.asarray(getattr(column, "magnitude", column), dtype=object)
-        if cells.ndim != 1:
-            raise Refused("columns have one number in each cell: {'time (s)': [0.45, 1.17, 1.75]}")
-        texts.append([f"{heading}{unit}", *("" if cell is None else str(cell) for cell in cells)])
-    sizes = {len(each) - 1: None for each in texts}
-    if len(sizes) > 1:
-        raise Refused(f"columns differ in length: {', '.join(map(str, sizes))} cells")
-    return "\n".join("\t".join(row) for row in zip(*texts, strict=True))
+    """Return columns below their headings; a shorter one has empty cells at its end."""
+    rows = itertools.zip_longest(*columns.values())
+    lines = [list(columns), *(["" if cell is None else str(cell) for cell in row] for row in rows)]
+    return "\n".join("\t".join(line) for line in lines)
 
 
 def _heading(text: str) -> tuple[str, str, str]:

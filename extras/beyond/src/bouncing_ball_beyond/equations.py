@@ -34,7 +34,8 @@ VANISHED = 1e-12
 """A flight that is no longer than this is none: its times are some thousand roundings."""
 
 
-class Linear(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Linear:
     """Legs (rows, k, q), for q unknowns of an impact, and the times of their flights (rows, k).
 
     Their derivatives (rows, k, q, q + 2 + p) are by the unknowns of the impact, by τ and u of the
@@ -44,6 +45,27 @@ class Linear(NamedTuple):
     legs: NDArray
     derivatives: NDArray
     flights: NDArray
+
+    def rows(self, which: Any) -> "Linear":
+        """Some of the rows."""
+        taken = self.legs[which], self.derivatives[which], self.flights[which]
+        return type(self)(*taken)
+
+    @cached_property
+    def maps(self) -> NDArray:
+        """Derivatives of each next (τ, u) by τ and u of an impact, shape (rows, k, 2, 2)."""
+        by_impact = self.derivatives[..., :2]
+        by_others = self.derivatives[..., 2 : self.derivatives.shape[-2] + 2]
+        return -solved_or_nan(by_others, by_impact)[..., -2:, :]
+
+    @cached_property
+    def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
+        """Those of the derivative of the return map, each of the shape (rows,)."""
+        maps = self.maps
+        # Their product has all digits where the determinant of the product of the maps has none.
+        determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
+        product = product_of(maps)
+        return product[:, 0, 0] + product[:, 1, 1], determinants.prod(axis=-1)
 
 
 class Flights(NamedTuple):
@@ -240,8 +262,8 @@ class OrbitEquations:
     def excess(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
         if self.kind not in MULTIPLIERS:
-            return KINDS[self.kind].test(self, z, linear)
-        trace, determinant = self.trace_and_determinant(linear)
+            return TESTS[self.kind](self, z, linear)
+        trace, determinant = linear.trace_and_determinant
         return 1 - MULTIPLIERS[self.kind] * trace + determinant
 
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
@@ -288,19 +310,7 @@ class OrbitEquations:
 
     def tests(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at the special orbits that a march watches, shape (rows, tests)."""
-        trace, determinant = self.trace_and_determinant(linear)
-        turn = trace / (1 + determinant)
-        return np.stack(
-            [
-                determinant - 1 if self.kind == "saddle-node" else 1 - turn,
-                determinant - 1 if self.kind == "period doubling" else 1 + turn,
-                linear.flights.min(axis=1),
-                self.least_speed(z),
-                self.least_release(linear, z),
-                np.linalg.norm(self.halves(z), axis=1),
-            ],
-            axis=1,
-        )
+        return np.stack([TESTS[name](self, z, linear) for name in self.watched], axis=1)
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
@@ -308,28 +318,14 @@ class OrbitEquations:
         legs = linear.legs.reshape(len(z), self.size)
         return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
 
-    def maps(self, linear: Linear) -> NDArray:
-        """Derivatives of each next (τ, u) by τ and u of an impact, shape (rows, k, 2, 2)."""
-        by_impact = linear.derivatives[..., :2]
-        by_others = linear.derivatives[..., 2 : self.unknowns + 2]
-        return -solved_or_nan(by_others, by_impact)[..., -2:, :]
-
-    def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
-        """Those of the derivative of the return map, each of the shape (rows,)."""
-        maps = self.maps(linear)
-        # Their product has all digits where the determinant of the product of the maps has none.
-        determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
-        product = product_of(maps)
-        return product[:, 0, 0] + product[:, 1, 1], determinants.prod(axis=-1)
-
     def turn(self, linear: Linear) -> NDArray:
         """tr/(1 + det): 1 where a multiplier is 1, -1 where one is -1, between them if stable."""
-        trace, determinant = self.trace_and_determinant(linear)
+        trace, determinant = linear.trace_and_determinant
         return trace / (1 + determinant)
 
     def stable(self, linear: Linear) -> NDArray:
         """Whether no neighbouring motion leaves the orbits, shape (rows,)."""
-        trace, determinant = self.trace_and_determinant(linear)
+        trace, determinant = linear.trace_and_determinant
         # The determinant of an elastic ball is 1 up to rounding.
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
 
@@ -735,12 +731,12 @@ class PeriodicOrbit:
     def monodromy(self) -> NDArray:
         """Derivative of the return map in (τ, δ′) as the first impact starts, shape (2, 2)."""
         signs = np.diag([1.0, -1.0])
-        return signs @ product_of(self.equations.maps(self._linear))[0] @ signs
+        return signs @ product_of(self._linear.maps)[0] @ signs
 
     @cached_property
     def trace_and_determinant(self) -> tuple[float, float]:
         """Trace and determinant of the derivative of the return map."""
-        trace, determinant = self.equations.trace_and_determinant(self._linear)
+        trace, determinant = self._linear.trace_and_determinant
         return float(trace[0]), float(determinant[0])
 
     @property
@@ -860,3 +856,11 @@ MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 
 RESONANCES = {"saddle-node": "1:1 resonance", "period doubling": "1:2 resonance"}
 """Where on curves of a kind both multipliers are the same: their product is 1."""
+
+TESTS: dict[str, Callable] = {
+    **{name: kind.test for name, kind in KINDS.items()},
+    **dict.fromkeys(
+        RESONANCES.values(), lambda equations, z, linear: linear.trace_and_determinant[1] - 1
+    ),
+}
+"""What is zero at special orbits, also at resonances: functions of equations, orbits and legs."""

@@ -97,7 +97,7 @@ def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
 def degeneracy(equations: OrbitEquations, z: NDArray, linear: Linear | None) -> NDArray:
     """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance."""
     linear = linear or equations.linear(z)
-    apart = equations.trace_and_determinant(linear)[1] - 1
+    apart = linear.trace_and_determinant[1] - 1
     values = np.full(len(z), np.nan)
     for i in np.flatnonzero(np.abs(apart) > RESONANT):
         v, w = _vectors(linear.derivatives[i], -1)

@@ -97,7 +97,7 @@ class RestEquations(OrbitEquations):
         values = np.concatenate([lifts, gap, rate + x[..., 1]], axis=-1)
         derivatives = np.moveaxis(values.imag, 0, -1) / H
         lasting = np.where(self._tail(speed[0].real), FAR, time[0].real)
-        return Linear(values[0].real[..., np.newaxis], derivatives, lasting)
+        return _Superstable(values[0].real[..., np.newaxis], derivatives, lasting)
 
     @staticmethod
     def _tail(speeds: NDArray) -> NDArray:
@@ -114,12 +114,6 @@ class RestEquations(OrbitEquations):
         """The equations, shape (rows, N - p), and their Jacobian, shape (rows, N - p, N)."""
         linear = self.linear(z)
         return linear.legs[..., 0], linear.derivatives
-
-    def tests(self, z: NDArray, linear: Linear) -> NDArray:
-        """What is zero at the kinds that are watched."""
-        ones = np.ones(len(z))
-        last = self.least_speed(z), self.fall(z), self.rest(z)
-        return np.stack([ones, ones, linear.flights.min(axis=1), *last], axis=1)
 
     def rest(self, z: NDArray) -> NDArray:
         """How long the ball rests, shape (rows,): what the bounces leave until the next lift-off.
@@ -163,19 +157,20 @@ class RestEquations(OrbitEquations):
         """There are no halves."""
         return np.ones((len(z), 1))
 
-    def trace_and_determinant(self, linear: Linear) -> tuple[NDArray, NDArray]:
-        """Both are zero, because the ball leaves without a memory."""
-        return np.zeros(len(linear.legs)), np.zeros(len(linear.legs))
-
-    def stable(self, linear: Linear) -> NDArray:
-        """All orbits are superstable."""
-        return np.ones(len(linear.legs), bool)
-
     def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
         """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
         linear = linear or self.linear(z)
         good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
         return good & (self.rest(z) > 0) & (self.fall(z) > 0) & (self.clearance(z) > 0)
+
+
+class _Superstable(Linear):
+    """Equations of orbits whose multipliers are zero, because the ball leaves without a memory."""
+
+    @property
+    def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
+        """Both are zero."""
+        return np.zeros(len(self.legs)), np.zeros(len(self.legs))
 
 
 class _Lifted(Flights):

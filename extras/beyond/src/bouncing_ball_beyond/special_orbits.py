@@ -1,13 +1,12 @@
 """Special orbits: where they are between two orbits of a march, or near a guess."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import KINDS, RESONANCES, SINGULAR, Linear, OrbitEquations
+from bouncing_ball_beyond.equations import RESONANCES, SINGULAR, TESTS, OrbitEquations
 from bouncing_ball_beyond.forms import RESONANT, degeneracy
 from bouncing_ball_beyond.march import Solution, ends_at, newton
 
@@ -21,17 +20,8 @@ same."""
 CUSP, GENERALIZED = (names[0] for names in DEGENERATE.values())
 
 
-def _resonance(equations: OrbitEquations, z: NDArray, linear: Linear) -> NDArray:
-    """The product of the multipliers less 1."""
-    return equations.trace_and_determinant(linear)[1] - 1
-
-
-TESTS: dict[str, Callable] = {
-    **{name: kind.test for name, kind in KINDS.items()},
-    GENERALIZED: degeneracy,
-    **dict.fromkeys(RESONANCES.values(), _resonance),
-}
-"""What is zero at special orbits, functions of equations, orbits and legs; a cusp has none."""
+ALL_TESTS = TESTS | {GENERALIZED: degeneracy}
+"""Those on curves as well; a cusp has none."""
 
 
 class Crossings(NamedTuple):
@@ -56,7 +46,7 @@ def crossings_of(
     others = sorted({"grazing of a flight", "grazing of a release"} - {equations.kind})
     if equations.kind == "period doubling":
         others.append(GENERALIZED)
-    columns = [*tests.T, *(TESTS[name](every, z, None) for name in others)]
+    columns = [*tests.T, *(ALL_TESTS[name](every, z, None) for name in others)]
     names = [*equations.watched, *others]
     if equations.kind == "saddle-node":
         # At a cusp both parameters turn back.
@@ -98,8 +88,8 @@ def _tests_of(
     values = np.sum(rates * turns, axis=1)
     for name in np.unique(kinds[kinds != CUSP]):
         these = kinds == name
-        linear = Linear(*(each[these] for each in solution.linear))
-        values[these] = TESTS[name](equations.rows(these), solution.z[these], linear)
+        linear = solution.linear.rows(these)
+        values[these] = ALL_TESTS[name](equations.rows(these), solution.z[these], linear)
     return values
 
 

@@ -111,7 +111,7 @@ def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, ND
 
 def traces(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     """Traces and determinants of the derivatives of return maps."""
-    trace, determinant = equations.trace_and_determinant(equations.linear(z))
+    trace, determinant = equations.linear(z).trace_and_determinant
     return {"trace": trace, "determinant": determinant}
 
 

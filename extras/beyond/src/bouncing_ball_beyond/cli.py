@@ -80,17 +80,6 @@ def main(arguments: list[str] | None = None) -> None:
     sys.exit(status if isinstance(status, int) else 0)
 
 
-def with_options(*options: Callable) -> Callable:
-    """A decorator for several options, in their order."""
-
-    def decorate(function: Callable) -> Callable:
-        for option in reversed(options):
-            function = option(function)
-        return function
-
-    return decorate
-
-
 def made(name: str, make: Callable, *options: Callable) -> Callable:
     """A decorator for options, of which a command gets one argument, made by a function of them."""
 
@@ -100,7 +89,9 @@ def made(name: str, make: Callable, *options: Callable) -> Callable:
             own = {each: given.pop(each) for each in signature(make).parameters}
             function(**{name: make(**own)}, **given)
 
-        return with_options(*options)(command)
+        for option in reversed(options):
+            command = option(command)
+        return command
 
     return decorate
 

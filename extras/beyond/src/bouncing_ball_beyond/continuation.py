@@ -60,8 +60,7 @@ def follow(
     >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
     [('period doubling', 1.526824)]
     """
-    wanted = "a periodic orbit, such as orbit(ball, amplitude=1.0), or a list of them"
-    orbits = _listed(orbit, "orbit", wanted)
+    orbits = _listed(orbit, "orbit", "a periodic orbit, such as orbit(ball, amplitude=1.0)")
     points = whole_number("points", points, 2)
     found = _follow_all(orbits, along, to, points, [None] * len(orbits))
     return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
@@ -83,7 +82,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     [(2, 'period doubling'), (4, 'period doubling')]
     """
     impacts = whole_number("impacts", impacts, 2)
-    wanted = "a period doubling, such as branch.first('period doubling'), or a list of them"
+    wanted = "a period doubling, such as branch.first('period doubling')"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and len(to) != len(latest):
@@ -110,7 +109,7 @@ def _listed(given: Any, name: str, wanted: str) -> list:
     """Several orbits as a list; ValueError with one line for anything else."""
     found = list(given) if isinstance(given, Iterable) else [given]
     if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
-        raise ValueError(f"{name} = {brief(given)}: must be {wanted}")
+        raise ValueError(f"{name} = {brief(given)}: must be {wanted}, or a list of them")
     return found
 
 

@@ -83,9 +83,9 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray |
     """The equations of special orbits, one of them, and a normal, if not the last parameter's."""
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
-    if isinstance(along, str) or np.size(along) != 2:
+    if not isinstance(along, tuple | list) or len(along) != 2 or along[0] == along[1]:
         raise ValueError(
-            f"along = {brief(along)}: must be two names or paths, such as"
+            f"along = {brief(along)}: must be two different parameters, by names or paths, such as"
             " ('amplitude', 'restitution')"
         )
     allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
@@ -95,8 +95,6 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray |
             f" of a branch: {', '.join(sorted(allowed))}"
         )
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
-    if len({path.name for path in paths}) != 2:
-        raise ValueError(f"along = {along!r}: must be two different parameters")
     equations, z = special.on(*paths)
     if special.kind == "grazing of an impact":
         others, row = one_impact_less(equations, z)

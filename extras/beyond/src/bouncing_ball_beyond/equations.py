@@ -360,15 +360,13 @@ class OrbitEquations:
         places = samples_in(length)
         slopes = ball.release_slopes(x[..., 0], x[..., 1], length, places, amplitude, table)
         falling = None if slopes is None else -slopes
-        during = self._during(z)
-
-        def release(t: NDArray) -> Any:
-            return during(t).release
-
-        def falls(t: NDArray) -> NDArray:
-            return -_derivative(release, t)
-
-        return turns_back(falls, lambda t: -release(t), length, slopes=falling).min(axis=-1)
+        during: Any = self._during(z)
+        return turns_back(
+            lambda t: -_derivative(lambda s: during(s).release, t),
+            lambda t: -during(t).release,
+            length,
+            slopes=falling,
+        ).min(axis=-1)
 
     def max_height(self, z: NDArray) -> NDArray:
         """The greatest height of the ball, shape (rows,): in a flight, or in a compliant contact in

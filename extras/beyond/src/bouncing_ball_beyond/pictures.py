@@ -71,14 +71,13 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     By default the figure is a new one. ValueError if there is no such quantity, or if branches are
     not along the same parameters.
     """
-    if not all(isinstance(group, FollowedBranch | list | tuple) for group in found):
-        raise ValueError(
-            "plot draws branches, curves and lists of them, such as follow(orbit, to=1.3)"
-        )
     branches = [each for group in found for each in _branches(group)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
     if len(along) != 1:
-        raise ValueError("plot needs branches, all along the same parameters")
+        raise ValueError(
+            "plot draws branches, curves and lists of them, all along the same parameters, such as"
+            " follow(orbit, to=1.3)"
+        )
     names = *along.pop(), quantity
     if quantity not in OF_IMPACTS and quantity != "max_height":
         allowed = ", ".join(["max_height", *OF_IMPACTS])
@@ -105,9 +104,8 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
 
 def _branches(group: Any) -> list[FollowedBranch]:
     """One branch, or those of a list without the reasons why some were not found."""
-    if isinstance(group, FollowedBranch):
-        return [group]
-    return [each for each in group if isinstance(each, FollowedBranch)]
+    several = group if isinstance(group, list | tuple) else [group]
+    return [each for each in several if isinstance(each, FollowedBranch)]
 
 
 def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:

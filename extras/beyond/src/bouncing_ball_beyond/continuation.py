@@ -48,10 +48,7 @@ def follow(
     points : int
         The largest number of orbits on a branch, of each direction.
 
-    Raises
-    ------
-    OrbitNotFound
-        If a single orbit has no branch, for example towards `to` from a period doubling.
+    OrbitNotFound if a single orbit has no branch, such as towards `to` from a period doubling.
 
     Examples
     --------

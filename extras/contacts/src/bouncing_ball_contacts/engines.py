@@ -970,6 +970,14 @@ def engine_named(name: str | Engine) -> Engine:
     wanted = _ALIASES.get(wanted, wanted)
     if wanted in ENGINES:
         return ENGINES[wanted]
+    # Its rows are made of the rules of this module.
+    from bouncing_ball_contacts.rebounds import engine_by_number
+
+    if engine_by_number(wanted) is not None:
+        raise Refused(
+            f"engine {name!r} has a restitution number: in Python number_for and rebound of "
+            "bouncing_ball_contacts.rebounds answer for it, in place of design and diagnose"
+        )
     near = difflib.get_close_matches(wanted, [*ENGINES, *_ALIASES], 3)
     meant = f"did you mean {' or '.join(near)}? " if near else ""
     known = f"{meant}'bounce engines' lists those with a stiffness and those with a number"

@@ -17,7 +17,6 @@ from bouncing_ball_contacts.units import (
     Refused,
     in_si,
     positive,
-    show,
     step_in_si,
 )
 
@@ -325,7 +324,7 @@ def engines_command() -> None:
         click.echo(f"    {row.scheme.text}; two bodies: {combined}; run in {row.ran}")
     click.echo("\nWith a restitution by number, which counts from the threshold on:")
     for each in BY_NUMBER.values():
-        click.echo(f"{each.name}: {each.parameter}, threshold {show(each.threshold, 'm/s')}")
+        click.echo(f"{each.name}: {each.parameter}, threshold {each.limit}")
         click.echo(f"    two bodies: {each.pair.text}; run in {each.ran}")
 
 

@@ -233,8 +233,12 @@ class NewtonMujoco(Engine):
 
 
 def as_compared(name: str) -> str:
-    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not."""
-    return name if len(name) == 1 else re.sub(r"^set(?!$)|[\W_]", "", name.lower())
+    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not.
+
+    Of a name such as ``Physics.bounceThreshold`` only the last part counts.
+    """
+    last = re.split("[.:/>]", name)[-1]
+    return last if len(last) == 1 else re.sub(r"^(set|geom_)(?!$)|[\W_]", "", last.lower())
 
 
 def parameters_of(

@@ -44,7 +44,15 @@ from bouncing_ball_contacts.engines import (
 )
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
-from bouncing_ball_contacts.units import Refused, in_si, show, step_in_si, within
+from bouncing_ball_contacts.units import (
+    STANDARD_GRAVITY,
+    Refused,
+    in_si,
+    positive,
+    show,
+    step_in_si,
+    within,
+)
 
 _CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
 INSTANTS = 24
@@ -59,15 +67,16 @@ class ByNumber:
 
     ``parameter`` is its name, ``pair`` how the engine combines those of two bodies, ``default`` the
     one of a body that has none. Impacts slower than ``threshold`` have no restitution, or, if it
-    ``is_of_rebound``, bodies that would leave more slowly; ``set_by`` is its setting, empty if
-    there is none that can be changed. ``sinks`` is by how many times g h² a body falls farther in a
+    ``is_of_rebound``, bodies that would leave more slowly; ``set_by`` is its name, if it has one.
+    ``sinks`` is by how many times g h² a body falls farther in a
     step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
     ``springs`` is the row of the same engine in :data:`.ENGINES`, if it takes a stiffness as well.
-    ``written`` is the line to paste, and ``lowered`` the one of another threshold. If it
-    ``is_physx``, materials say how their numbers are combined, and a threshold above g h/(1 - r)
-    lets a body come to rest. ``damped_by`` is
-    the linear damping of a body with its default ``damping``, and ``kept`` the share of a velocity
-    that it leaves in a step.
+    ``written`` is the line to paste, and ``lowered`` the one of another threshold, empty if that is
+    a constant. If it ``is_physx``, materials say how their numbers are combined. If it
+    ``is_restless``, each step of gravity is thrown back, and a threshold above g h/(1 - r) lets a
+    body come to rest. ``damped_by`` is the linear damping of a body with its default ``damping``,
+    and ``kept`` the share of a velocity that it leaves in a step. ``pixels`` is how many of them
+    are a metre, of an engine whose lengths are pixels.
     """
 
     name: str
@@ -85,6 +94,8 @@ class ByNumber:
     springs: str = ""
     lowered: str = ""
     is_physx: bool = False
+    is_restless: bool = False
+    pixels: float = 0.0
     damped_by: str = ""
     damping: float = 0.0
     kept: Callable[[float, float], float] = lambda damping, step: 1.0
@@ -96,13 +107,35 @@ class ByNumber:
         modes = ("combine", "bounceCombine", "restitutionCombineMode")
         typed = {
             "number": ("restitution", self.parameter),
-            "threshold": ("threshold", re.split("[.:/]", self.set_by)[-1]) if self.set_by else (),
+            "threshold": ("threshold", "" if self.pixels else self.set_by) if self.set_by else (),
+            "threshold in pixels": (self.set_by,) if self.pixels else (),
             "combine": modes if self.is_physx else (),
             "damping": (self.damped_by,) if self.damped_by else (),
+            "pixels": ("pixels",) if self.pixels else (),
         }
         return {as_compared(name): what for what, names in typed.items() for name in names}
 
+    @property
+    def unit(self) -> float:
+        """The unit of the threshold as it is set in m/s; in pixels it is one in 1/60 s."""
+        return 60 / self.pixels if self.pixels else 1.0
 
+    @property
+    def limit(self) -> str:
+        """The threshold with its name."""
+        pixels = f"{self.threshold / self.unit:.3g} pixels in 1/60 s" if self.pixels else ""
+        return ", ".join(filter(None, [show(self.threshold, "m/s"), pixels, self.set_by]))
+
+    def scaled(self, gravity: float, pixels: float | None = None) -> "ByNumber":
+        """Return the engine with so many pixels a metre, by default those of its own gravity."""
+        if not self.pixels:
+            return self
+        scale = pixels or _PIXELS / (gravity or STANDARD_GRAVITY)
+        return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
+
+
+# In 1/s², the default gravity of matter-js.
+_PIXELS = 1000.0
 _JOLT = ByNumber(
     name="jolt",
     rule=step_rules.jolt,
@@ -126,6 +159,7 @@ _PHYSX = ByNumber(
     set_by="bounceThresholdVelocity",
     springs="physx",
     is_physx=True,
+    is_restless=True,
     lowered="sceneDesc.bounceThresholdVelocity = {threshold}f;",
 )
 _BOX2D_2 = ByNumber(
@@ -135,7 +169,9 @@ _BOX2D_2 = ByNumber(
     written="fixtureDef.restitution = {number}f;  // of one of both fixtures",
     pair=LARGER,
     threshold=1.0,
-    notes=("The threshold is a constant of the library, b2_velocityThreshold",),
+    is_restless=True,
+    set_by="b2_velocityThreshold",
+    notes=("The threshold is a constant of the library",),
 )
 _DART = ByNumber(
     name="dart",
@@ -145,6 +181,8 @@ _DART = ByNumber(
     pair=PRODUCT,
     threshold=0.1,
     is_of_rebound=True,
+    is_restless=True,
+    notes=("The threshold is a constant of the library",),
 )
 _RAPIER = ByNumber(
     name="rapier",
@@ -264,8 +302,13 @@ BY_NUMBER = {
             notes=(
                 "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
                 "that is lower by 0.02",
-                "Of gravity and lengths in pixels give those in metres at the same ratio",
+                "Below the threshold a ball with a number above 0.98 may also leave faster than it "
+                "came",
             ),
+            threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
+            set_by="Resolver._restingThresh",
+            lowered="Matter.Resolver._restingThresh = {threshold};",
+            pixels=_PIXELS / STANDARD_GRAVITY,
             damped_by="frictionAir",
             damping=0.01,
             kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
@@ -437,10 +480,6 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
 
 
-# Of a body that is not given: no rule depends on the mass, and on the radius for fast bodies only.
-_BODY: Mapping[str, Quantity] = {"mass": 1.0, "radius": 0.1}
-
-
 def falling(**quantities: Quantity) -> Bounce:
     """Return the bounce of a ball, which has a radius of 0.1 m if neither mass nor size is given.
 
@@ -458,8 +497,14 @@ def falling(**quantities: Quantity) -> Bounce:
             (given.get("points", 1) != 1, f"--points {place}: a ball is dropped"),
         ]
     )
-    body = {} if given.keys() & {"mass", "radius", "density"} else _BODY
-    return Bounce(**({"mass": 1.0} | dict(body) | given))
+    # No rule depends on the mass, and on the radius for fast bodies only.
+    size = {} if given.keys() & {"mass", "radius"} else {"radius": 0.1}
+    mass = {} if "density" in given else {"mass": 1.0}
+    found = Bounce(**mass | size | given)
+    typed = {name.replace("_", " ") for name in given}
+    words = {name: value for name, value in found.given.items() if name in typed}
+    object.__setattr__(found, "given", words)
+    return found
 
 
 @dataclass(frozen=True, repr=False)
@@ -498,34 +543,39 @@ class Rebound(Page):
         row = self.source
         # Also a whole number has a decimal point, which C++ wants before an f.
         line = row.written.format(number=float(f"{self.written:.4g}"))
-        lowered = row.lowered.format(threshold=float(f"{self.threshold:.2g}"))
+        lowered = row.lowered.format(threshold=float(f"{self.threshold / row.unit:.2g}"))
         return line if self.threshold == row.threshold else f"{line}\n{lowered}"
 
     @property
     def notes(self) -> tuple[str, ...]:
         """What a user has to know, the severest first."""
-        row = self.source
+        row = replace(self.source, threshold=self.threshold)
         speed = self.bounce.impact_speed
         r = self.restitution
-        limit = f"{show(self.threshold, 'm/s')}" + (f", {row.set_by}" if row.set_by else "")
         slowest = self.threshold / (max(self.number, 1e-9) if row.is_of_rebound else 1.0)
         is_slow = 0 < speed <= slowest
         lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
         way = speed * self.time_step
         settling = self.bounce.load * self.time_step / max(1 - self.number, 1e-9)
+        hops = row.is_restless and 0 < self.number < 1 and slowest < settling
+        height = settling**2 / (2 * self.bounce.load) if hops else 0.0
+        rests = f"above a threshold of {show(settling, 'm/s')}"
+        if not row.lowered:
+            rests = f"below a step of {show(self.time_step * slowest / max(settling, 1e-9), 's')}"
         said = [
             (
                 self.number == 0 < self.written,
                 f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
             ),
             (
-                self.number > 0 and is_slow and r.mean < 0.1,
-                f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of {limit}",
+                self.number > 0 and is_slow and r.high < 0.1,
+                f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of "
+                f"{row.limit}",
             ),
             (
-                r.low == 0 < r.mean and slowest < speed < 2 * slowest,
+                r.low < 0.1 <= r.high and r.low < r.mean / 2 and speed < 2 * slowest,
                 f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold "
-                f"of {limit}",
+                f"of {row.limit}",
             ),
             (
                 r.high >= 1.0005,
@@ -537,12 +587,12 @@ class Rebound(Page):
             ),
             (
                 self.number > 0 and not is_slow and lowest > 0,
-                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}",
+                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is "
+                f"{row.limit}",
             ),
             (
-                row.is_physx and 0 < self.number < 1 and self.threshold < settling,
-                f"it may hop for ever: above a threshold of {show(settling, 'm/s')} it comes to "
-                "rest",
+                hops,
+                f"it may hop for ever, by some {show(height, 'm', 2)}: {rests} it comes to rest",
             ),
             (self.is_beyond, f"no number keeps r within {TOLERANCE:g} at this step"),
             (
@@ -557,7 +607,7 @@ class Rebound(Page):
     def gives(self) -> str:
         """What the number does, in words."""
         row = self.source
-        lowered = f" and {row.set_by} = {self.threshold:.2g}"
+        lowered = f" and {row.set_by} = {self.threshold / row.unit:.2g}"
         also = "" if self.threshold == row.threshold else lowered
         return f"{row.parameter} = {self.written:.4g}{also} gives r = {self.restitution}"
 
@@ -571,14 +621,22 @@ class Rebound(Page):
         row = self.source
         change = self.change
         bounce = self.bounce
-        given = [
-            f"{name} {value}"
-            for name, value in bounce.given.items()
-            if getattr(bounce, name.replace(" ", "_")) != _BODY.get(name)
-        ]
+        given = [f"{name} {value}" for name, value in bounce.given.items()]
         given.append(f"time step {show(self.time_step, 's', 4)}")
         of_both = " (of both bodies)" if change and change.other is None is not self.other else ""
         is_default = row.damping == BY_NUMBER[self.engine].damping
+        assumed = [
+            *bounce.assumed,
+            *holding(
+                [
+                    (
+                        not bounce.given.keys() & {"mass", "radius"},
+                        f"a radius of {show(bounce.size, 'm')} (--radius)",
+                    ),
+                    (row.pixels, f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"),
+                ]
+            ),
+        ]
         lines = [
             (True, repr(self)),
             (change, f"Least change: {change.gives if change else ''}{of_both}."),
@@ -603,7 +661,7 @@ class Rebound(Page):
             (True, f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}."),
             *((True, f"{note}.") for note in row.notes),
             (
-                row.damped_by,
+                row.damping and bounce.gravity,
                 f"The flights are damped by {row.damped_by} = {row.damping:g}"
                 f"{', the default' if is_default else ''}, which lowers r: it holds for this "
                 "height only.",
@@ -612,10 +670,7 @@ class Rebound(Page):
                 bounce.friction is not None,
                 "Friction acts along the surface only: r is computed without it.",
             ),
-            (
-                bounce.drop_height is bounce.speed is None,
-                "Assumed: a drop from 1 m (--drop-height or --speed).",
-            ),
+            (assumed, f"Assumed: {'; '.join(assumed)}."),
         ]
         return "\n".join(holding(lines))
 
@@ -679,13 +734,12 @@ class Case(NamedTuple):
         """
         found = self.nearest()
         speed = self.bounce.impact_speed
-        if found.deviation <= TOLERANCE or not self.engine.set_by or speed >= 1.5 * self.threshold:
+        if found.deviation <= TOLERANCE or not self.engine.lowered or speed >= 1.5 * self.threshold:
             return found
-        fall = self.bounce.load * self.step
-        settling = SETTLED * fall / max(1 - self.bounce.restitution, 1e-9)
-        settles = self.engine.is_physx and settling < 0.9 * speed
-        lowered = float(f"{max(speed / 4, settling * settles):.2g}")
-        lower = self._replace(threshold=lowered).nearest()
+        lower = self._replace(threshold=float(f"{speed / 4:.2g}")).nearest()
+        settling = SETTLED * self.bounce.load * self.step / max(1 - lower.number, 1e-9)
+        if self.engine.is_restless and speed / 4 < settling < 0.9 * speed:
+            lower = self._replace(threshold=float(f"{settling:.2g}")).nearest()
         return min(found, lower, key=lambda each: each.deviation)
 
     def at_shorter_steps(self, found: Rebound) -> Rebound:
@@ -709,6 +763,7 @@ def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound
     """
     if bounce.restitution is None:
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
+    engine = engine.scaled(bounce.gravity)
     case = Case(engine, bounce, _step(time_step), engine.threshold)
     return case.at_shorter_steps(case.wanted())
 
@@ -743,12 +798,15 @@ def rebound(
     step = _step(time_step)
     if "number" not in given:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
+    engine = replace(
+        engine.scaled(bounce.gravity, given.get("pixels")),
+        damping=given.get("damping", engine.damping),
+        pair=given.get("combine", engine.pair),
+    )
+    if "threshold in pixels" in given:
+        given["threshold"] = engine.unit * given["threshold in pixels"]
     case = Case(
-        engine=replace(
-            engine,
-            damping=given.get("damping", engine.damping),
-            pair=given.get("combine", engine.pair),
-        ),
+        engine=engine,
         bounce=bounce,
         step=step,
         threshold=given.get("threshold", engine.threshold),
@@ -775,7 +833,9 @@ def _step(time_step: Quantity) -> float:
 _READ: Mapping[str, Callable[[str, Any], Any]] = {
     "number": lambda name, value: within(name, value, 0, 1),
     "threshold": lambda name, value: within(name, in_si(name, value, "m/s"), 0, math.inf),
+    "threshold in pixels": lambda name, value: within(name, value, 0, math.inf),
     "damping": lambda name, value: within(name, value, 0, math.inf),
+    "pixels": lambda name, value: positive(name, value, ""),
     "combine": lambda name, value: MODES[one_of(name, value, MODES)],
 }
 

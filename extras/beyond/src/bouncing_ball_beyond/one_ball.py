@@ -117,23 +117,6 @@ def rise(
     return True, math.nan
 
 
-def emergence(start: float, gap: float, w: float, x: float, y: float, amplitude: float) -> float:
-    """The time, not before ``start``, at which a ball rises through the level of the table or is
-    above it; infinity if it falls back before.
-    """
-    t = start
-    while True:
-        position, rate, second = flight(t, gap, w, x, y)
-        if rate <= 0:
-            return math.inf
-        if position >= 0:
-            return t
-        step, last = safe_step(t, -position, -rate, -second, 1 + amplitude, amplitude)
-        t += step
-        if last:
-            return t
-
-
 def earliest(w: float, x: float, y: float, amplitude: float) -> float:
     """A time before which a ball that leaves at the level of the table has certainly not landed.
 
@@ -298,24 +281,13 @@ def until_lift_off(phase: float, amplitude: float) -> float:
     return 0.0 if wait > TURN - CHATTER**2 else wait
 
 
-def rest(
-    gap: float, w: float, restitution: float, phase: float, amplitude: float, left: float
-) -> tuple[float, float]:
-    """How long a ball rests on the table after an instantaneous impact with the gap δ and the speed
-    w, and the phase at which it leaves; a negative time if it does not rest.
-
-    It rests if the bounces after an impact at the level of the table end there. After an instant
-    that stands for a contact, which would go on for the time ``left``, it rests if it does not rise
-    at the end of the contact, or not through the level.
+def rest(w: float, restitution: float, phase: float, amplitude: float) -> tuple[float, float]:
+    """How long a ball rests on the table after an instant that leaves it with the speed w, and the
+    phase at which it leaves; a negative time if its bounces do not end there.
     """
-    x = amplitude * math.cos(phase)
-    y = amplitude * math.sin(phase)
-    if gap == 0:
-        settled = settling(w, restitution, x, y, amplitude)
-    elif emergence(left, gap, w, x, y, amplitude) < math.inf:
-        settled = -1.0
-    else:
-        settled = left
+    settled = settling(
+        w, restitution, amplitude * math.cos(phase), amplitude * math.sin(phase), amplitude
+    )
     end = phase + settled
     if settled < 0 or amplitude * math.sin(end) > 1:
         return settled, end
@@ -369,7 +341,7 @@ def impacts(
             gap = 0.0
             duration = 0.0
             if w <= CHATTER * (1 + amplitude) * (1 + amplitude):
-                stay, leaves = rest(gap, w, restitution, phase, amplitude, 0.0)
+                stay, leaves = rest(w, restitution, phase, amplitude)
                 rests = stay >= 0
             if rests:
                 w = 0.0
@@ -403,7 +375,6 @@ LOOPS = (
     safe_step,
     flight,
     rise,
-    emergence,
     earliest,
     landing,
     contact,

@@ -267,7 +267,7 @@ def orbit_with_rest(
         raise ValueError(f"ball = {ball!r}: must have instantaneous impacts, such as Rigid(0.3)")
     impacts = None if impacts is None else whole_number("impacts", impacts)
     starts = table.lift_offs(amplitude)
-    if not len(starts):
+    if np.isnan(starts[0]):
         raise OrbitNotFound(
             f"the table never falls faster than a ball: its greatest -w″ is"
             f" {amplitude * table.lift:.6g}"
@@ -276,7 +276,7 @@ def orbit_with_rest(
     start = float(starts[0])
     for _ in range(CYCLES):
         before = Balls(ball, none + amplitude, none, none + start, none, table)
-        time, speed = fly(before, Leaving(none, none, none, none + start, none, none))
+        time, speed = fly(before, Leaving(none, none, none, none + start, none, none, none))
         turns, phase = reduced(start + time)
         first = Balls(ball, none + amplitude, turns, phase, speed, table)
         record = follow(first, MOST)[0][..., 0]

@@ -6,7 +6,7 @@ ball whose bounces end on the table, or that does not rise above it, rests there
 falls faster than a ball, -w″ > 1, or for ever if it never does (Eq. 9).
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -44,7 +44,8 @@ class Leaving(NamedTuple):
 
     ``own_time`` and ``duration`` are T and D of the impacts; D is infinite for a ball that stays.
     ``turns`` and ``phase`` are those of the table at the end, ``gap`` and ``speed`` are δ and δ′
-    there.
+    there. ``emerges`` is when a ball rises through the level of the table after an instant that
+    stands for a contact.
     """
 
     own_time: np.ndarray
@@ -53,6 +54,7 @@ class Leaving(NamedTuple):
     phase: np.ndarray
     gap: np.ndarray
     speed: np.ndarray
+    emerges: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -81,47 +83,95 @@ class Balls:
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def landings(
-    table: Table,
-    start: Values,
-    gap: Values,
-    w: Values,
-    waves: list,
-    height: Values,
-    amplitude: Values,
-) -> tuple[NDArray, NDArray]:
-    """:func:`.one_ball.landing` for arrays of one shape, with the table at a height at first."""
-    _, _, bend, jerk, *_ = table.bounds
-    given = start, gap, w, *waves
-    absolute = w + table.pulls(waves)[0]
-    below = gap + (height - amplitude * table.peaks[0])
-    aloft = np.sqrt(np.maximum(absolute * absolute + 2 * below, 0.0))
-    limits = 1 + bend * amplitude, jerk * amplitude
-    rows = np.array([*given, *limits, absolute - aloft, absolute + aloft])
-    fewest = FEW if table.compiled else 1
-    time = np.full_like(start, np.nan)
-    speed = np.full_like(start, np.nan)
+def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> tuple:
+    """First zeros of functions f ≥ 0 of the time, one for each ball, by :func:`.safe_steps`.
+
+    There are none before the times ``start``. ``look(t, *given)`` is a later time before which
+    there is none either, f, f′ and f″ there, K, J, and where the search is over without a zero.
+
+    Returns
+    -------
+    time : ndarray
+        NaN for the last balls, if they are fewer than ``fewest``.
+    zero : ndarray of bool
+        Whether f is zero there.
+    """
+    time = np.full(start.shape, np.nan)
+    zero = np.zeros(start.shape, bool)
     left = np.arange(start.size)
+    rows = np.array([start, *given])
     steps = 0
     while left.size >= fewest and steps < STEPS:
         steps += 1
-        t, gap, w, *waves, strongest, sharpest, ascent, descent = rows
-        t = np.where((ascent <= t) & (t < descent), descent, t)
-        position, rate, second = table.flights(t, gap, w, waves)
-        f = np.maximum(position, 0.0)
-        step, last = safe_steps(t, f, rate, second, strongest, sharpest)
-        rows[0] = t + step
-        if last.any():
-            third = table.third(t, w, rate, waves)
-            slowed = -rate - step * (second + step * third / 2)
-            time[left] = rows[0]
-            speed[left] = np.maximum(slowed, 0.0)
-            (going,) = (~last).nonzero()
+        t, f, slope, second, bend, jerk, over = look(*rows)
+        step, last = safe_steps(t, np.maximum(f, 0.0), slope, second, bend, jerk)
+        rows[0] = np.where(over, t, t + step)
+        done = last | over
+        if done.any():
+            time[left[done]] = rows[0, done]
+            zero[left] = last & ~over
+            (going,) = (~done).nonzero()
             left = left[going]
             rows = rows.take(going, axis=1)
-    for i in left if table.compiled else ():
-        time[i], speed[i] = one_ball.landing(*(each[i] for each in (*given, amplitude)))
-    return time, speed
+    return time, zero
+
+
+def landings(
+    table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
+) -> NDArray:
+    """The times of :func:`.one_ball.landing` for arrays of one shape."""
+    _, _, bend, jerk, *_ = table.bounds
+    absolute = w + table.pulls(waves)[0]
+    below = gap + (sum(waves[1::2]) - amplitude * table.peaks[0])
+    aloft = np.sqrt(np.maximum(absolute * absolute + 2 * below, 0.0))
+
+    def look(t: NDArray, *given: NDArray) -> tuple:
+        bend, jerk, ascent, descent, *state = given
+        t = np.where((ascent <= t) & (t < descent), descent, t)
+        gap, w, *waves = state
+        return t, *table.flights(t, gap, w, waves), bend, jerk, False
+
+    limits = [1 + bend * amplitude, jerk * amplitude, absolute - aloft, absolute + aloft]
+    fewest = FEW if table.compiled else 1
+    time, _ = first_zeros(look, start, [*limits, gap, w, *waves], fewest)
+    for i in np.isnan(time).nonzero()[0] if table.compiled else ():
+        time[i], _ = one_ball.landing(*(each[i] for each in (start, gap, w, *waves, amplitude)))
+    return time
+
+
+def emergences(
+    table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
+) -> NDArray:
+    """The times, not before ``start``, at which balls rise through the level of the table or are
+    above it; infinite for those that fall back before."""
+
+    def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
+        gap, w, *waves = state
+        position, rate, second = table.flights(t, gap, w, waves)
+        return t, -position, -rate, -second, bend, jerk, (rate <= 0) | (position >= 0)
+
+    _, _, bend, jerk, *_ = table.bounds
+    limits = [1 + bend * amplitude, jerk * amplitude]
+    time, rises = first_zeros(look, start, [*limits, gap, w, *waves])
+    position, rate, _ = table.flights(time, gap, w, waves)
+    return np.where(rises | ((position >= 0) & (rate > 0)), time, np.inf)
+
+
+def resumptions(
+    table: Table, kappa: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
+) -> tuple:
+    """The times of :func:`.one_ball.rise` for arrays, and whether contacts resume there."""
+
+    def look(t: NDArray, bend: NDArray, jerk: NDArray, kappa: NDArray, *state: NDArray) -> tuple:
+        gap, w, *waves = state
+        position, rate, second = table.flights(t, gap, w, waves)
+        third = table.third(t, w, rate, waves)
+        f = position + kappa * rate
+        return t, f, rate + kappa * second, second + kappa * third, bend, jerk, position >= 0
+
+    _, _, bend, jerk, snap, _ = (amplitude * bound for bound in table.bounds)
+    limits = [1 + bend + kappa * jerk, jerk + kappa * snap]
+    return first_zeros(look, np.zeros(gap.shape), [*limits, kappa, gap, w, *waves])
 
 
 def instants(
@@ -167,7 +217,7 @@ def leave(balls: Balls) -> Leaving:
     if not balls.ball.lasts:
         return rest(balls, gap, w)
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
-    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w)
+    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w, 0 * w)
 
 
 def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
@@ -177,23 +227,35 @@ def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
     phase = balls.phase
     left = balls.ball.left(balls.speed)
     restitution = w / np.maximum(balls.speed, TINY)
-    # The limit of :func:`.one_ball.settling`, moved so that rounding does not decide here.
+    # A limit beyond that of :func:`.one_ball.settling`.
     gravity = 1 + amplitude * table(phase, 2)
     limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
-    settles = (gap == 0) & (w * np.maximum(amplitude * table.bounds[4], 1.0) <= limit)
+    fourth = amplitude * table.bounds[4]
     stay = np.full(w.shape, -1.0)
-    leaves = phase.copy()
-    some = settles | may_sink(gap, w, 1 + table.bounds[2] * amplitude, left)
-    if some.any():
-        given = (each[some].tolist() for each in (gap, w, restitution, phase, amplitude, left))
-        stay[some], leaves[some] = np.transpose([*map(table.rest, *given)])
+    emerges = np.zeros(w.shape)
+    (slow,) = ((gap == 0) & (w * np.maximum(fourth, 1.0) <= limit)).nonzero()
+    if slow.size:
+        _, y, x = table.pulls(table.waves(phase[slow], amplitude[slow]))
+        given = (each.tolist() for each in (w[slow], restitution[slow], x, y, fourth[slow]))
+        stay[slow] = [*map(one_ball.settling, *given)]
+    (sinks,) = may_sink(gap, w, 1 + table.bounds[2] * amplitude, left).nonzero()
+    if sinks.size:
+        waves = table.waves(phase, amplitude)
+        given = (each[sinks] for each in (left, amplitude, gap, w, *waves))
+        emerges[sinks] = emergences(table, *given)
+        stay[sinks] = np.where(emerges[sinks] < np.inf, -1.0, left[sinks])
     rests = stay >= 0
     duration = np.maximum(stay, 0.0)
-    leaves = np.where(rests, leaves, phase)
+    leaves = phase + duration
+    (waits,) = rests.nonzero()
+    waits = waits[1 + amplitude[waits] * table(leaves[waits], 2) >= 0]
+    if waits.size:
+        wait, leaves[waits] = table.until_lift_off(leaves[waits], amplitude[waits])
+        duration[waits] += wait
     ends = phase + np.where(duration < np.inf, duration, 0.0)
     turns = balls.turns + np.round((ends - leaves) / TURN)
-    gap, w = (np.where(rests, 0.0, each) for each in (gap, w))
-    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
+    gap, w, emerges = (np.where(rests, 0.0, each) for each in (gap, w, emerges))
+    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w, emerges)
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, left: NDArray) -> NDArray:
@@ -215,8 +277,7 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     amplitude = balls.amplitude
     gap = leaving.gap
     w = leaving.speed
-    waves = [np.broadcast_to(each, w.shape) for each in table.waves(leaving.phase, amplitude)]
-    height = waves[1] if table.compiled else amplitude * table(leaving.phase)
+    waves = table.waves(leaving.phase, amplitude)
     _, y, x = table.pulls(waves)
     # A ball without a speed leaves because the table falls away: -w″ ≥ 1, but for rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
@@ -226,31 +287,23 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     fourth = table.bounds[4] * amplitude
     left_behind = (2 * x + np.sqrt(4 * x * x + 12 * fourth * np.maximum(y - 1, 0.0))) / fourth
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
-    kappa = np.broadcast_to(ball.kappa, w.shape)
-    left = ball.left(balls.speed)
+    start = np.where(leaving.emerges > 0, leaving.emerges, start)
     resumes = np.zeros(w.shape, bool)
-    # A ball with w ≥ (1 + √2) κ g has κ g at the level, and δ + κδ′ rises up to there, under the
-    # strongest gravity g.
-    late = np.maximum(left, (1 + np.sqrt(2)) * kappa)
-    for i in may_sink(gap, w, strongest, late).nonzero()[0]:
-        given = gap[i], w[i], leaving.phase[i], amplitude[i]
-        if kappa[i] > 0:
-            resumes[i], start[i] = table.resumption(*given, kappa[i])
-        else:
-            start[i] = table.emergence(left[i], *given)
-    time, speed = np.full((2, *w.shape), np.nan)
+    states = amplitude, gap, w, *waves
+    if np.any(ball.kappa):
+        kappa = np.broadcast_to(ball.kappa, w.shape)
+        # A ball with w ≥ (1 + √2) κ g has κ g at the level, and δ + κδ′ rises up to there, under
+        # the strongest gravity g.
+        (sinks,) = may_sink(gap, w, strongest, (1 + np.sqrt(2)) * kappa).nonzero()
+        given = (each[sinks] for each in (kappa, *states))
+        start[sinks], resumes[sinks] = resumptions(table, *given)
+    time = np.where(start < np.inf, start, np.nan)
     (lands,) = (~resumes & (start < np.inf)).nonzero()
-    pulls = [each[lands] for each in waves]
-    if table.compiled:
-        pulls[1] = y[lands]
-    states = start[lands], gap[lands], w[lands]
-    time[lands], speed[lands] = landings(table, *states, pulls, height[lands], amplitude[lands])
+    time[lands] = landings(table, start[lands], *(each[lands] for each in states))
     if ball.sinks:
         return instants(ball, table, time, gap, w, waves, amplitude)
-    time[resumes] = start[resumes]
-    given = start[resumes], gap[resumes], w[resumes], [each[resumes] for each in waves]
-    speed[resumes] = -table.flights(*given)[1]
-    return time, speed
+    speed = -table.flights(time, gap, w, waves)[1]
+    return time, np.where(resumes, speed, np.maximum(speed, 0.0))
 
 
 def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
@@ -629,7 +682,7 @@ def drop(
     nothing = np.zeros(gap.shape)
     w = -amplitude * table(phase, 1)
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)
-    time, speed = fly(balls, Leaving(nothing, nothing, nothing, phase, gap, w))
+    time, speed = fly(balls, Leaving(nothing, nothing, nothing, phase, gap, w, nothing))
     turns, lands = reduced(phase + time)
     fall = np.array([nothing, phase, nothing, nothing, nothing, gap, w, time])
     first = replace(balls, turns=turns, phase=lands, speed=speed)

@@ -8,13 +8,12 @@ parameters, the sizes and phases of the harmonics, so that complex steps give al
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from bouncing_ball_beyond import one_ball
-from bouncing_ball_beyond.one_ball import CHATTER, PATIENCE, STEPS, TURN
+from bouncing_ball_beyond.one_ball import CHATTER, TURN
 
 SAMPLES = 64
 """Samples in a period of the highest harmonic: between two of them a derivative of W changes by
@@ -347,11 +346,11 @@ class Table:
             found += [scale * (1 - versine), scale * sine]
         return found
 
-    def each_wave(self, waves: list) -> Values:
+    def each_wave(self, waves: Values) -> Values:
         """k, x and y of each harmonic."""
         return zip(self.orders, waves[::2], waves[1::2], strict=True)
 
-    def pulls(self, waves: list) -> Values:
+    def pulls(self, waves: Values) -> Values:
         """w′, -w″ and -w‴ at the start."""
         waves = list(self.each_wave(waves))
         return tuple(
@@ -359,11 +358,11 @@ class Table:
             for part in zip(*((k * x, k * k * y, k**3 * x) for k, x, y in waves), strict=True)
         )
 
-    def turned(self, waves: list) -> Values:
+    def turned(self, waves: Values) -> Values:
         """The waves of w′ in place of those of w."""
         return [each for k, x, y in self.each_wave(waves) for each in (-k * y, k * x)]
 
-    def flights(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
+    def flights(self, t: Values, gap: Values, w: Values, waves: Values) -> tuple:
         """δ, δ′ and δ″ a time t after a release; short flights lose no digits."""
         position = gap + t * (w - t / 2)
         rate = w - t
@@ -378,7 +377,7 @@ class Table:
             second = second + (bend if k == 1 else k * k * bend)
         return position, rate, second
 
-    def third(self, t: Values, w: Values, rate: Values, waves: list) -> Values:
+    def third(self, t: Values, w: Values, rate: Values, waves: Values) -> Values:
         """δ‴ a time t after a release, where the relative speed is the rate."""
         found = 0.0
         for k, x, y in self.each_wave(waves):
@@ -518,102 +517,26 @@ class Table:
         return np.where(np.take_along_axis(crossed, at, axis=-1), phase, np.nan)
 
     def lift_offs(self, amplitude: Values) -> Values:
-        """The phases in [0, 2π) at which a resting ball leaves: where 1 + ΛW″ falls to zero."""
-        return _lift_offs(self, float(amplitude))
+        """Phases in [0, 2π) at which a resting ball leaves, where 1 + ΛW″ falls to zero, in an
+        array beside Λ, NaN where there are fewer."""
+        phases = self.levels(amplitude)
+        falls = self(phases, 3) < 0
+        # The samples step over a short fall of the table.
+        short = ~falls.any(axis=-1) & (np.asarray(amplitude) * self.lift > 1)
+        phases[short, 0] = self._top(2, -1)
+        falls[short, 0] = True
+        return np.sort(np.where(falls, phases % TURN, np.nan))
 
     def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
-        """How long a ball that rests stays on the table, and the phase at which it leaves."""
+        """How long balls that rest stay on the table, and the phases at which they leave."""
         phases = self.lift_offs(amplitude)
-        if not len(phases):
-            return np.inf, phase
-        wait = (phases - phase) % TURN
+        wait = (phases - np.asarray(phase)[..., np.newaxis]) % TURN
         # Rounding must not postpone the lift-off by a turn.
-        wait[wait > TURN - CHATTER**2] = 0.0
-        first = int(wait.argmin())
-        return float(wait[first]), one_ball.reduced(float(phases[first]))[1]
-
-    # Single balls
-
-    def at_release(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
-        """δ, δ′, δ″ and δ‴ as numbers."""
-        return (
-            *(float(x) for x in self.flights(t, gap, w, waves)),
-            float(self.third(t, w, 0.0, waves)),
-        )
-
-    def resumption(
-        self, gap: Values, w: Values, phase: Values, amplitude: Values, kappa: Values
-    ) -> tuple:
-        """As :func:`.one_ball.rise`: whether a contact resumes below the level, and the time."""
-        waves = self.waves(phase, amplitude)
-        a2, a3, a4 = (amplitude * bound for bound in self.bounds[2:5])
-        t = 0.0
-        for _ in range(STEPS):
-            position, rate, second, third = self.at_release(t, gap, w, waves)
-            if position >= 0:
-                return False, t
-            f = max(position + kappa * rate, 0.0)
-            known = f, rate + kappa * second, second + kappa * third
-            step, last = one_ball.safe_step(t, *known, 1 + a2 + kappa * a3, a3 + kappa * a4)
-            t += step
-            if last:
-                return True, t
-        return True, np.nan
-
-    def emergence(
-        self, start: Values, gap: Values, w: Values, phase: Values, amplitude: Values
-    ) -> Values:
-        """As :func:`.one_ball.emergence`: when a ball rises through the level, or never."""
-        waves = self.waves(phase, amplitude)
-        a2, a3 = (amplitude * bound for bound in self.bounds[2:4])
-        t = start
-        while t < PATIENCE:
-            position, rate, second, _ = self.at_release(t, gap, w, waves)
-            if rate <= 0:
-                return np.inf
-            if position >= 0:
-                return t
-            step, last = one_ball.safe_step(t, -position, -rate, -second, 1 + a2, a3)
-            t += step
-            if last:
-                return t
-        return np.inf
-
-    def rest(
-        self,
-        gap: Values,
-        w: Values,
-        restitution: Values,
-        phase: Values,
-        amplitude: Values,
-        left: Values,
-    ) -> tuple:
-        """As :func:`.one_ball.rest`: how long a ball rests, and the phase at which it leaves."""
-        if gap == 0:
-            _, y, x = (float(each) for each in self.pulls(self.waves(phase, amplitude)))
-            settled = one_ball.settling(w, restitution, x, y, amplitude * self.bounds[4])
-        elif self.emergence(left, gap, w, phase, amplitude) < np.inf:
-            settled = -1.0
-        else:
-            settled = left
-        end = phase + settled
-        if settled < 0 or 1 + amplitude * self(end, 2) < 0:
-            return settled, end
-        wait, leaves = self.until_lift_off(end, amplitude)
-        return settled + wait, leaves
-
-
-@lru_cache(maxsize=64)
-def _lift_offs(table: Table, amplitude: Values) -> Values:
-    if amplitude * table.lift <= 1:
-        return np.empty(0)
-    phases = table.levels(amplitude)
-    phases = phases[np.isfinite(phases)]
-    falling = table(phases, 3) < 0
-    if not falling.any():
-        # The samples step over a short fall of the table.
-        return np.array([table._top(2, -1) % TURN])
-    return np.sort(phases[falling] % TURN)
+        wait = np.where(wait > TURN - CHATTER**2, 0.0, wait)
+        wait = np.where(np.isnan(wait), np.inf, wait)
+        first = wait.argmin(axis=-1)[..., np.newaxis]
+        leaves = np.take_along_axis(phases, first, -1)[..., 0]
+        return wait.min(axis=-1), leaves - TURN * np.floor(leaves / TURN + 0.5)
 
 
 class Sine(Table):
@@ -658,11 +581,11 @@ class Sine(Table):
         sine, versine = swing(phase)
         return [amplitude * (1 - versine), amplitude * sine]
 
-    def pulls(self, waves: list) -> tuple:
+    def pulls(self, waves: Values) -> tuple:
         """w′, -w″ and -w‴ at the start."""
         return waves[0], waves[1], waves[0]
 
-    def flights(self, t: Values, gap: Values, w: Values, waves: list) -> tuple:
+    def flights(self, t: Values, gap: Values, w: Values, waves: Values) -> tuple:
         """δ, δ′ and δ″ a time t after a release."""
         x, y = waves
         sine, versine = swing(t)
@@ -670,7 +593,7 @@ class Sine(Table):
         rate = (w - t) + (y * sine + x * versine)
         return position, rate, (y - 1) + (x * sine - y * versine)
 
-    def third(self, t: Values, w: Values, rate: Values, waves: list) -> Values:
+    def third(self, t: Values, w: Values, rate: Values, waves: Values) -> Values:
         """w′, which is -w‴, from what gravity and the table have changed of the speed."""
         return waves[0] + w - t - rate
 
@@ -703,38 +626,8 @@ class Sine(Table):
 
     def lift_offs(self, amplitude: Values) -> Values:
         """arcsin 1/Λ, if Λ > 1."""
-        return np.arcsin(1 / np.array([amplitude])) if amplitude > 1 else np.empty(0)
-
-    def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
-        """As of a table, by an arcsine."""
-        leaves = float(np.arcsin(1 / max(amplitude, 1.0)))
-        return one_ball.until_lift_off(phase, amplitude), leaves
-
-    def resumption(
-        self, gap: Values, w: Values, phase: Values, amplitude: Values, kappa: Values
-    ) -> Values:
-        """By the loops of :mod:`.one_ball`."""
-        x, y = (float(each) for each in self.waves(phase, amplitude))
-        return one_ball.rise(gap, w, x, y, amplitude, kappa)
-
-    def emergence(
-        self, start: Values, gap: Values, w: Values, phase: Values, amplitude: Values
-    ) -> Values:
-        """By the loops of :mod:`.one_ball`."""
-        x, y = (float(each) for each in self.waves(phase, amplitude))
-        return one_ball.emergence(start, gap, w, x, y, amplitude)
-
-    def rest(
-        self,
-        gap: Values,
-        w: Values,
-        restitution: Values,
-        phase: Values,
-        amplitude: Values,
-        left: Values,
-    ) -> Values:
-        """By the loops of :mod:`.one_ball`."""
-        return one_ball.rest(gap, w, restitution, phase, amplitude, left)
+        level = np.asarray(1 / np.maximum(amplitude, 1.0))
+        return np.arcsin(np.where(level < 1, level, np.nan))[..., np.newaxis]
 
 
 SINE = Sine()

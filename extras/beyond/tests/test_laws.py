@@ -85,6 +85,44 @@ def one_line(error):
 IMPACTS = {name: law(restitution=0.7, duration=0.12, speed=3.0) for name, law in LAWS.items()}
 
 
+class TestPermanentContact:
+    """Contacts in which balls are shaken for some periods before they leave, or stay."""
+
+    @pytest.mark.parametrize(
+        "law, amplitude",
+        [
+            (tsuji(restitution=0.6, duration=1.5, speed=3.0), 0.847),
+            (hunt_crossley(restitution=0.95, duration=1.5, speed=3.0), 0.59),
+        ],
+    )
+    def test_those_that_stay_do_not_leave_within_twelve_periods(self, law, amplitude):
+        phases = np.linspace(-3.0, 3.0, 13)
+        _, impact = law.first_impact(phases, np.full(13, 0.02), amplitude)
+        stays = np.isnan(impact.duration)
+        assert 0 < stays.sum() < 13
+        for tau in phases[stays]:
+            with pytest.raises(AssertionError, match="no end"):
+                integrated(law, tau, 0.02, amplitude, longest=12 * 2 * np.pi)
+        latest = np.nanargmax(impact.duration)
+        end, *_ = integrated(law, phases[latest], 0.02, amplitude, longest=60.0)
+        assert end > 5 * np.pi
+        assert abs(impact.duration[latest] - end) < 1e-8
+
+    def test_a_ball_that_oscillates_beside_its_place_need_not_come_to_rest(self):
+        """Its oscillation halves in a period: thirty of them need the force 4200 times."""
+        law = hunt_crossley(restitution=0.5, duration=0.1, speed=3.0)
+        calls = []
+
+        def force(p, v, stiffness, damping):
+            calls.append(np.size(p))
+            return law.force(p, v, stiffness, damping)
+
+        counted = ForceLaw(force, law.values, root=2)
+        calls.clear()
+        assert np.isnan(counted.first_release(np.array([0.3]), np.array([0.01]), 0.2))
+        assert len(calls) < 3300
+
+
 class TestByIntegration:
     @pytest.mark.parametrize("name", LAWS)
     def test_free_impact(self, name):

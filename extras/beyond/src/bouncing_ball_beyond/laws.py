@@ -286,7 +286,12 @@ class ForceLaw(Ball):
 
     def free(self, u: Values) -> Values:
         """T of free impacts, without a table and gravity."""
-        return self._followed(0.0, u, 0.0, 0.0)[0]
+        u = np.asarray(u)
+        if self._scales is None or self.kinks or np.iscomplexobj(u) or not np.all(u > 0):
+            return self._followed(0.0, u, 0.0, 0.0)[0]
+        length, time = self._scales
+        own_time = self._origin.known_signature(u * (time / length))[8]
+        return time * length ** (1 / self.root - 1) * own_time
 
     def signature(self, u: Values) -> Signature:
         """r, D, t_c and σ of free impacts.
@@ -301,11 +306,11 @@ class ForceLaw(Ball):
         known = self._origin.known_signature(speed.real)
         found = known[:4]
         if np.iscomplexobj(u):
-            found = found + 1j * known[4:] * (u.imag / u.real)
+            found = found + 1j * known[4:8] * (u.imag / u.real)
         return Signature(found[0], *(time * each for each in found[1:]))
 
     def known_signature(self, u: Values) -> NDArray:
-        """The signature of one ball and u d/du of it at real speeds, shape (8, ...).
+        """The signature of one ball, u d/du of it and T at real speeds, shape (9, ...).
 
         A law without kinks interpolates them in ln u by polynomials, on ranges of a factor of
         :data:`FACTOR` in u that are computed when they are first needed.
@@ -314,7 +319,7 @@ class ForceLaw(Ball):
             speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
             return self._computed(speeds)[:, place.reshape(u.shape)]
         number = np.floor(np.log(u) / np.log(FACTOR))
-        found = np.full((8, *u.shape), np.nan)
+        found = np.full((9, *u.shape), np.nan)
         for k in np.unique(number[np.isfinite(number)]):
             at = number == k
             if k not in self._ranges:
@@ -330,13 +335,14 @@ class ForceLaw(Ball):
     def _computed(self, u: Values) -> NDArray:
         """As :meth:`known_signature`, by free impacts at each speed."""
         values = np.array(self.computed_signature(u * (1 + 1j * H)))
-        return np.concatenate([values.real, values.imag / H])
+        own_time = self._followed(0.0, u, 0.0, 0.0)[0]
+        return np.concatenate([values.real, values.imag / H, own_time[np.newaxis]])
 
     def _range(self, number: float) -> NDArray | None:
         """Coefficients of :meth:`known_signature` in a range; None if impacts do not end."""
         points = chebyshev.chebpts1(DEGREE + 1)
         speeds = FACTOR ** (number + (points + 1) / 2)
-        if np.isnan(self.free(speeds[[0, -1]])).any():
+        if np.isnan(self._followed(0.0, speeds[[0, -1]], 0.0, 0.0)[0]).any():
             return None
         return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 

@@ -72,6 +72,10 @@ STEADY, PERIODS = 1e-9, 30
 """A contact is permanent if its motion changes relatively by less in a period, or, unless another
 number is given, after so many."""
 
+SAFE = 4.0
+"""It is also permanent if all its further changes, so many times, cannot lift the ball: see
+:meth:`_Contacts.compare_periods`."""
+
 ROWS = 1000
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
 
@@ -497,16 +501,22 @@ def carried(
     return by + np.array([h * np.tensordot(weights, each, 1) for each in (rate, push, pace)])
 
 
-def _resolved(panel: Panel, size: NDArray, gauss: Gauss) -> tuple[NDArray, NDArray]:
-    """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale."""
+def _resolved(motion: ContactMotion, panel: Panel, size: NDArray) -> tuple[NDArray, NDArray]:
+    """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale.
+
+    v has the rounding error of the speed that gravity alone would give the ball, if it is larger.
+    """
     v = panel.nodes[1]
     order = len(v)
     last, middle = (
-        np.abs(gauss.coefficients[k : k + 2] @ v).max(0) / size for k in (order - 2, order // 2)
+        np.abs(motion.gauss.coefficients[k : k + 2] @ v).max(0) / size
+        for k in (order - 2, order // 2)
     )
+    fall = motion.given["gravity"] * (panel.end[2] - panel.nodes[2][0])
+    rounded = np.fmax(1.0, fall / size)
     falls = last <= FALLING * middle
-    smooth = (last <= ROUGH) & falls | (last <= SMOOTH)
-    good = smooth & (panel.change <= SETTLED * size)
+    smooth = (last <= ROUGH) & falls | (last <= SMOOTH * rounded)
+    good = smooth & (panel.change <= SETTLED * size * rounded)
     by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / order)
     by_sweeps = (WANTED * size / np.maximum(panel.early, TINY)) ** (1 / (2 * EARLY + 2))
     factor = 0.9 * np.minimum(by_tail, by_sweeps)
@@ -668,6 +678,9 @@ class _Contacts:
     size: NDArray
     side: NDArray
     before: NDArray
+    least: NDArray
+    moved: NDArray
+    ratio: NDArray
     ended: NDArray
     lost: NDArray
 
@@ -689,7 +702,7 @@ class _Contacts:
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         least = CALM if lies else 1.0
-        good, factor = _resolved(panel, np.fmax(least * self.size[1, here], greatest), motion.gauss)
+        good, factor = _resolved(motion, panel, np.fmax(least * self.size[1, here], greatest))
         # The end of a shorter panel shows whether there is an event.
         place = _first_maximum(motion, self.events, side, start, panel)
         doubtful = good & (place < 1)
@@ -703,6 +716,7 @@ class _Contacts:
         kept = here[good]
         reached = np.array([panel.nodes[0].max(0), greatest])
         self.size[:, kept] = np.fmax(self.size[:, kept], reached[:, good])
+        self.least[kept] = np.fmin(self.least[kept], panel.nodes[0].min(0)[good])
         self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
         which = which[good]
         if self.by.any() or self.motion.steps.keys() - {"T"}:
@@ -727,14 +741,36 @@ class _Contacts:
         self.side[which, here] *= -1
         self.ended[here] |= which == release
         turned = here[which > release]
-        state = self.now[1:3, turned]
-        steady = np.abs(state - self.before[:, turned]) <= STEADY * self.size[:, turned]
+        self.compare_periods(turned)
         turn = self.motion.given["turn"]
-        left = self.longest[turned] * self.period[turned] - turn[turned]
-        self.lost[turned] = steady.all(0) | (left < 0.5 * self.period[turned])
-        self.before[:, turned] = state
         self.side[release + 1 :, turned] = -1.0
         turn[turned] += self.period[turned]
+
+    def compare_periods(self, turned: NDArray) -> None:
+        """Find out at the ends of periods which contacts are permanent.
+
+        From one period to the next q, v over its frequency and the least q change, at last in a
+        geometric series. Its sum is the largest change that is still to come, and the contact is
+        permanent if q was larger than SAFE such changes in all of the last period. The ratio is the
+        larger one of the last two.
+        """
+        q, v, t = self.now[1:, turned]
+        stiffness = -rates(self.motion.of(turned), (q + 1j * H, v, t))[1].imag / H
+        least = self.least[turned]
+        now = np.array([q, v, least])
+        change = np.abs(now - self.before[:, turned])
+        moved = change[0] + change[1] / np.sqrt(stiffness) + change[2]
+        ratio = moved / self.moved[turned]
+        larger = np.fmax(ratio, self.ratio[turned])
+        to_come = moved * larger / (1 - larger)
+        stays = (larger < 1) & (SAFE * to_come < least)
+        steady = (change[:2] <= STEADY * self.size[:, turned]).all(0)
+        left = self.longest[turned] * self.period[turned] - self.motion.given["turn"][turned]
+        self.lost[turned] = stays | steady | (left < 0.5 * self.period[turned])
+        self.before[:, turned] = now
+        self.least[turned] = np.inf
+        self.moved[turned] = moved
+        self.ratio[turned] = ratio
 
 
 @np.errstate(all="ignore")
@@ -743,7 +779,7 @@ def whole_panel(
 ) -> tuple[Panel, NDArray]:
     """Contacts up to root times in one panel each, and which of them are like their guess."""
     panel = solve_panel(motion, (*start, 0 * until), until, push=guess.push, guess=guess)
-    good, _ = _resolved(panel, np.abs(panel.nodes[1]).max(0), motion.gauss)
+    good, _ = _resolved(motion, panel, np.abs(panel.nodes[1]).max(0))
     return panel, good
 
 
@@ -830,7 +866,10 @@ def follow(
         longest=np.broadcast_to(longest, rows),
         size=np.abs(now[1:3]),
         side=side,
-        before=now[1:3].copy(),
+        before=np.array([q, v, 0 * v]),
+        least=np.full(rows, np.inf),
+        moved=np.zeros(rows),
+        ratio=np.full(rows, np.inf),
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
     )

@@ -91,21 +91,21 @@ class TestPermanentContact:
     @pytest.mark.parametrize(
         "law, amplitude",
         [
-            (tsuji(restitution=0.6, duration=1.5, speed=3.0), 0.847),
+            (tsuji(restitution=0.6, duration=4.0, speed=3.0), 0.493),
             (hunt_crossley(restitution=0.95, duration=1.5, speed=3.0), 0.59),
         ],
     )
-    def test_those_that_stay_do_not_leave_within_twelve_periods(self, law, amplitude):
+    def test_those_that_stay_do_not_leave_within_eight_periods(self, law, amplitude):
         phases = np.linspace(-3.0, 3.0, 13)
         _, impact = law.first_impact(phases, np.full(13, 0.02), amplitude)
         stays = np.isnan(impact.duration)
         assert 0 < stays.sum() < 13
-        for tau in phases[stays]:
+        for tau in phases[stays][::3]:
             with pytest.raises(AssertionError, match="no end"):
-                integrated(law, tau, 0.02, amplitude, longest=12 * 2 * np.pi)
+                integrated(law, tau, 0.02, amplitude, longest=8 * 2 * np.pi)
         latest = np.nanargmax(impact.duration)
         end, *_ = integrated(law, phases[latest], 0.02, amplitude, longest=60.0)
-        assert end > 5 * np.pi
+        assert end > 4 * np.pi
         assert abs(impact.duration[latest] - end) < 1e-8
 
     def test_a_ball_that_oscillates_beside_its_place_need_not_come_to_rest(self):

@@ -65,44 +65,27 @@ def test_the_least_change_has_the_wanted_restitution(engine, parameters, step):
     assert f"{found.change.name} = " in str(found)
 
 
-def _written(parameters):
-    return ", ".join(
-        f'{name} = "{" ".join(f"{each:g}" for each in value)}"'
-        if isinstance(value, tuple)
-        else f"{name} = {value:g}"
-        for name, value in parameters.items()
-    )
-
-
 def test_a_least_change_keeps_the_tolerance_if_need_be_at_a_shorter_step():
     found = asked(0.5, "mujoco", {"solref": "-1e5 -200"}, "2 ms")
     assert (
         found.change.outcome.restitution.deviation(0.5) <= 0.02
         and found.change.step < found.time_step
     )
-    # Then the nearest damping at this step is named, and the design of this step.
+    # Then the nearest damping at this step is named.
     reason = "; ".join(found.reasons)
-    assert "damping of this contact keeps r within 0.02 at this step; the nearest: solref" in reason
-    spring = design(found.bounce, "mujoco", "2 ms")
-    assert (
-        f"what a design has: {_written(spring.parameters)} at a step of 2 ms gives r = 0.500"
-        in reason
-    )
+    assert "damping of this contact keeps r within 0.02 at this step" in reason
+    assert "'bounce design' may have a contact that does; the nearest: solref" in reason
     same = asked(0.5, "mujoco", {"solref": "-1e4 -50"}, "1 ms")
     assert same.change.step == same.time_step and "keeps r within" not in str(same)
     assert "With --restitution there is a least change" in str(asked(None, "mujoco", {}, "2 ms"))
 
 
-def test_steps_that_damp_too_much_are_named_with_the_most_and_the_impulse():
-    """PyBullet has its restitution without a spring at every step."""
+def test_steps_that_damp_too_much_are_named_with_the_most():
     spring = {"contactStiffness": 1e5, "contactDamping": 30, "contactProcessingThreshold": 0}
     found = asked(0.8, "pybullet", spring, "1/240", body={"radius": "5 cm"})
     reason = "; ".join(found.reasons)
     most = asked(None, "pybullet", {**spring, "contactDamping": 0}, "1/240").outcome.restitution[1]
     assert f"contactDamping = 0 at a step of 4.17 ms gives r = {most:.3f}" in reason
-    impulse = design(found.bounce, "pybullet", "1/240", pick="impulse")
-    number = f"restitution = {impulse.parameters['restitution']:.6g}, linearDamping = 0"
-    assert f"without a spring: {number}" in reason
 
 
 @pytest.mark.parametrize("share", [0.95, 0.5, 0.01])
@@ -211,11 +194,6 @@ def test_what_is_assumed_of_another_body_is_said():
     ball = Bounce(mass=1, radius=0.1, restitution=0.3)
     found = str(diagnose(ball, "drake-sap", given, "1 ms", other={"point_contact_stiffness": 1e6}))
     assert "of the other body the defaults relaxation_time = 0.1" in found
-    # The least change of one body is at half the step; at this step both have to be changed.
-    ball = Bounce(mass=1, radius=0.1, restitution=0.6)
-    spring = {"contactStiffness": 1e5, "contactDamping": 5}
-    one = str(diagnose(ball, "pybullet", spring, 1e-3, other={}))
-    assert "a design has, of both bodies: " in one and "without a spring, of both bodies: " in one
 
 
 def test_an_r_that_is_kept_is_said_so():
@@ -277,7 +255,6 @@ def test_a_body_that_is_lost_has_no_restitution():
     first, second, *_ = str(found).splitlines()
     assert "lost, because lammps loses a body that sinks more than 30 mm" in first
     assert "r =" not in first and "lies" not in second and found.change is None
-    assert any(reason.startswith("what a design has: kn =") for reason in found.reasons)
 
 
 def test_a_depth_at_rest_that_the_engine_does_not_resolve_is_none():

@@ -1,12 +1,9 @@
 """Numbers with units, in and out."""
 
-import pint
 import pytest
 
 from bouncing_ball_contacts import Bounce, Refused
 from bouncing_ball_contacts.units import density_of, in_si, show, span
-
-REGISTRY = pint.UnitRegistry()
 
 
 @pytest.mark.parametrize(
@@ -30,7 +27,8 @@ REGISTRY = pint.UnitRegistry()
         ("7.8 g/cm3", "kg/m^3", 7800.0),
         ("1100 kg/m3", "kg/m^3", 1100.0),
         ("1.62 m/s2", "m/s^2", 1.62),
-        (REGISTRY.Quantity(5, "cm"), "m", 0.05),
+        ("10 N s/m", "N s/m", 10.0),
+        ("2 1/s", "1/s", 2.0),
     ],
 )
 def test_a_quantity_is_read(given, unit, expected):
@@ -42,21 +40,16 @@ def test_a_quantity_is_read(given, unit, expected):
     [
         ("1,500 N/m", "N/m", "'1500 N/m' or as '1.500 N/m'"),
         ("five g", "kg", "does not begin with a number"),
-        ("5 furlong/moon", "kg", "unit of '5 furlong/moon' is not known"),
-        ("50gr", "kg", "is it 'g'"),
-        ("50 gm", "kg", "is it 'g'"),
-        ("50 Kg", "kg", "is it 'kg'"),
-        ("50 KG", "kg", "is it 'kg'"),
-        ("2 Ms", "s", "'Ms' in '2 Ms' is not read; is it 'ms'"),
-        ("3 Mm", "m", "is it 'mm'"),
+        ("50 Kg", "kg", "'Kg' in '50 Kg' does not fit; write it as in '50 g', in kg, g, mg"),
+        ("2 Ms", "s", "does not fit"),
         ("5 s", "kg", "does not fit; write it as in '50 g'"),
+        ("5 s", "", "write a number without a unit as in '0.8', in %"),
         ("1/0", "s", "divides by zero"),
         ("nan", "s", "does not begin"),
         (float("inf"), "s", "inf s is not computed"),
         (float("nan"), "", "nan is not computed"),
         ("1e-300", "kg", "1e-300 kg is not computed, but 0 and quantities from 1e-18 to 1e.18"),
         (None, "s", "does not fit"),
-        (REGISTRY.Quantity(5, "s"), "m", "does not fit"),
     ],
 )
 def test_a_text_that_is_no_quantity_is_refused_in_one_line(given, unit, said):
@@ -104,8 +97,8 @@ def test_a_material_is_a_density():
         density_of("unobtainium")
 
 
-def test_a_bounce_takes_texts_and_pint_quantities_alike():
+def test_a_bounce_takes_texts_and_numbers_alike():
     one = Bounce(mass="50 g", restitution="80 %", drop_height="1 m")
-    other = Bounce(mass=REGISTRY.Quantity(50, "g"), restitution=0.8, drop_height=1.0)
+    other = Bounce(mass=0.05, restitution=0.8, drop_height=1.0)
     assert one == other and hash(one) == hash(other)
     assert one.impact_speed == pytest.approx(4.4287, abs=1e-4)

@@ -321,7 +321,7 @@ def engines_command() -> None:
     for row in ENGINES.values():
         combined = ", ".join(dict.fromkeys(row.rules[name].text for name in row.names))
         click.echo(f"{row.name}: {row.meaning}")
-        click.echo(f"    {row.scheme.text}; two bodies: {combined}; run in {row.ran}")
+        click.echo(f"    two bodies: {combined}; run in {row.ran}")
     click.echo("\nWith a restitution by number, which counts from the threshold on:")
     for each in BY_NUMBER.values():
         click.echo(f"{each.name}: {each.parameter}, threshold {each.limit}")

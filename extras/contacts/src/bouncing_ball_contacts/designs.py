@@ -15,7 +15,6 @@ within a step. Implicit steps, gravity and strong damping therefore need no form
 """
 
 import functools
-import html
 import math
 import re
 from bisect import bisect_left
@@ -61,7 +60,7 @@ from bouncing_ball_contacts.units import (
 )
 
 Quantity = Any
-"""A number in SI units, a text with a unit, or a pint quantity."""
+"""A number in SI units, or a text with a unit."""
 
 TOLERANCE = 0.02
 """Of r, if none is given."""
@@ -84,13 +83,6 @@ SETTLED = 1.1
 """Thresholds over the least with which a body comes to rest: near it, that takes many bounces."""
 # A permitted depth is aimed at from below: it is found to within half a percent.
 _AIM = 0.995
-
-
-class Page:
-    """A result that a notebook shows as it is printed."""
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(str(self))}</pre>"
 
 
 def aligned(table: Sequence[Sequence[str]]) -> list[str]:
@@ -138,8 +130,7 @@ _EITHER = (("drop_height", "speed"), ("radius", "density"), *combinations(_CONTA
 class Bounce:
     """A bounce that is wanted: a body falls on a surface, or meets another free body.
 
-    Quantities are numbers in SI units, texts with units or pint quantities; they are numbers in SI
-    units afterwards.
+    Quantities are numbers in SI units or texts with units; they are numbers in SI units afterwards.
 
     Parameters
     ----------
@@ -848,7 +839,7 @@ def _notes(found: "Design", problem: Problem, keeps: bool) -> list[str]:
 
 
 @dataclass(frozen=True, repr=False)
-class Design(Page):
+class Design:
     """The contacts that answer a question, by the names of their rows, and the one written.
 
     Its ``repr`` is the table with its notes; printed it also has the snippet and what was assumed.

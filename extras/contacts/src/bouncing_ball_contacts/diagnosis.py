@@ -22,16 +22,13 @@ from typing import Any
 import numpy as np
 
 from bouncing_ball_contacts.designs import (
-    IMPULSE,
     LEAST_RESTITUTION,
     TOLERANCE,
     VAGUE,
     Bounce,
     Outcome,
-    Page,
     Problem,
     Quantity,
-    design,
     holding,
     refuse,
 )
@@ -166,7 +163,7 @@ class Change:
 
 
 @dataclass(frozen=True, repr=False)
-class Diagnosis(Page):
+class Diagnosis:
     """What the parameters of an engine do.
 
     ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
@@ -317,8 +314,7 @@ def diagnose(
     )
     wanted = bounce.restitution
     if found.outcome.depth[1] > contact.problem.deepest:
-        why = [] if wanted is None else _of_design(contact)
-        return replace(found, lost=contact.problem.lost, reasons=(*_facts(contact, found), *why))
+        return replace(found, lost=contact.problem.lost, reasons=tuple(_facts(contact, found)))
     reasons = [*_dangers(found), *_causes(contact, found), *_facts(contact, found)]
     if wanted is None or found.outcome.restitution.deviation(wanted) <= TOLERANCE:
         return replace(found, reasons=tuple(reasons))
@@ -327,9 +323,9 @@ def diagnose(
     if change is None or change.step != contact.step:
         what = row.number if contact.law.is_number else "damping of this contact"
         reasons.append(
-            f"no {what} keeps r within {TOLERANCE:g} at this step; the nearest: {_nearest(contact)}"
+            f"no {what} keeps r within {TOLERANCE:g} at this step, but 'bounce design' may have a "
+            f"contact that does; the nearest: {_nearest(contact)}"
         )
-        reasons += _of_design(contact)
     return replace(found, reasons=tuple(reasons), change=change)
 
 
@@ -607,17 +603,3 @@ def _least_change(contact: Contact) -> Change | None:
         if halvings > 1 and is_short and deviations[-1] > 0.9 * deviations[-3]:
             break
     return None
-
-
-def _of_design(contact: Contact) -> Iterator[str]:
-    """Yield what a design has at this step."""
-    try:
-        found = design(contact.problem.bounce, contact.problem.engine, contact.step)
-    except Refused:
-        return
-    bodies = "" if contact.other is None else ", of both bodies"
-    rows = {"what a design has": found.row}
-    if IMPULSE in found.rows:
-        rows["without a spring"] = found.rows[IMPULSE]
-    for what, row in rows.items():
-        yield f"{what}{bodies}: {_gives(row.parameters, row.step, row.outcome)}"

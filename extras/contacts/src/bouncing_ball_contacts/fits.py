@@ -10,7 +10,6 @@ import numpy as np
 
 from bouncing_ball_contacts.designs import (
     Bounce,
-    Page,
     Quantity,
     aligned,
     holding,
@@ -25,7 +24,7 @@ from bouncing_ball_contacts.intervals import (
     impacts_of,
     without_contacts,
 )
-from bouncing_ball_contacts.laws import REJECTED, Judged, Timed, by_contact_time, judge
+from bouncing_ball_contacts.laws import LINEAR, REJECTED, Judged, judge
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
 
@@ -35,12 +34,12 @@ _TENNIS = 0.017
 
 
 @dataclass(frozen=True, repr=False)
-class Fit(Page):
+class Fit:
     """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
 
     ``restitution_without_scatter`` and ``without_scatter`` are r and its interval if impacts do not
     scatter; None if they are the same, or if the impacts contradict them. ``scatter`` is the root
-    mean square of the deviations of single impacts.
+    mean square of the deviations of single impacts, and ``contact_time`` is in s, 0 if not known.
     """
 
     recording: Recording
@@ -53,34 +52,24 @@ class Fit(Page):
     scatter: float
     slope: float
     laws: tuple[Judged, ...]
-    times: tuple[Timed, ...]
+    contact_time: float
     mass: float | None
     diameter: float | None
     notes: tuple[str, ...]
 
     @property
-    def tables(self) -> list[list[list[str]]]:
-        """The cells of the tables of laws, by r and by contact times, the headings first."""
-        at = f"at {self.speed:.3g} m/s"
-        by_r = [
-            [each.law]
-            + [f"{x:.4f}" for x in (each.restitution, each.rms, each.needed)]
-            + [each.verdict]
-            for each in self.laws
-        ]
-        by_time = [
-            [
-                each.law,
-                show(each.duration, "s", 4),
-                "–" if math.isnan(each.rms) else f"{100 * each.rms:.1f} %",
-                show(each.stiffness, each.unit, 4),
-                f"{each.damping:.4g}",
-            ]
-            for each in self.times
-        ]
+    def table(self) -> list[list[str]]:
+        """The cells of the table of laws, the headings first."""
         return [
-            [["law", f"r {at}", "rms", "errors needed", "verdict"], *by_r],
-            [["law", f"contact time {at}", "rms", "stiffness", "damping"], *by_time],
+            ["law", f"r at {self.speed:.3g} m/s", "rms", "errors needed", "verdict"],
+            *(
+                [
+                    each.law,
+                    *(f"{x:.4f}" for x in (each.restitution, each.rms, each.needed)),
+                    each.verdict,
+                ]
+                for each in self.laws
+            ),
         ]
 
     def __repr__(self) -> str:
@@ -106,10 +95,8 @@ class Fit(Page):
         )
 
     def __str__(self) -> str:
-        lines = [repr(self), *(f"! {note}" for note in self.notes)]
-        for table in self.tables if self.laws else []:
-            lines += ["", *aligned(table)] if len(table) > 1 else []
-        return "\n".join(lines)
+        laws = ["", *aligned(self.table)] if self.laws else []
+        return "\n".join([repr(self), *(f"! {note}" for note in self.notes), *laws])
 
     def wanted(self, given: Mapping[str, Quantity]) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return the quantities of the bounce at this speed, and the contact time if it was read.
@@ -119,11 +106,11 @@ class Fit(Page):
         body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
             body["radius"] = self.diameter / 2
-        if not self.times or given.keys() & {"penetration", "stiffness", "contact_time"}:
+        if not self.contact_time or given.keys() & {"penetration", "stiffness", "contact_time"}:
             return body, {}
-        # The linear law is the first one, and its stiffness may be that of one kilogram.
-        ratio = (self.mass or 1.0) / self.times[0].stiffness
-        return body, {"contact_time": math.pi * math.sqrt(ratio)}
+        # √(k/m) times the contact time, which would be π without damping.
+        phase = float(LINEAR.duration(LINEAR.damping(self.restitution), np.array(1.0)))
+        return body, {"contact_time": math.pi * self.contact_time / phase}
 
     def bounce(self, **given: Quantity) -> Bounce:
         """Return the bounce at this speed."""
@@ -184,8 +171,8 @@ def fit(
     mass, diameter : Quantity, optional
         Of the ball, with which the drag of the air is removed from flights, heights and tracks.
     contact_time : Quantity, optional
-        A measured one, in place of those of the recording: it gives the laws their stiffness, and
-        is taken off times between impacts, which are from touch to touch.
+        A measured one, in place of that of the recording: it is taken off times between impacts,
+        which are from touch to touch, and is that of a contact for an engine.
     leave_out : tuple of int
         Lines of the file.
     ball : str, optional
@@ -222,12 +209,8 @@ def fit(
     if read_at == "top":
         recording = lowest_points(recording, metres)
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
-    contact = given("contact time", contact_time, "s")
-    durations = recording.durations if contact is None else np.array([contact])
-    if durations is None:
-        # A contact that is not known is taken to have no duration.
-        durations = np.zeros(1)
-    lasts = float(np.mean(durations))
+    # A contact that is not known is taken to have no duration.
+    lasts = given("contact time", contact_time, "s") or recording.contact_time
     rounding = rounding_of(recording) if known is None else 0.0
     is_heard = recording.kind == "flights" and not recording.is_free
     if is_heard:
@@ -332,7 +315,7 @@ def fit(
         scatter=curves.scatter,
         slope=scattering.slope,
         laws=judged,
-        times=by_contact_time(impacts, durations, judged, r, at, kilograms) if lasts else (),
+        contact_time=lasts,
         mass=kilograms,
         diameter=metres,
         notes=tuple(holding(notes)),

@@ -1,4 +1,4 @@
-"""Contact laws beside the impacts of a recording: by r over the speed, and by contact times.
+"""Contact laws beside the impacts of a recording, by r over the speed.
 
 A law is judged by how much worse it fits than the nearest smooth curve, which is one of those of
 :mod:`.intervals` or a parabola in ln v, for each ratio ρ of scatter to errors: with m impacts more
@@ -85,16 +85,11 @@ class ContactLaw:
         return float(np.interp(-math.log(restitution), -self.by_damping(x)[:, 0], x))
 
 
-# By their contact times, and by their r over the speed.
-_TIMED = {
-    "linear": ContactLaw(1.0, 0.0),
-    "Hertz with Tsuji": ContactLaw(1.5, 0.25),
+LINEAR = ContactLaw(1.0, 0.0)
+LAWS = {
+    "constant r (linear; Hertz with Tsuji)": LINEAR,
     "Hertz with Kuwabara and Kono": ContactLaw(1.5, 0.5),
     "Hunt and Crossley": ContactLaw(1.0, 1.0),
-}
-LAWS = {
-    "constant r (linear; Hertz with Tsuji)": _TIMED["linear"],
-    **{name: law for name, law in _TIMED.items() if law.speed},
 }
 
 
@@ -201,57 +196,3 @@ def judge(impacts: Impacts, curves: Curves, at: float) -> list[Judged]:
         ),
         key=lambda each: each.rms,
     )
-
-
-@dataclass(frozen=True)
-class Timed:
-    """A law with measured contact times.
-
-    ``duration`` is the contact time of the law at the speed in s, ``rms`` the root mean square of
-    the relative errors of the times, NaN of a single one; ``stiffness`` is K in N/m^n (per kg if
-    the mass is not known) and ``damping`` A of the force K (p^n + A p^m p′), in SI units.
-    """
-
-    law: str
-    duration: float
-    rms: float
-    stiffness: float
-    damping: float
-    unit: str
-
-
-def by_contact_time(
-    impacts: Impacts,
-    durations: Array,
-    laws: tuple[Judged, ...],
-    restitution: float,
-    at: float,
-    mass: float | None,
-) -> tuple[Timed, ...]:
-    """Return the laws whose contacts last as long as measured ones.
-
-    There is one time, or one for each impact. A law that was not judged has the restitution
-    coefficient at the speed.
-    """
-    v = impacts.speed
-    if len(durations) != len(v):
-        v = np.exp(np.mean(np.log(v), keepdims=True))
-    parameters = {each.law: each.parameter for each in laws}
-    found = []
-    for name, law in _TIMED.items():
-        a = parameters.get(name, law.damping(restitution) / at**law.speed)
-        # T = (M/K)^(1/(n + 1)) v^power D, where D is over L/v.
-        power = (1 - law.n) / (1 + law.n)
-        lasts = v**power * law.duration(a, v)
-        scale = math.exp(float(np.mean(np.log(durations / lasts))))
-        found.append(
-            Timed(
-                law=name,
-                duration=scale * at**power * float(law.duration(a, np.array(at))),
-                rms=root_mean_square(durations / (scale * lasts) - 1) if len(v) > 1 else math.nan,
-                stiffness=(mass or 1.0) / scale ** (law.n + 1),
-                damping=a * scale ** (law.n - law.m),
-                unit=("N/m" if law.n == 1 else f"N/m^{law.n:g}") + ("" if mass else "/kg"),
-            )
-        )
-    return tuple(found)

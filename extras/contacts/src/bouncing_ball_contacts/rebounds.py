@@ -25,7 +25,6 @@ from bouncing_ball_contacts.designs import (
     SETTLED,
     TOLERANCE,
     Bounce,
-    Page,
     Quantity,
     Range,
     holding,
@@ -508,7 +507,7 @@ def falling(**quantities: Quantity) -> Bounce:
 
 
 @dataclass(frozen=True, repr=False)
-class Rebound(Page):
+class Rebound:
     """What a restitution number does in an engine.
 
     ``written`` is the number of a body: of both alike, or of one if ``other`` has that of the other

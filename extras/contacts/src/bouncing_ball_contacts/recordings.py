@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
@@ -60,15 +59,15 @@ class Recording:
     of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
     ``digit`` is the last digit with which readings are written, in SI units, or 0; heights from
     which a ball is dropped and speeds of coefficients are set, and not read. ``uncertainty`` has
-    standard deviations of r, ``durations`` contact times in s, one or one for each impact, and
-    ``head`` what the file says of the ball.
+    standard deviations of r, ``contact_time`` is in s, 0 if it is not known, and ``head`` has what
+    the file says of the ball.
     """
 
     name: str
     kind: str
     chains: tuple[Array, ...]
     uncertainty: Array | None = None
-    durations: Array | None = None
+    contact_time: float = 0.0
     is_free: bool = False
     are_times: bool = False
     digit: float = 0.0
@@ -349,17 +348,13 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
     return kind, columns
 
 
-def _durations(table: Table, kind: str, is_there: NDArray[np.bool_]) -> Array | None:
-    """Return the contact times of impacts, or one if not each of them has its own."""
+def _contact_time(table: Table) -> float:
+    """Return the contact time in s of the head, or the mean of a column; 0 if there is none."""
     if "contact time" in table.head:
-        return np.array([positive("contact time", table.head["contact time"], "s")])
-    for each in table.of("duration"):
-        values = table.values(each)[is_there]
-        known = values[~np.isnan(values)]
-        is_each = kind == "coefficients" and len(known) == len(values)
-        if len(known):
-            return known if is_each else known.mean(keepdims=True)
-    return None
+        return positive("contact time", table.head["contact time"], "s")
+    times = [value for each in table.of("duration") for value in table.values(each).tolist()]
+    known = [value for value in times if not math.isnan(value)]
+    return sum(known) / max(len(known), 1)
 
 
 def _recording(table: Table) -> Recording:
@@ -390,7 +385,7 @@ def _recording(table: Table) -> Recording:
     return replace(
         recording,
         head=table.head,
-        durations=_durations(table, kind, is_there),
+        contact_time=_contact_time(table),
         is_free=columns[0].role == "flight",
         notes=tuple(notes),
     )

@@ -369,13 +369,6 @@ class SemiImplicit:
     pulls: bool = False
     approach: bool = False
 
-    @property
-    def text(self) -> str:
-        """The scheme in a few words."""
-        if self.pulls:
-            return "semi-implicit, the damper pulls"
-        return "semi-implicit, damped on approach" if self.approach else "semi-implicit"
-
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         rate = np.maximum(-v, 0.0) if self.approach else -v
         push = law.push(-z, rate, g)
@@ -390,11 +383,6 @@ class Implicit:
     """
 
     ahead: bool = False
-
-    @property
-    def text(self) -> str:
-        """The scheme in a few words."""
-        return "implicit, found ahead" if self.ahead else "implicit"
 
     def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         touching = z + h * free < 0 if self.ahead else z < 0

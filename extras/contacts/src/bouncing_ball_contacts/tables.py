@@ -177,8 +177,6 @@ def _text_of(source: Any) -> tuple[str, str]:
     path = Path(source)
     if str(source) in experiments() and not path.exists():
         path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if path.is_dir():
-        raise Refused(f"the file {source} is a folder")
     if not path.exists():
         known = ", ".join(experiments())
         raise Refused(f"the file {source} does not exist, and the experiments are {known}")

@@ -25,28 +25,25 @@ DENSITIES = {
 }
 """Of solid materials, in kg/m³."""
 
-# The units that most people type. Importing pint costs more than a whole design, so that only
-# other units, such as lb or inch, are left to it.
-_COMMON = {
-    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3},
-    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9},
-    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6},
-    "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0},
-    "kg/m^3": {
-        "kg/m^3": 1.0,
-        "kg/m³": 1.0,
-        "kg/m3": 1.0,
-        "g/cm^3": 1e3,
-        "g/cm³": 1e3,
-        "g/cm3": 1e3,
-    },
+_UNITS = {
+    "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "µg": 1e-9, "ug": 1e-9, "t": 1e3}
+    | {"lb": 0.45359237, "oz": 0.45359237 / 16},
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "km": 1e3}
+    | {"in": 0.0254, "inch": 0.0254, "ft": 0.3048},
+    "s": {"s": 1.0, "ms": 1e-3, "µs": 1e-6, "us": 1e-6, "ns": 1e-9, "min": 60.0},
+    "m/s": {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6, "mph": 0.44704}
+    | {"ft/s": 0.3048},
+    "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "cm/s^2": 1e-2, "ft/s^2": 0.3048},
+    "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "kg/m3": 1.0}
+    | {"g/cm^3": 1e3, "g/cm³": 1e3, "g/cm3": 1e3},
     "Hz": {"Hz": 1.0, "kHz": 1e3},
-    "N/m": {"N/m": 1.0, "mN/m": 1e-3, "kN/m": 1e3, "MN/m": 1e6, "N/mm": 1e3, "kN/mm": 1e6},
+    "N/m": {"N/m": 1.0, "mN/m": 1e-3, "kN/m": 1e3, "MN/m": 1e6, "GN/m": 1e9}
+    | {"N/mm": 1e3, "kN/mm": 1e6},
+    "N s/m": {"N s/m": 1.0, "Ns/m": 1.0, "kN s/m": 1e3},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9},
     "": {"": 1.0, "%": 1e-2},
 }
-# Of texts that pint reads as something else: gr is its grain of 65 mg, and Ms are 10⁶ s.
-_MISSPELT = {"kg": {"gr": "g", "gm": "g", "kgs": "kg"}}
+"""What a text may have behind its number, by the SI unit; another SI unit has itself only."""
 _EXAMPLES = {
     "kg": "50 g",
     "m": "2 mm",
@@ -71,7 +68,7 @@ def in_si(name: str, value: Any, unit: str) -> float:
     ----------
     name : str
         What the number is, for messages.
-    value : float, str or pint.Quantity
+    value : float or str
         A plain number is in the SI unit already. A text is a number with a unit, a plain number,
         or a fraction such as ``1/240``.
     unit : str
@@ -88,10 +85,9 @@ def in_si(name: str, value: Any, unit: str) -> float:
     """
     wanted = f"write {'it' if unit else 'a number without a unit'} as in "
     wanted += repr(_EXAMPLES.get(unit, f"2 {unit}"))
-    found = _typed(name, value, unit, wanted) if isinstance(value, str) else value
     try:
-        number = float(found.to(unit).magnitude if hasattr(found, "to") else found)
-    except (TypeError, ValueError):
+        number = _typed(name, value, unit, wanted) if isinstance(value, str) else float(value)
+    except TypeError:
         raise Refused(f"{name}: {value!r} does not fit; {wanted}") from None
     # Also of infinity and NaN.
     if number != 0 and not 1 / LARGEST <= abs(number) <= LARGEST:
@@ -102,8 +98,8 @@ def in_si(name: str, value: Any, unit: str) -> float:
     return number
 
 
-def _typed(name: str, text: str, unit: str, wanted: str) -> Any:
-    """Return the number of a text in the SI unit, or a quantity of pint."""
+def _typed(name: str, text: str, unit: str, wanted: str) -> float:
+    """Return the number of a text in the SI unit."""
     plain = text.strip().replace("−", "-")
     if re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain):
         both = (plain.replace(",", ""), plain.replace(",", "."))
@@ -115,21 +111,11 @@ def _typed(name: str, text: str, unit: str, wanted: str) -> Any:
     divisor = float(found[2] or 1)
     if divisor == 0:
         raise Refused(f"{name}: {text!r} divides by zero")
-    number = float(found[1]) / divisor
-    typed = found[3]
-    common = {"": 1.0, **_COMMON.get(unit, {})}
-    if typed in common:
-        return number * common[typed]
-    meant = {each.lower(): each for each in common} | _MISSPELT.get(unit, {})
-    if typed.lower() in meant:
-        is_it = meant[typed.lower()]
-        raise Refused(f"{name}: {typed!r} in {text!r} is not read; is it {is_it!r}?")
-    import pint
-
-    try:
-        return pint.Quantity(number, typed)
-    except Exception:  # pint raises errors of many kinds, also those of Python's tokenizer
-        raise Refused(f"{name}: the unit of {text!r} is not known; {wanted}") from None
+    known = {"": 1.0, **_UNITS.get(unit, {unit: 1.0})}
+    if found[3] not in known:
+        units = ", ".join(filter(None, known)) or "none"
+        raise Refused(f"{name}: {found[3]!r} in {text!r} does not fit; {wanted}, in {units}")
+    return float(found[1]) / divisor * known[found[3]]
 
 
 def positive(name: str, value: Any, unit: str) -> float:

@@ -75,13 +75,13 @@ def test_few_readings_have_an_interval_for_each_assumption():
     assert fit(recording).without_scatter is None
     found = fit(recording, resolution="0.5 ms")
     low, high = found.interval
-    least, most = found.without_scatter
+    r, least, most = found.without_scatter
     assert low < least < 0.8 < most < high and 3 * (most - least) < high - low
     lines = repr(found).split("\n")
     # Each r is in its interval, and has the same speed.
     assert lines[1].endswith(f"95 %: {low:.4f} to {high:.4f} if impacts scatter")
     assert lines[2].endswith(f"95 %: {least:.4f} to {most:.4f} if they do not")
-    assert least < found.restitution_without_scatter < most
+    assert least < r < most
     assert max(map(len, lines)) <= 100
     # Speeds after an impact depend on no other reading, so that the assumption changes nothing.
     pairs = np.column_stack([[1.0, 2.0, 3.0, 4.0], [0.806, 1.597, 2.412, 3.203]])

@@ -18,7 +18,7 @@ import functools
 import math
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations
 from typing import Any, NamedTuple
@@ -51,8 +51,10 @@ from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
     density_of,
+    holding,
     in_si,
     positive,
+    refuse,
     show,
     span,
     step_in_si,
@@ -92,17 +94,6 @@ def aligned(table: Sequence[Sequence[str]]) -> list[str]:
         "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
         for row in table
     ]
-
-
-def holding(said: Iterable[tuple[Any, str]]) -> list[str]:
-    """Return those sentences whose conditions hold."""
-    return [text for holds, text in said if holds]
-
-
-def refuse(said: Iterable[tuple[Any, str]]) -> None:
-    """Raise the first of those sentences whose conditions hold."""
-    for text in holding(said):
-        raise Refused(text)
 
 
 _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {

@@ -29,8 +29,6 @@ from bouncing_ball_contacts.designs import (
     Outcome,
     Problem,
     Quantity,
-    holding,
-    refuse,
 )
 from bouncing_ball_contacts.engines import (
     CONES,
@@ -56,7 +54,7 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
-from bouncing_ball_contacts.units import Refused, in_si, show, within
+from bouncing_ball_contacts.units import Refused, holding, in_si, refuse, show, within
 
 _SHARES = (
     "bounce",

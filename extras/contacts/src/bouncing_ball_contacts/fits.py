@@ -12,12 +12,10 @@ from bouncing_ball_contacts.designs import (
     Bounce,
     Quantity,
     aligned,
-    holding,
 )
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
-    Estimate,
     Impacts,
     curves_of,
     estimates,
@@ -26,7 +24,15 @@ from bouncing_ball_contacts.intervals import (
 )
 from bouncing_ball_contacts.laws import LINEAR, REJECTED, Judged, judge
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, positive, show, span
+from bouncing_ball_contacts.units import (
+    STANDARD_GRAVITY,
+    Refused,
+    holding,
+    positive,
+    refuse,
+    show,
+    span,
+)
 
 _WITH_DRAG = ("flights", "heights", "drops", "track")
 # ρ C A/(2 m) of a tennis ball in 1/m.
@@ -37,8 +43,8 @@ _TENNIS = 0.017
 class Fit:
     """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
 
-    ``restitution_without_scatter`` and ``without_scatter`` are r and its interval if impacts do not
-    scatter; None if they are the same, or if the impacts contradict them. ``scatter`` is the root
+    ``without_scatter`` has r and the ends of its interval if impacts do not scatter; it is None if
+    that is not known, if it is the same, or if the impacts contradict it. ``scatter`` is the root
     mean square of the deviations of single impacts, and ``contact_time`` is in s, 0 if not known.
     """
 
@@ -47,8 +53,7 @@ class Fit:
     speed: float
     restitution: float
     interval: tuple[float, float]
-    restitution_without_scatter: float | None
-    without_scatter: tuple[float, float] | None
+    without_scatter: tuple[float, float, float] | None
     scatter: float
     slope: float
     laws: tuple[Judged, ...]
@@ -78,15 +83,14 @@ class Fit:
         count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
         at = f"at {self.speed:.3g} m/s, 95 %:"
 
-        def line(r: float, interval: tuple[float, float]) -> str:
+        def line(r: float, low: float, high: float) -> str:
             # r has the digits of its interval, in which it would not lie with fewer.
-            ends = span(*interval, 4)
+            ends = span(low, high, 4)
             return f"r = {r:.{len(ends.split()[0]) - 2}f} {at} {ends}"
 
-        found = line(self.restitution, self.interval)
-        if self.without_scatter is not None and self.restitution_without_scatter is not None:
-            still = line(self.restitution_without_scatter, self.without_scatter)
-            found += f" if impacts scatter\n{still} if they do not"
+        found = line(self.restitution, *self.interval)
+        if self.without_scatter is not None:
+            found += f" if impacts scatter\n{line(*self.without_scatter)} if they do not"
         return (
             f"{title}: {count} at {v.min():.3g} to {v.max():.3g} m/s, "
             f"from {self.recording.kind}\n"
@@ -118,7 +122,7 @@ class Fit:
         return Bounce(**body, **contact)
 
 
-def lowest_points(recording: Recording, diameter: float | None) -> Recording:
+def lowest_points(recording: Recording, diameter: Any) -> Recording:
     """Return a recording whose heights were read at the top of the ball as those of its bottom.
 
     Of drops these are the rebounds; the drop height is that of the bottom.
@@ -128,20 +132,23 @@ def lowest_points(recording: Recording, diameter: float | None) -> Recording:
     Refused
         If there are no heights, the diameter is missing, or it is more than a height.
     """
-    if recording.kind not in ("drops", "heights"):
-        raise Refused("--read-at is for heights: there are none in this recording")
-    if diameter is None:
-        raise Refused("heights read at the top of the ball need its diameter: --diameter '43 mm'")
-    size = np.array([0.0, diameter]) if recording.kind == "drops" else diameter
+    refuse(
+        [
+            (
+                recording.kind not in ("drops", "heights"),
+                "--read-at is for heights: there are none in this recording",
+            ),
+            (
+                diameter is None,
+                "heights read at the top of the ball need its diameter: --diameter '43 mm'",
+            ),
+        ]
+    )
+    size = np.array([0.0, 1.0] if recording.kind == "drops" else [1.0]) * diameter
     chains = tuple(each - size for each in recording.chains)
-    if min(each.min() for each in chains) <= 0:
-        raise Refused(f"a height is less than the diameter of {show(diameter, 'm')}")
+    is_low = min(each.min() for each in chains) <= 0
+    refuse([(is_low, f"a height is less than the diameter of {show(diameter, 'm')}")])
     return replace(recording, chains=chains)
-
-
-def _of_logs(estimate: Estimate) -> tuple[float, float]:
-    """Return the ends of an interval of r, which is at most 1."""
-    return min(math.exp(estimate.low), 1.0), min(math.exp(estimate.high), 1.0)
 
 
 def fit(
@@ -219,18 +226,22 @@ def fit(
     v = impacts.speed
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
-    # So far off the exponents of the curves, which no reading tells apart, decide alone.
-    if not v.min() / 100 <= at <= 100 * v.max():
-        raise Refused(
-            f"{show(at, 'm/s')} is more than 100 times off the measured speeds, "
-            f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there"
-        )
     error = rounding / math.sqrt(12) if known is None else known
-    if np.min(np.linalg.norm(impacts.readings * error, axis=1)) > 1:
-        raise Refused(
-            f"{recording.name}: readings with an error of {show(float(np.max(error)), unit)} say "
-            "nothing of r: is a unit missing?"
-        )
+    refuse(
+        [
+            (
+                # So far off the exponents of the curves decide, which no reading tells apart.
+                not v.min() / 100 <= at <= 100 * v.max(),
+                f"{show(at, 'm/s')} is more than 100 times off the measured speeds, "
+                f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there",
+            ),
+            (
+                np.min(np.linalg.norm(impacts.readings * error, axis=1)) > 1,
+                f"{recording.name}: readings with an error of {show(float(np.max(error)), unit)} "
+                "say nothing of r: is a unit missing?",
+            ),
+        ]
+    )
     curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
@@ -240,9 +251,7 @@ def fit(
     is_far = len(v) > 3 and far[farthest] > max(0.2, 5 * float(np.sort(far)[-2]))
     if scattering.low > 0:
         raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
-    interval = _of_logs(scattering)
-    second = None if still is None else _of_logs(still)
-    low, high = second or interval
+    _, low, high = (still or scattering).of_r
     # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
     lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
@@ -303,15 +312,13 @@ def fit(
             f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded",
         ),
     ]
-    r = min(r, 1.0)
     return Fit(
         recording=recording,
         impacts=impacts,
         speed=at,
-        restitution=r,
-        interval=interval,
-        restitution_without_scatter=None if still is None else min(math.exp(still.value), 1.0),
-        without_scatter=second,
+        restitution=min(r, 1.0),
+        interval=scattering.of_r[1:],
+        without_scatter=None if still is None else still.of_r,
         scatter=curves.scatter,
         slope=scattering.slope,
         laws=judged,

@@ -197,6 +197,12 @@ class Estimate:
     high: float
     slope: float
 
+    @property
+    def of_r(self) -> tuple[float, float, float]:
+        """The median of r and the ends of its interval, which are at most 1."""
+        value, low, high = (min(math.exp(x), 1.0) for x in (self.value, self.low, self.high))
+        return value, low, high
+
 
 def deviations(weights: Array, columns: Array, y: Array) -> tuple[Array, Array]:
     """Return what the best sums of columns leave, over its standard deviation, and their basis.

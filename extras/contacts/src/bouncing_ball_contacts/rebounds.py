@@ -27,8 +27,6 @@ from bouncing_ball_contacts.designs import (
     Bounce,
     Quantity,
     Range,
-    holding,
-    refuse,
 )
 from bouncing_ball_contacts.engines import (
     LARGER,
@@ -46,8 +44,10 @@ from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
+    holding,
     in_si,
     positive,
+    refuse,
     show,
     step_in_si,
     within,

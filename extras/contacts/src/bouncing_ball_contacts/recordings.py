@@ -19,7 +19,7 @@ import numpy as np
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import HEADINGS, TEXTS, Column, Lines, Table, table_of
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, in_si, positive
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, holding, positive
 
 LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("drops", ("drop height", "rebound height")),
@@ -300,24 +300,26 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     _refuse_growth(table, "speeds", pairs, lines)
     mean = float(np.mean(gravities))
     unit = columns[1].unit
-    notes = []
     # Without a scale, as of pixels, nothing contradicts gravity.
-    if re.fullmatch("[cm]?m", unit):
-        measured = in_si("y", f"1 {unit}", "m") * mean
-        slow = math.sqrt(STANDARD_GRAVITY / measured)
-        if not 0.5 < slow**2 < 2:
-            notes.append(
-                f"gravity is {measured:.3g} m/s² by the heights and times: the times are "
-                f"{slow:.3g} times the true ones, as in slow motion, or the heights have another "
-                "unit"
-            )
-    notes.append(
-        f"{len(impacts)} impacts were found between flights that can be fitted; gravity, "
-        f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale"
-    )
-    if impacts is ways[1]:
-        notes.append("the positions grow downwards, as in a picture: they were turned")
-    return Recording(table.name, "track", tracks, notes=tuple(notes))
+    measured = mean * {"m": 1.0, "cm": 1e-2, "mm": 1e-3}.get(unit, math.nan)
+    slow = math.sqrt(STANDARD_GRAVITY / measured)
+    notes = [
+        (
+            abs(math.log2(slow)) > 0.5,
+            f"gravity is {measured:.3g} m/s² by the heights and times: the times are {slow:.3g} "
+            "times the true ones, as in slow motion, or the heights have another unit",
+        ),
+        (
+            True,
+            f"{len(impacts)} impacts were found between flights that can be fitted; gravity, "
+            f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale",
+        ),
+        (
+            impacts is ways[1],
+            "the positions grow downwards, as in a picture: they were turned",
+        ),
+    ]
+    return Recording(table.name, "track", tracks, notes=tuple(holding(notes)))
 
 
 # What was measured.
@@ -372,22 +374,31 @@ def _recording(table: Table) -> Recording:
         named = ", ".join(each.name for each in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     used = [*columns, *errors, *table.of("duration")]
-    ignored = [each for each in table.columns if each not in used and each.role not in TEXTS]
-    notes = list(recording.notes)
-    if names := [repr(each.name) for each in ignored if each.name]:
-        notes.append(f"columns not used: {', '.join(names)}")
-    if gaps := [str(line) for line in table.lines[~is_there]]:
-        divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
-        notes.append(f"a number is missing in line {', '.join(gaps)}, which is left out{divides}")
-    for key, value in table.head.items():
-        if key.removesuffix(" uncertainty") not in _KEYS and re.fullmatch(_QUANTITY, value):
-            notes.append(f"the head has '{key}: {value}', but only {', '.join(_KEYS)} are used")
+    ignored = [
+        repr(each.name)
+        for each in table.columns
+        if each.name and each not in used and each.role not in TEXTS
+    ]
+    gaps = ", ".join(str(line) for line in table.lines[~is_there])
+    divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
+    notes = [
+        *((True, note) for note in recording.notes),
+        (ignored, f"columns not used: {', '.join(ignored)}"),
+        (gaps, f"a number is missing in line {gaps}, which is left out{divides}"),
+        *(
+            (
+                key.removesuffix(" uncertainty") not in _KEYS and re.fullmatch(_QUANTITY, value),
+                f"the head has '{key}: {value}', but only {', '.join(_KEYS)} are used",
+            )
+            for key, value in table.head.items()
+        ),
+    ]
     return replace(
         recording,
         head=table.head,
         contact_time=_contact_time(table),
         is_free=columns[0].role == "flight",
-        notes=tuple(notes),
+        notes=tuple(holding(notes)),
     )
 
 

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any
 
 STANDARD_GRAVITY = 9.80665
@@ -59,6 +60,17 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 class Refused(ValueError):
     """A question without an answer; the message is one line for whoever asked."""
+
+
+def holding(said: Iterable[tuple[Any, str]]) -> list[str]:
+    """Return those sentences whose conditions hold."""
+    return [text for holds, text in said if holds]
+
+
+def refuse(said: Iterable[tuple[Any, str]]) -> None:
+    """Raise the first of those sentences whose conditions hold."""
+    for text in holding(said):
+        raise Refused(text)
 
 
 def in_si(name: str, value: Any, unit: str) -> float:

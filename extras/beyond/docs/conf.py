@@ -71,6 +71,7 @@ PARTS = {
         "extras/beyond/docs/thesis",
         "extras/beyond/docs/gallery",
         "extras/beyond/docs/impact-as-an-instant",
+        "extras/beyond/docs/impacts",
         "extras/beyond/docs/error-law",
         "extras/beyond/docs/speed",
         "extras/beyond/docs/api",

@@ -48,14 +48,14 @@ FIRST_PANEL = 0.4
 
 FACTOR, DEGREE = 8.0, 23
 """The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
-ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴."""
+ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴.
+"""
 
 NEIGHBOURS = 2.0
 """The range of speeds of contacts that are guessed from one free impact."""
 
 SPARE = 1e-9
-"""The largest last Legendre coefficients of v of this one over its speed. With a load as large as
-the force they are some hundred times as large."""
+"""The largest last Legendre coefficients of v of a free impact over its speed."""
 
 FEW = 8
 """So many intervals of a check may have a kink; if there are more, a force is not analytic."""
@@ -78,9 +78,9 @@ class ForceLaw(Ball):
     ----------
     force : callable
         The force per mass ``force(p, v, **values)`` at the penetration p and its rate v = p′: numpy
-        arrays, also complex ones, because all derivatives are complex steps. It is therefore
-        written with analytic functions, without ``abs`` and ``real``, but may be made of several
-        by ``np.where``, if its kinks are declared.
+        arrays, also complex ones, because all derivatives are complex steps. It is analytic,
+        without ``abs`` and ``real``, or made of analytic ones by ``np.where``, if its kinks are
+        declared.
     values : mapping
         The parameters of the force by their names: numbers, or arrays for a row of balls.
     root : int
@@ -93,11 +93,11 @@ class ForceLaw(Ball):
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
-        "start_speed" if the force also gets, by this name, the speed at the start of the contact;
-        "load" if it gets the load a = 1 + w″.
+        "start_speed" or "load" if the force also gets, by this name, the speed at the start of the
+        contact or the load a = 1 + w″.
     units : mapping
-        The powers of mass, length and time in the unit of each parameter. They are needed where
-        parameters change with the frequency of the table or with the stiffness of the contact.
+        The powers of mass, length and time in the unit of each parameter, where parameters change
+        with the frequency of the table or with the stiffness of the contact.
 
     Raises
     ------
@@ -227,9 +227,8 @@ class ForceLaw(Ball):
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Powers of Ω to which parameters are proportional for one contact, by their units.
-
-        Lengths are measured in g/Ω² and times in 1/Ω.
+        """Powers of Ω to which parameters are proportional for one contact: lengths are measured in
+        g/Ω² and times in 1/Ω.
         """
         powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
@@ -294,9 +293,8 @@ class ForceLaw(Ball):
         return time * length ** (1 / self.root - 1) * own_time
 
     def signature(self, u: Values) -> Signature:
-        """r, D, t_c and σ of free impacts.
-
-        Those of balls whose laws differ by the units of length and time alone are those of one law.
+        """r, D, t_c and σ of free impacts, of one law for all laws that differ from it by the units
+        of length and time alone.
         """
         u = np.asarray(u)
         if self._scales is None or not np.all(u.real > 0):
@@ -310,10 +308,8 @@ class ForceLaw(Ball):
         return Signature(found[0], *(time * each for each in found[1:]))
 
     def known_signature(self, u: Values) -> NDArray:
-        """The signature of one ball, u d/du of it and T at real speeds, shape (9, ...).
-
-        A law without kinks interpolates them in ln u by polynomials, on ranges of a factor of
-        :data:`FACTOR` in u that are computed when they are first needed.
+        """The signature of one ball, u d/du of it and T at real speeds, shape (9, ...), for a law
+        without kinks from polynomials in ln u on ranges of :data:`FACTOR` in u.
         """
         if self.kinks:
             speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
@@ -358,9 +354,8 @@ class ForceLaw(Ball):
         return Guess(WHOLE[-most], push * (u / T), which, [inverse for _, inverse in known])
 
     def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
-        """F of a free impact over its length and speed, and the inverse of its linear equations.
-
-        They are those at the nodes of each of :data:`WHOLE` that are enough, or of the last one.
+        """F of a free impact over its length and speed, and the inverse of its linear equations, at
+        the nodes of each of :data:`WHOLE` that are enough, or of the last one.
         """
         *_, finest = WHOLE
         T = np.ravel(self.free(np.array([u])))
@@ -395,9 +390,8 @@ class ForceLaw(Ball):
     def computed_signature(self, u: Values) -> Signature:
         """As :meth:`signature`, by free impacts at each speed and parameter.
 
-        The impulse J = u + w + aD of an impact of the speed u under a constant load a gives
-        σ = ∂J/∂a - t_c ∂J/∂u, both at a = 0. The derivatives are differences, so that complex steps
-        of u and of the parameters pass through.
+        The impulse J = u + w + aD under a constant load a gives σ = ∂J/∂a - t_c ∂J/∂u at a = 0. The
+        derivatives are differences, so that complex steps pass through.
         """
         u = np.asarray(u)[..., np.newaxis]
         law = self.at(**{name: np.asarray(x)[..., np.newaxis] for name, x in self.values.items()})
@@ -471,9 +465,8 @@ class ForceLaw(Ball):
     def _started(
         self, values: Mapping, table: Table
     ) -> tuple[Rows, ContactMotion, NDArray, NDArray]:
-        """Contacts that are given: their rows, their motion, q and v, and the derivatives of these.
-
-        The derivatives of the latter have the shape (2, directions, rows).
+        """Contacts that are given: their rows, their motion, q and v, and the derivatives of these,
+        of the shape (2, directions, rows).
         """
         rows = values_by_row({**self.values, **values, **table.parameters})
         given = rows.given
@@ -546,9 +539,9 @@ class ForceLaw(Ball):
 def check_force(law: ForceLaw) -> None:
     """Raise ValueError, in one line, unless a force is as :class:`ForceLaw` describes it.
 
-    Along lines of constant rates and of constant depths, the change of the force between neighbours
-    must be the integral of its derivative by complex steps. It is not where the force is not
-    analytic, nor over a kink. Of a row of balls those with an extreme parameter are checked.
+    Along lines of constant rates and of constant depths, its change between neighbours must be the
+    integral of its derivative by complex steps. Of a row of balls those with an extreme parameter
+    are checked.
     """
     # A force may have no parameters at all.
     arrays = broadcast_named([*law.values.items(), ("", 0.0)])
@@ -626,9 +619,8 @@ def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Cal
 
 
 def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:
-    """Whether the force is an analytic function of q = p^{1/m} at q = 0.
-
-    Then its Legendre coefficients on a short range of q fall geometrically.
+    """Whether the force is an analytic function of q = p^{1/m} at q = 0: then its Legendre
+    coefficients on a short range of q fall geometrically.
     """
     x, _ = legendre.leggauss(24)
     to_coefficients = np.linalg.inv(legendre.legvander(x, 23))

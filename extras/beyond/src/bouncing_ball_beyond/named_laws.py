@@ -1,24 +1,9 @@
-"""Contact laws that have names: functions that return a :class:`.ForceLaw`.
+"""Contact laws that have names: functions that return a :class:`.ForceLaw`; see docs/laws.md.
 
-Each law is given by the parameters of its force, or by the restitution coefficient and the duration
-of a free impact at a speed. All is dimensionless: with a ball of the mass m on a table of the
-frequency Ω under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per mass.
-
-| law | force f | contact ends at | restitution coefficient |
-| --- | --- | --- | --- |
-| `linear` | ϖ²p + 2ζϖp′ | p = 0 or f = 0 | independent of the speed |
-| `hunt_crossley` | K p^{3/2} (1 + Cp′) | p = 0 | falls with the speed, by Cv |
-| `hunt_crossley_linear` | K p (1 + Cp′) | p = 0 | falls with the speed, by Cv |
-| `tsuji` | K p^{3/2} + C √K p^{1/4} p′ | p = 0 | independent of the speed |
-| `lankarani_nikravesh`, `flores` | K p^{3/2} (1 + cp′/v₀) | p = 0 | independent of the speed |
-| `kuwabara_kono` | K (p^{3/2} + C√p p′) | f = 0 | falls with the speed, by C K^{2/5} v^{1/5} |
-| `elasto_backlash` | ϖ²p + 2ζϖp′, the damping at most ϖ²p | f = 0 | independent of the speed |
-| `adams_impact` | K p^{3/2} + C s p′, at least 0 | p = 0 | falls with the depth, up to d |
-| `adams_impact_linear` | K p + C s p′, at least 0 | p = 0 | falls with the depth, up to d |
-| `simscape_contact` | s (K p + C p′) | f = 0 | falls with the depth, up to d |
-
-Here v₀ is the speed at the start of a contact, and s = x²(3 - 2x) with x = p/d is a cubic step from
-0 at the surface to 1 at the depth d.
+A law is given by the parameters of its force, numbers or arrays, or by the restitution coefficient
+and the duration of a free impact at a speed. All is dimensionless: with a ball of the mass m on a
+table of the frequency Ω under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per
+mass. A cubic step s = x²(3 - 2x) with x = p/d grows from 0 at the surface to 1 at the depth d.
 """
 
 from collections.abc import Callable
@@ -64,19 +49,9 @@ def law_of_impact(
 ) -> ForceLaw:
     """The law whose free impact at a speed has a restitution coefficient and a duration.
 
-    Parameters
-    ----------
-    law_of : callable
-        ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and
-        a damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P
-        nor v.
-    restitution, duration, speed : float or array
-        r in (0, 1], D > 0 and v > 0.
-
-    Raises
-    ------
-    ValueError
-        If the law has no such r with any g up to 10⁴.
+    ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and a
+    damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P nor v.
+    r in (0, 1], D > 0 and the speed > 0 may be arrays. ValueError if no g up to 10⁴ has this r.
 
     Examples
     --------
@@ -154,17 +129,11 @@ def linear(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = ϖ²p + 2ζϖp′: a spring and a damper, as :class:`.SpringDamper`, but integrated.
+    """f = ϖ²p + 2ζϖp′, ϖ > 0, ζ ≥ 0: a spring and a damper, as :class:`.SpringDamper`, but
+    integrated.
 
-    Parameters
-    ----------
-    frequency_ratio, damping_ratio : float or array
-        ϖ > 0 and ζ ≥ 0.
-    release : {"displacement", "force", "approach"}
-        Contacts end where p = 0 or where f = 0. With "approach" the damper acts on approach only,
-        p′ > 0, and contacts end where p = 0; then r is exp(-ζ arccos ζ/√(1 - ζ²)).
-    restitution, duration, speed : float or array
-        In place of ϖ and ζ: r and D of a free impact of a speed.
+    ``release`` is "displacement", "force" or "approach": contacts end where p = 0 or where f = 0.
+    With "approach" they end where p = 0 and the damper acts on approach only, p′ > 0.
 
     Examples
     --------
@@ -218,12 +187,10 @@ def elasto_backlash(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = ϖ²p + 2ζϖp′ with a damping force of at most ϖ²p: ElastoBacklash2 of the Modelica library.
+    """f = ϖ²p + 2ζϖp′, the damping force at most ϖ²p: ElastoBacklash2 of the Modelica library.
 
     During compression the damper at most doubles the force, which thus grows from zero. The force
     has a kink where p = κp′, κ = 2ζ/ϖ, and the contact ends where it vanishes, p = -κp′.
-
-    Given are numbers or arrays: ϖ > 0 and ζ ≥ 0, or r and D of a free impact at a speed.
     """
     return _given(
         {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
@@ -255,15 +222,9 @@ def hunt_crossley(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K p^{3/2} (1 + C p′): Hertz' contact with a damping proportional to its force.
+    """f = K p^{3/2} (1 + C p′), K > 0, C ≥ 0: the damping is proportional to the force of Hertz.
 
-    The physical force k x^{3/2} (1 + λẋ) has K = k√g/(mΩ³) and C = λg/Ω. For slow impacts
-    1 - r = (2/3) C v.
-
-    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
-
-    References
-    ----------
+    The force k x^{3/2} (1 + λẋ) has K = k√g/(mΩ³) and C = λg/Ω. For slow impacts 1 - r = (2/3) C v.
     K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as quoted by
     Simbody (``HuntCrossleyContact.h``).
     """
@@ -314,18 +275,13 @@ def tsuji(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K p^{3/2} + C √K p^{1/4} p′: Hertz' contact with the same restitution at all speeds.
+    """f = K p^{3/2} + C √K p^{1/4} p′, K > 0, C ≥ 0: Hertz' contact with one restitution at all
+    speeds.
 
-    With y = p^{5/4} and ds = p^{1/4} dt a free impact is linear, y″ + C √K y′ + (5/4) K y = 0, so
-    that C = √5 (-ln r)/√(π² + ln² r). From C = √5 on the ball does not leave. The physical force
-    k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α.
-
-    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
-
-    References
-    ----------
-    Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as quoted by LAMMPS;
-    D. Antypov and J. A. Elliott, Europhysics Letters 94 (2011) 50004, as quoted by Yade.
+    C = √5 (-ln r)/√(π² + ln² r); from C = √5 on the ball does not leave. The force
+    k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α. Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71
+    (1992) 239-250, as quoted by LAMMPS; D. Antypov and J. A. Elliott, Europhysics Letters 94 (2011)
+    50004, as quoted by Yade.
 
     Examples
     --------
@@ -356,20 +312,14 @@ def kuwabara_kono(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K (p^{3/2} + C √p p′): a viscoelastic sphere that does not adhere.
+    """f = K (p^{3/2} + C√p p′), K > 0, C ≥ 0: a viscoelastic sphere that does not adhere.
 
     The contact ends where the force vanishes, p + C p′ = 0; the surface is still deformed there.
-    The physical force k (x^{3/2} + (3/2) A √x ẋ), with a time A of the dissipation, has
-    C = (3/2) AΩ. For slow impacts 1 - r = 1.15 C K^{2/5} v^{1/5}.
-
-    Given are numbers or arrays: K > 0 and C ≥ 0, or r and D of a free impact at a speed.
-
-    References
-    ----------
-    G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as quoted by
-    the CGNS standard; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel, Physical Review E
-    53 (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T. Pöschel, Physical
-    Review E 78 (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
+    The force k (x^{3/2} + (3/2) A √x ẋ) has C = (3/2) AΩ. For slow impacts 1 - r = 1.15 C K^{2/5}
+    v^{1/5}. G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as
+    quoted by the CGNS standard; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel,
+    Physical Review E 53 (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T.
+    Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping},
@@ -401,17 +351,9 @@ def lankarani_nikravesh(
 ) -> ForceLaw:
     """f = K p^{3/2} (1 + c p′/v₀), c = 3(1 - e²)/4, with the speed v₀ at the start of the contact.
 
-    A contact is one of Hunt and Crossley with C = c/v₀, so that r is the same at every speed. It is
-    not the nominal e: c (1 + r) = ln((1 + c)/(1 - rc)), and never below 0.663. As v₀ tends to zero
-    the damping grows without limit.
-
-    Given are numbers or arrays: K > 0 and e in (0, 1], or the r and D that a free impact at a speed
-    really has.
-
-    References
-    ----------
-    H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical Design 112 (1990) 369-376, as quoted
-    by public code for multibody contacts.
+    K > 0 and e in (0, 1]. The real r, which is not e, is the same at every speed. As v₀ tends to
+    zero the damping grows without limit. H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical
+    Design 112 (1990) 369-376, as quoted by public code for multibody contacts.
     """
     return _given(
         {"stiffness": stiffness, "nominal_restitution": nominal_restitution},
@@ -442,12 +384,8 @@ def flores(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e), with the speed v₀ at the start of a contact.
-
-    As :func:`lankarani_nikravesh`, with another c: r is 0.470 for e = 0.5.
-
-    Given are numbers or arrays: K > 0 and e in (0, 1], or the r and D that a free impact at a speed
-    really has.
+    """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e): as :func:`lankarani_nikravesh`, with another
+    c.
 
     Examples
     --------
@@ -484,17 +422,11 @@ def adams_impact(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = max(0, K p^{3/2} + C s p′): the function IMPACT of Adams.
+    """f = max(0, K p^{3/2} + C s p′), K > 0, C ≥ 0, d > 0: the function IMPACT of Adams.
 
-    The damper grows by the cubic step s from the surface to the depth d. A damper that would pull
-    is left out, and the contact ends at p = 0. Impacts that are much less deep than d lose little.
-
-    Given are numbers or arrays: K > 0, C ≥ 0 and d > 0, the depth of full damping, or r and D of a
-    free impact at a speed. Then d is a tenth of (v²/K)^{2/5}.
-
-    References
-    ----------
-    The manuals of SolidWorks Motion and Altair MotionSolve.
+    A damper that would pull is left out, and the contact ends at p = 0. Impacts that are much less
+    deep than d, the depth of full damping, lose little. If an impact is given, d is a tenth of
+    (v²/K)^{2/5}. Sources: the manuals of SolidWorks Motion and Altair MotionSolve.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},
@@ -516,10 +448,7 @@ def adams_impact_linear(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = max(0, K p + C s p′): the function IMPACT of Adams with the exponent 1.
-
-    The parameters are those of :func:`adams_impact`. If an impact is given, d is a tenth of v/√K.
-    """
+    """f = max(0, K p + C s p′): :func:`adams_impact` with the exponent 1, and d a tenth of v/√K."""
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},
         {"restitution": restitution, "duration": duration, "speed": speed},
@@ -578,15 +507,11 @@ def simscape_contact(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = s (K p + C p′): the Spatial Contact Force of Simscape Multibody.
+    """f = s (K p + C p′), K > 0, C ≥ 0, d > 0: the Spatial Contact Force of Simscape Multibody.
 
-    Spring and damper grow by the cubic step s from the surface to the depth d, the width of the
-    transition region. The contact ends where the force vanishes, p + κp′ = 0 with κ = C/K. The
-    manual gives no formula of its step; the cubic is the polynomial of the lowest degree with its
-    slopes.
-
-    Given are numbers or arrays: K > 0, C ≥ 0 and d > 0, the depth of full damping, or r and D of a
-    free impact at a speed. Then d is a tenth of v/√K.
+    Spring and damper grow over the transition region of the width d. The contact ends where the
+    force vanishes, p + κp′ = 0 with κ = C/K. The manual gives no formula of its step; the cubic is
+    assumed. If an impact is given, d is a tenth of v/√K.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},
@@ -628,12 +553,7 @@ LAWS = {
 
 
 def named_law(name: str, **values: Any) -> ForceLaw:
-    """The law of a name in :data:`LAWS`, with values of its arguments.
-
-    Raises
-    ------
-    ValueError
-        In one line, if the law or an argument is not known.
+    """The law of a name in :data:`LAWS` with values of its arguments, or ValueError.
 
     Examples
     --------

@@ -1,18 +1,9 @@
-r"""One ball from impact to impact: first landings and first releases as scalar loops.
+r"""One ball from impact to impact: first landings and first releases as scalar loops, on a sine.
 
-Both are first zeros of functions that are positive until then. Let f ≥ 0, with f″ ≥ -K from now on
-and \|f‴\| ≤ J. Then ::
-
-    f(t + h) ≥ f + f′h - B h²/2    for h ≤ H,    B = min(K, J H/3 - f″)
-
-so that no zero lies before the root of this parabola, with H = ∞, B = K, or with any other reach H.
-Steps to such roots never pass a zero, and converge to a simple one with third order. A double zero
-slows them down and does not mislead them.
-
-The functions are plain Python. Where numba is installed, :func:`compile_loops` compiles them, which
-gives the same numbers. They are in one file because numba's cache notices only changes of the file
-of the function that is called. The table is a sine. Many balls, and those on other tables, are
-followed side by side in :mod:`bouncing_ball_beyond.simulation`, by the same formulas on arrays.
+Both are first zeros of functions f ≥ 0 with f″ ≥ -K from now on and \|f‴\| ≤ J, of which no step
+passes one (docs/impacts.md). Where numba is installed, :func:`compile_loops` compiles them, which
+gives the same numbers; its cache notices only changes of the file of the function that is called.
+Many balls, and other tables: :mod:`.simulation`.
 """
 
 import math
@@ -28,10 +19,10 @@ SLOWEST = 1e-12
 """The closing speed that is given to a ball without one, which is laid on the table."""
 CHATTER = 1e-5
 """Chattering is summed up once Λ T₀ and T₀ are below this multiple of the gravity on the table: the
-sum has a relative error of the order of the square, so that an absolute error of 1e-15 is left."""
+sum has a relative error of the order of the square.
+"""
 STEPS = 20_000
-"""Steps after which a search ends as undecided. Each of them is a considerable part of the shortest
-time scale, so that these are hundreds of oscillations."""
+"""Steps after which a search ends as undecided: these are hundreds of oscillations."""
 ROUNDING = 2.0**-52
 COLUMNS = (
     "turns",
@@ -63,10 +54,8 @@ def root_of_parabola(f: float, slope: float, bend: float) -> float:
 def safe_step(
     t: float, f: float, slope: float, second: float, bend: float, jerk: float
 ) -> tuple[float, bool]:
-    """A step from the time t that passes no zero of f, and whether it ends there; K and J are
-    ``bend`` and ``jerk``.
-
-    The parabola with f″ itself is off by J h³/6 at most, and its zero by this over the slope.
+    """A step from the time t that passes no zero of f, by K = ``bend`` and J = ``jerk``, and
+    whether it ends there.
     """
     step = root_of_parabola(f, slope, bend)
     reach = REACH * step
@@ -77,10 +66,9 @@ def safe_step(
 
 
 def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
-    """δ, δ′ and δ″ at the time t after a release, where the table has Λ cos τ = x and
-    Λ sin τ = y.
+    """δ, δ′ and δ″ a time t after a release, where the table has Λ cos τ = x and Λ sin τ = y.
 
-    Written with 1 - cos t and t - sin t, from tan t/2, short flights lose no digits.
+    Written with 1 - cos t and t - sin t, short flights lose no digits.
     """
     half = math.tan(t / 2)
     sine = 2 * half / (1 + half * half)
@@ -93,11 +81,8 @@ def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
 def rise(
     gap: float, w: float, x: float, y: float, amplitude: float, kappa: float
 ) -> tuple[bool, float]:
-    """The time at which a ball that was released below the level of the table is above it, or at
-    which its contact resumes: whether it does, and this time.
-
-    A contact resumes where f = δ + κδ′ falls back to zero. As long as f > 0 no ball falls through
-    the level, because δ = 0 and δ′ < 0 exclude this.
+    """Whether the contact of a ball that was released below the level of the table resumes, where
+    δ + κδ′ falls back to zero, and the time of this, or that at which the ball is above the level.
     """
     forcing = amplitude * math.sqrt(1 + kappa * kappa)
     t = 0.0
@@ -118,11 +103,7 @@ def rise(
 
 
 def earliest(w: float, x: float, y: float, amplitude: float) -> float:
-    """A time before which a ball that leaves at the level of the table has certainly not landed.
-
-    It is the time of flight against the greatest gravity, 1 + Λ. Where the table falls away, with Y
-    ≥ 1, it is the zero of δ ≥ w s + (Y - 1) s²/2 + X s³/6 - Λ s⁴/24 without its first term.
-    """
+    """A time before which a ball that leaves at the level of the table has certainly not landed."""
     start = 2 * max(w, 0.0) / (1 + amplitude)
     if y < 1:
         return start
@@ -132,10 +113,9 @@ def earliest(w: float, x: float, y: float, amplitude: float) -> float:
 def landing(
     start: float, gap: float, w: float, x: float, y: float, amplitude: float
 ) -> tuple[float, float]:
-    """The time of the first landing after the time ``start``, before which there is certainly none,
-    and the closing speed.
+    """The first landing, which is not before the time ``start``, and the closing speed.
 
-    The ball cannot land while it is above the highest point of the table, and this part is skipped.
+    The part of a flight above the highest point of the table is skipped.
     """
     absolute = w + x
     square = absolute * absolute + 2 * (gap + (y - amplitude))
@@ -157,16 +137,8 @@ def landing(
 def contact(
     s: float, gap: float, u: float, x: float, y: float, gravity: float, ratio: float, zeta: float
 ) -> tuple:
-    """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1,
-    and the height of the table and its velocity (Eqs. 12 and 13).
-
-    The responses at rest are g to an impulse, (1 - k)/ϖ² to a constant force, with
-    k = g′ + 2ζϖg, and h = Q + iP to e^{is}::
-
-        h = (e^{is} - k - ig)/(ϖ² - 1 + 2iζϖ)
-
-    Written with 1 - k and 1 - cos s, the difference in h and short contacts lose no digits.
-    Numbers are real: complex steps lose theirs where a tangent has a pole.
+    """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1, and
+    the height of the table and its velocity: :func:`.oscillator.closed_motion`, in real numbers.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -195,8 +167,8 @@ def contact(
 
 
 def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: float) -> tuple:
-    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from
-    what :func:`contact` returns; see :func:`.oscillator.bounds`.
+    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from what
+    :func:`contact` returns; see :func:`.oscillator.bounds`.
     """
     position, rate, push, shove = motion
     loss = 2 * zeta * ratio
@@ -250,12 +222,8 @@ def release(
 
 
 def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
-    """The time in which the bounces after an impact end on the table, -1 if they are not summed up.
-
-    With the gravity g = 1 - Y on the table and its rate of change g′ = -X, the infinitely many
-    bounces take ::
-
-        T = T₀ (1 - g′T₀/(3g) + ...),    T₀ = 2w/(g (1 - r))
+    """The time T₀ (1 - g′T₀/(3g) + ...), T₀ = 2w/(g (1 - r)), in which the bounces after an impact
+    end on the table, with the gravity g = 1 - Y on it and g′ = -X; -1 if they are not summed up.
     """
     gravity = 1 - y
     if gravity < 0 or (gravity == 0 and x > 0):
@@ -271,9 +239,7 @@ def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
 
 
 def until_lift_off(phase: float, amplitude: float) -> float:
-    """How long a ball that rests on the table stays there: until Λ sin τ rises to 1, or for ever
-    (Eq. 9).
-    """
+    """How long a ball rests: until Λ sin τ rises to 1, or for ever (Eq. 9)."""
     if amplitude <= 1:
         return math.inf
     wait = (math.asin(1 / amplitude) - phase) % TURN
@@ -282,8 +248,8 @@ def until_lift_off(phase: float, amplitude: float) -> float:
 
 
 def rest(w: float, restitution: float, phase: float, amplitude: float) -> tuple[float, float]:
-    """How long a ball rests on the table after an instant that leaves it with the speed w, and the
-    phase at which it leaves; a negative time if its bounces do not end there.
+    """How long a ball rests after an instant that leaves it with the speed w, or a negative time,
+    and the phase at which it leaves.
     """
     settled = settling(
         w, restitution, amplitude * math.cos(phase), amplitude * math.sin(phase), amplitude
@@ -324,13 +290,9 @@ def impacts(
     kappa: float,
     out: NDArray,
 ) -> tuple:
-    """Impacts of a ball into the rows of ``out``.
+    """Impacts of a ball into the rows of ``out``, instants if ϖ is 0.
 
-    They are instants with a restitution coefficient if ϖ is 0, and otherwise contacts with a spring
-    and a damper, ζ < 1.
-
-    They are followed by whether the ball stays on the table, and the turns, the phase and u of the
-    impact after the last one.
+    Returns whether the ball stays on the table, and the turns, the phase and u of the next impact.
     """
     for i in range(len(out)):
         x = amplitude * math.cos(phase)

@@ -6,9 +6,7 @@ impulse, (1 - K)/ϖ² to a constant force, with K = g′ + 2ζϖg, and h = C + i
     h = (e^{iks} - K - ikg)/(ϖ² - k² + 2ikζϖ)
 
 Written with 1 - K and 1 - cos ks, short contacts lose no digits. Where terms cancel, near a
-resonance ϖ = k and near ζ = 1, the responses are found by doublings. All functions take arrays;
-motions also complex ones. The loops of :mod:`.one_ball` have the same formulas for a sine and for
-numbers, because numba compiles them.
+resonance ϖ = k and near ζ = 1, the responses are found by doublings. Motions may be complex.
 """
 
 from math import factorial
@@ -146,14 +144,11 @@ def doubled_motion(
     *,
     loads: bool = True,
 ) -> Motion:
-    """The same by a Taylor series over s/2^m and m doublings.
+    """The same by a Taylor series over s/2^m and m doublings, which divide by nothing.
 
-    Nothing is divided by, so that values and derivatives keep all digits. The responses are g, its
-    rate, G to a constant force, and S to sin ks and C to cos ks of each harmonic::
+    The responses are g, g′, G to a constant force, and S to sin ks and C to cos ks::
 
         g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = kC,    C′ = g - kS
-
-    The derivatives of g give those of G, and those of C, C″ = g′ - k²C, give those of S.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -251,10 +246,8 @@ def motion(
 def forcing(
     table: Table, waves: list, ratio: Values, zeta: Values, kappa: Values, resonant: Values
 ) -> tuple:
-    """What the table adds to the bounds of the search for a release.
-
-    The largest steady response of δ + κδ′, of its second derivative and of its third, and the
-    growth of the energy of F, see :func:`bounds`.
+    """The largest steady response of δ + κδ′ to the table, of its second derivative and of its
+    third, and the growth of the energy of F, for :func:`bounds`.
     """
     loss = 2 * zeta * ratio
     held = bend = jerk = pushed = jerked = 0.0
@@ -282,16 +275,10 @@ def bounds(
     kappa: Values,
     resonant: Values,
 ) -> tuple:
-    r"""f = -δ - κδ′, f′, δ″ and δ‴, K and J of the search for a release, and whether there is none.
+    """f = -δ - κδ′, f′, δ″ and δ‴, K and J of the search for a release, and whether there is none.
 
-    What f has besides its steady response and 1/ϖ² is a free oscillation F. Its energy e² = F′² +
-    ϖ²F² never grows, so that from then on, with c² = 1 + 4ζ², ::
-
-        \|F\| ≤ e/ϖ,    \|F″\| ≤ ϖ c e,    \|F‴\| ≤ ϖ² c √(1 + c²) e
-
-    Next to a resonance, where ``resonant`` is 1 and not 0, F is all of f besides 1/ϖ², and forced
-    by l = Σ|w″|√(1 + κ²k²) at most, so that e grows by 2l/ϖ at most in a time of 2/ϖ. ``forced`` is
-    from :func:`forcing`.
+    ``forced`` is from :func:`forcing`, and ``resonant`` 1 next to a resonance and 0 elsewhere; the
+    bounds follow from an energy that never grows (docs/impacts.md).
     """
     position, rate, pushes, shoves = motion
     held, bend_forced, jerk_forced, gained = forced

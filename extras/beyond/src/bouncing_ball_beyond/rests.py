@@ -1,8 +1,7 @@
 """Orbits of a ball that comes to rest on the table and leaves it with the next lift-off.
 
-The equations are the lift-off and the flights after it. The return to rest is no equation, because
-the ball comes to rest for all values of the parameters nearby; the length of the rest is a test
-function, which is zero where the ball is still bouncing at the next lift-off.
+The return to rest is no equation, because it holds for all values of the parameters nearby; the
+length of the rest is a test function: docs/orbits.md.
 """
 
 from dataclasses import dataclass
@@ -27,8 +26,7 @@ from bouncing_ball_beyond.periodic import one_amplitude
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 TAIL = 1e-2
-"""The last bounces that are slower than this do not tell where a flight or an impact grazes: their
-heights, u²/2, get as small as rounding errors."""
+"""The last bounces that are slower than this do not tell where a flight or an impact grazes."""
 
 SOON = 1e-6
 """A flight after a lift-off does not turn back so soon: it starts as slowly as t³."""
@@ -85,9 +83,8 @@ class RestEquations(OrbitEquations):
         return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
 
     def linear(self, z: NDArray) -> Linear:
-        """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight.
-
-        The last slow bounces are not counted as flights that may vanish.
+        """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight,
+        without the last slow bounces.
         """
         y = z + 1j * H * np.eye(z.shape[1])[:, np.newaxis]
         x, _, amplitude, _ = self.split(y)
@@ -116,11 +113,7 @@ class RestEquations(OrbitEquations):
         return linear.legs[..., 0], linear.derivatives
 
     def rest(self, z: NDArray) -> NDArray:
-        """How long the ball rests, shape (rows,): what the bounces leave until the next lift-off.
-
-        With g = 1 + w″ and g′ = w‴ at the last impact, infinitely many bounces of the speed w take
-        T₀ (1 - g′T₀/(3g)), T₀ = 2w/(g (1 - r)).
-        """
+        """How long the ball rests, shape (rows,), by the sum of :func:`.one_ball.settling`."""
         x, ball, amplitude, table = self.split(z)
         tau, u = (x[..., -1:, i] for i in (0, 1))
         w = ball.contact(tau, u, None, amplitude, table=table).speed
@@ -131,8 +124,7 @@ class RestEquations(OrbitEquations):
         return z[:, self.size - 1] + period - (tau + bounces)[..., 0]
 
     def fall(self, z: NDArray) -> NDArray:
-        """How fast the table falls away at the lift-off, shape (rows,): -w‴, zero if it no longer
-        does."""
+        """How fast the table falls away at the lift-off, shape (rows,): -w‴."""
         _, _, amplitude, table = self.split(z)
         return -(amplitude * table(z[:, self.size - 1 : self.size], 3))[..., 0]
 
@@ -187,8 +179,8 @@ class _Lifted(Flights):
 class RestOrbit(PeriodicOrbit):
     """A periodic motion of a ball that rests on the table once in its period.
 
-    The impacts, which are instants, are those up to the bounces that are summed up. Times of flight
-    are those before the impacts, the first one from the lift-off on; see :class:`PeriodicOrbit`.
+    Its impacts are those up to the bounces that are summed up. Times of flight are those before the
+    impacts, the first one from the lift-off on; see :class:`PeriodicOrbit`.
     """
 
     equations: RestEquations
@@ -227,9 +219,6 @@ def orbit_with_rest(
     ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
 ) -> RestOrbit:
     """The motion of a ball between two rests on the table, if it repeats after one of them.
-
-    It is found by a ball that leaves the table at a lift-off. `follow` continues it along a
-    parameter, up to the end of the rest.
 
     Parameters
     ----------

@@ -1,8 +1,6 @@
 """One question of an engineer: is a restitution coefficient good enough for this ball and shaker?
 
 It is if the ball bounces as often as the restitution model says, on a stable orbit, and as high.
-The answer compares the restitution model with the contact, exactly and by the error law.
-Units are read by pint. A plain number is in SI units.
 """
 
 import re
@@ -29,15 +27,11 @@ UNITS: pint.UnitRegistry = pint.UnitRegistry()
 
 
 def in_si(name: str, value: float | str | None, unit: str) -> float:
-    """A positive quantity in SI units, from a number or from a text with a unit.
+    """A positive quantity in SI units, from a number or a text with a unit; ValueError if it is
+    none.
 
-    The unit "Hz" stands for cycles, of which the angular frequency in rad/s is returned. An
-    acceleration in "g" is a multiple of standard gravity.
-
-    Raises
-    ------
-    ValueError
-        If the text is no quantity with such a unit, or if the quantity is not positive.
+    "Hz" stands for cycles, of which the angular frequency in rad/s is returned. An acceleration in
+    "g" is a multiple of standard gravity.
 
     Examples
     --------
@@ -265,19 +259,20 @@ def on_shaker(
 ) -> ShakerAnswer:
     """Whether a restitution coefficient is good enough for a ball on a shaker.
 
+    Numbers are in SI units, and frequencies in Hz.
+
     Parameters
     ----------
     frequency
-        Frequency of the table, such as "50 Hz", "314 rad/s" or "3000 rpm"; a number is in Hz.
+        Frequency of the table, such as "50 Hz", "314 rad/s" or "3000 rpm".
     restitution
         Restitution coefficient r of a free impact, between 0 and 1.
     stroke, acceleration
         One of both: the amplitude of the table's motion, which is half of the distance between its
-        lowest and its highest position, or its greatest acceleration, such as "0.8 g". A number is
-        in m, or in m/s²: 0.8 is not 0.8 g.
+        lowest and its highest position, or its greatest acceleration, such as "0.8 g".
     mass, radius, density
-        The mass of the ball, or its radius and density; numbers are in kg, m and kg/m³. A contact
-        duration needs none of them, and the units of those given are checked nevertheless.
+        The mass of the ball, or its radius and density. A contact duration needs none of them, and
+        the units of those given are checked nevertheless.
     contact_duration, stiffness, youngs_modulus
         One of them. The first two are those of a contact with a spring and a damper. With Young's
         modulus of the ball, the contact is that of Hertz with the damping of Tsuji, whose r is the
@@ -291,8 +286,7 @@ def on_shaker(
     tolerance
         Largest relative error of the greatest height.
     table
-        The waveform of the table, by default a sine. That of a recorded acceleration is
-        ``Table.of_samples(values, acceleration=True)`` of one period.
+        The waveform of the table, by default a sine.
 
     Raises
     ------

@@ -1,9 +1,7 @@
 """Balls that are simulated from impact to impact, side by side, and their motions over time.
 
-A ball of the restitution model or of a spring and damper is followed by the scalar loops of
-:mod:`.one_ball`, and many balls, as well as those of other contacts, by the same steps on arrays. A
-ball whose bounces end on the table, or that does not rise above it, rests there until the table
-falls faster than a ball, -w″ > 1, or for ever if it never does (Eq. 9).
+A ball of the restitution model or of a spring and damper on a sine is followed by the loops of
+:mod:`.one_ball`, and many balls, and all others, by the same steps on arrays (docs/impacts.md).
 """
 
 from collections.abc import Callable, Mapping
@@ -34,8 +32,7 @@ one_ball.compile_loops()
 
 AT_ONCE = 32
 MOST_IMPACTS = 1_000_000
-"""The number of impacts of a ball that :func:`history` follows, and of those after which it looks
-at the time."""
+"""The number of impacts of a ball that :func:`history` follows."""
 TINY = 1e-300
 
 
@@ -44,8 +41,7 @@ class Leaving(NamedTuple):
 
     ``own_time`` and ``duration`` are T and D of the impacts; D is infinite for a ball that stays.
     ``turns`` and ``phase`` are those of the table at the end, ``gap`` and ``speed`` are δ and δ′
-    there. ``emerges`` is when a ball rises through the level of the table after an instant that
-    stands for a contact.
+    there. ``emerges`` is when a ball rises through the level after an instant below it.
     """
 
     own_time: np.ndarray
@@ -61,10 +57,9 @@ class Leaving(NamedTuple):
 class Balls:
     """A row of balls, each before its next impact.
 
-    ``turns`` and ``phase`` are the whole turns of the table and its phase there, so that the phase
-    of a late impact has all digits, and ``speed`` is u. Parameters of the ball are numbers, or
-    arrays over the row. All are on one table. ``map`` has the contacts of one ball that is followed
-    over many impacts.
+    ``turns`` and ``phase`` are the whole turns of the table and its phase, so that a late phase has
+    all digits, and ``speed`` is u. Parameters of the ball are numbers, or arrays over the row.
+    ``map`` has the contacts of one ball that is followed over many impacts.
     """
 
     ball: Ball
@@ -88,13 +83,8 @@ def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) ->
 
     There are none before the times ``start``. ``look(t, *given)`` is a later time before which
     there is none either, f, f′ and f″ there, K, J, and where the search is over without a zero.
-
-    Returns
-    -------
-    time : ndarray
-        NaN for the last balls, if they are fewer than ``fewest``.
-    zero : ndarray of bool
-        Whether f is zero there.
+    Returned are the times, NaN for the last balls if they are fewer than ``fewest``, and whether f
+    is zero there.
     """
     time = np.full(start.shape, np.nan)
     zero = np.zeros(start.shape, bool)
@@ -309,14 +299,8 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
 def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
     """One impact of each ball, and the flight after it.
 
-    Returns
-    -------
-    record : ndarray, shape (8, balls)
-        The columns of :data:`.one_ball.COLUMNS`.
-    going : ndarray of int
-        The indices of the balls that leave the table.
-    after : Balls
-        These, before their next impacts.
+    Returns a record (8, balls) with the columns of :data:`.one_ball.COLUMNS`, the indices of the
+    balls that leave the table, and these before their next impacts.
     """
     leaving = leave(balls)
     record = np.full((len(COLUMNS), balls.phase.size), np.nan)
@@ -377,14 +361,9 @@ def follow_by_map(
 def follow(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     """A number of impacts of each ball.
 
-    Returns
-    -------
-    record : ndarray, shape (impacts, 8, balls)
-        The columns of :data:`.one_ball.COLUMNS`, NaN after the last impact of a ball.
-    going : ndarray of int
-        The indices of the balls that do not stay on the table.
-    after : Balls
-        These, before their next impacts.
+    Returns a record (impacts, 8, balls) as that of :func:`step`, NaN after the last impact of a
+    ball, the indices of the balls that do not stay on the table, and these before their next
+    impacts.
     """
     if balls.phase.size < FEW and balls.ball.looped(balls.table):
         return follow_each(balls, impacts)
@@ -417,16 +396,8 @@ def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray
     """The grid that arguments and array parameters of a ball span.
 
     Parameters of a ball vary together: along an axis with the name of the parameter, or "ball" if
-    several are arrays.
-
-    Returns
-    -------
-    grid : xarray.DataArray
-        An array with the axes of the grid, whose values are of no interest.
-    ball : Ball
-        With parameters for each point of the grid, in one row.
-    rows : list of ndarray
-        The values at each point, in one row.
+    several are arrays. Returns an array with the axes of the grid, the ball with parameters for
+    each point of it, in one row, and the values of the arguments at each point.
     """
     check_ball(ball)
     rows = {name: value for name, value in ball.parameters.items() if np.ndim(value)}
@@ -449,9 +420,7 @@ def first_impacts(
     relative_velocity: Values,
     table: Table = SINE,
 ) -> tuple[xr.DataArray, Balls]:
-    """The grid of first impacts and the balls before them; the arguments are those of
-    :func:`simulate`.
-    """
+    """The grid of first impacts of :func:`simulate`, and the balls before them."""
     check_table(table)
     absolute = relative_velocity is None
     if not absolute and velocity is not None:
@@ -503,12 +472,8 @@ def dataset(
 ) -> xr.Dataset:
     """Values over the points of a grid as a labelled dataset.
 
-    Parameters
-    ----------
-    grid : xarray.DataArray
-    variables : dict
-        An array for each name, with the points of the grid as its first axis, and the axes of the
-        ``coordinates`` after it.
+    ``variables`` are arrays with the points of the grid as their first axis, and the axes of the
+    ``coordinates`` after it.
     """
     found = xr.Dataset(coords=dict(grid.coords) | coordinates)
     names = list(coordinates)
@@ -548,10 +513,9 @@ def simulate(
         the argument, and several span a grid; an ``xarray.DataArray`` has its own axes.
     phase : float or array
         Phase of the table at the first impact.
-    velocity : float or array
-        Absolute velocity of the ball before it, in units of g/Ω; by default -π.
-    relative_velocity : float or array, optional
-        In its place, the velocity relative to the table, δ′ ≤ 0.
+    velocity, relative_velocity : float or array
+        At most one of both: the velocity of the ball before it, by default -π in units of g/Ω, or
+        that relative to the table, δ′ ≤ 0.
     impacts : int
         Largest number of impacts.
     table : Table
@@ -562,9 +526,9 @@ def simulate(
     xarray.Dataset
         ``time``, ``impact_phase``, ``impact_velocity``, ``bounce_velocity``, ``contact_duration``
         and ``flight_time`` of each ``impact``, and ``relative_impact_velocity`` and
-        ``relative_bounce_velocity`` relative to the table, NaN after the last one; and the
-        ``status`` of the ball, "bouncing" or "permanent contact". Bounces that end on the table are
-        summed up in the ``contact_duration`` of one impact, with the rest up to the lift-off.
+        ``relative_bounce_velocity``, NaN after the last one; and the ``status`` of the ball,
+        "bouncing" or "permanent contact". Bounces that end on the table are summed up in the
+        ``contact_duration`` of one impact, with the rest up to the lift-off.
 
     Raises
     ------
@@ -658,12 +622,7 @@ def drop(
     Returns
     -------
     xarray.Dataset
-        As of :func:`history`.
-
-    Raises
-    ------
-    ValueError
-        As :func:`history`, or if the ball is dropped below the table.
+        As of :func:`history`, whose errors it has too, and one if the ball is below the table.
 
     Examples
     --------

@@ -1,9 +1,8 @@
 """The motion of the table: ΛW(τ) with a waveform W of period 2π, a sum of harmonics.
 
-Everything that the other modules know of the waveform is here: W and its derivatives, differences
-of W that lose no digits, how large its derivatives get, where the table falls faster than a ball,
-and where it rises fastest. The sine of the paper is :data:`SINE`. W is analytic in τ and in its
-parameters, the sizes and phases of the harmonics, so that complex steps give all derivatives.
+Everything that the other modules know of the waveform is here. The sine of the paper is
+:data:`SINE`. W is analytic in τ and in its parameters, the sizes and phases of the harmonics, so
+that complex steps give all derivatives.
 """
 
 from collections.abc import Callable
@@ -17,14 +16,17 @@ from bouncing_ball_beyond.one_ball import CHATTER, TURN
 
 SAMPLES = 64
 """Samples in a period of the highest harmonic: between two of them a derivative of W changes by
-1.2e-3 of the size of the second derivative after it, over k²."""
+1.2e-3 of the size of the second derivative after it, over k².
+"""
 
 JUMP = 2.0
 """How many times larger than all other steps between samples the one from the last to the first may
-be: that of a smooth period is among them."""
+be.
+"""
 ROUGH = 0.1
-"""The share of the greatest harmonics in the acceleration (root of the mean square) above which
-samples do not tell by themselves how many harmonics are meant."""
+"""The share of the upper harmonics in the acceleration (root of the mean square) above which
+samples do not tell by themselves how many harmonics are meant.
+"""
 
 FUNDAMENTAL = {"harmonic_1": 1.0, "phase_1": 0.0}
 """What is not said of a fundamental: Λ is its size, and the phase is counted from it."""
@@ -95,18 +97,11 @@ def highest(value: Any) -> int:
 class Table:
     """A periodic waveform W(τ) = Σ a sin(kτ + p).
 
-    Parameters
-    ----------
-    harmonics : iterable of (k, a, p)
-        The order k ≥ 1, the size a and the phase p of each harmonic. The amplitude Λ of a call is
-        the scale: the table is at ΛW(τ), in units of g/Ω². Its greatest acceleration over gravity
-        is Λ times ``acceleration``, which is 1 for the sine and for tables made of samples.
-
-    Notes
-    -----
-    Sizes and phases are parameters along which orbits are followed, by the names ``harmonic_k`` and
-    ``phase_k``. A triangle or a sawtooth has jumps in W′, and no second derivative: its truncated
-    series is a table of its own.
+    ``harmonics`` are (k, a, p): the order k ≥ 1, the size a and the phase p of each. The amplitude
+    Λ of a call is the scale: the table is at ΛW(τ), in units of g/Ω². Its greatest acceleration
+    over gravity is Λ times ``acceleration``, which is 1 for the sine and for tables made of
+    samples. Sizes and phases are parameters along which orbits are followed, ``harmonic_k`` and
+    ``phase_k``.
 
     Examples
     --------
@@ -135,7 +130,8 @@ class Table:
     def of_samples(
         cls, values: Values, harmonics: Any = None, *, acceleration: bool = False
     ) -> "Table":
-        """The table through equally spaced samples of one period, without their mean.
+        """The table through equally spaced samples of one period, without their mean, with a
+        greatest |W″| of 1, so that Λ is the greatest acceleration over gravity.
 
         Parameters
         ----------
@@ -146,11 +142,6 @@ class Table:
             of heights counts k² times in the acceleration: give it for measured ones.
         acceleration : bool
             Whether the values are accelerations, whose harmonics are divided by -k².
-
-        Returns
-        -------
-        Table
-            With a greatest |W″| of 1, so that Λ is the greatest acceleration over gravity.
 
         Raises
         ------
@@ -206,10 +197,9 @@ class Table:
         harmonics: Any,
         gravity: float = 9.80665,
     ) -> tuple["Table", float]:
-        """The table of a measured acceleration, and its Λ.
+        """The table of a measured acceleration, with a greatest |W″| of 1, and its Λ.
 
-        The harmonics of a known frequency are fitted to the record by least squares, so that it
-        needs no whole number of periods, no equal steps and no filter.
+        The harmonics of a known frequency are fitted by least squares.
 
         Parameters
         ----------
@@ -224,13 +214,6 @@ class Table:
             The highest harmonic, or the orders of all that are fitted, such as [12, 17].
         gravity : float
             In m/s².
-
-        Returns
-        -------
-        table : Table
-            With a greatest |W″| of 1.
-        amplitude : float
-            Λ, the greatest acceleration of the fitted harmonics over gravity.
 
         Examples
         --------
@@ -291,10 +274,8 @@ class Table:
         return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
 
     def at(self, **values: Values) -> Any:
-        """The same table with other sizes or phases.
-
-        They may be arrays and complex where the waveform itself is computed; functions that take a
-        table take one with real numbers.
+        """The same table with other sizes or phases, also arrays and complex ones, which are not
+        checked.
         """
         new = self.parameters | values
         if len(new) > len(self.parameters):
@@ -461,9 +442,8 @@ class Table:
         return phase, np.maximum.accumulate(np.maximum(angles, 0))
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
-        """The phase after the steepest one, or before it (-1), at which W′ is a given slope.
-
-        It is the steepest phase for slopes above the greatest one.
+        """The phase after the steepest one, or before it (-1), at which W′ is a given slope; the
+        steepest one for slopes above the greatest one.
         """
         phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
@@ -481,9 +461,8 @@ class Table:
         return self._zero(np.interp(angle, turned, phase), apart)
 
     def instant(self, speed: Values, amplitude: Values) -> tuple:
-        """Where w′ has fallen to a speed: the phase, w, -w″ and -w‴ there, NaN where it does not.
-
-        The speed may be complex.
+        """Where w′ has fallen to a speed, which may be complex: the phase, w, -w″ and -w‴ there,
+        or NaN.
         """
         slope = speed / amplitude
         phase = self.phase_of_slope(np.real(slope))

@@ -33,6 +33,7 @@ def follow(
 
     It goes through an orbit, or begins at a special one: stable from a saddle-node, with twice the
     period from a doubling, half of it from a halving, one impact more from the grazing of a flight.
+    OrbitNotFound if a single orbit has no branch, such as towards `to` from a period doubling.
 
     Parameters
     ----------
@@ -47,8 +48,6 @@ def follow(
         rises to the end of its range, or to ten times its value and at least 10; a phase by a turn.
     points : int
         The largest number of orbits on a branch, of each direction.
-
-    OrbitNotFound if a single orbit has no branch, such as towards `to` from a period doubling.
 
     Examples
     --------

@@ -42,6 +42,8 @@ def special_curve(
 ) -> SpecialCurve:
     """The curve of special orbits through one of them, in two parameters, both ways.
 
+    OrbitNotFound if the orbit is no special one from which a curve goes on.
+
     Parameters
     ----------
     special : PeriodicOrbit
@@ -55,8 +57,6 @@ def special_curve(
         is more, and after a turn of a phase.
     points : int
         The largest number of orbits in each direction.
-
-    OrbitNotFound if the orbit is no special one from which a curve goes on.
 
     Examples
     --------

@@ -134,7 +134,10 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 def law_errors(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """The error law: relative errors of the restitution model in the six quantities.
+    """The error law: signed relative errors of the restitution model, by :data:`QUANTITIES`.
+
+    They are right to the second order in the duration, and next to the saddle-node to the order
+    3/2; NaN where a model has no orbit.
 
     Parameters
     ----------
@@ -144,12 +147,6 @@ def law_errors(
         Λ, a number or an array that broadcasts with the parameters of the ball.
     table
         The waveform; the orbits are those after the phase at which it rises fastest.
-
-    Returns
-    -------
-    dict
-        Signed errors by the names in :data:`QUANTITIES`, right to the second order in the duration,
-        and next to the saddle-node to the order 3/2; NaN where a model has no orbit.
 
     Examples
     --------
@@ -268,6 +265,9 @@ def law_thresholds(
 ) -> dict:
     """The ϖ from which on the restitution model is within a tolerance, by the error law.
 
+    By the names in :data:`QUANTITIES` it is |K|/ε, but for the height and for the phase, which feel
+    the saddle-node in the first order (Eq. R7 of the article).
+
     Parameters
     ----------
     contacts
@@ -278,12 +278,6 @@ def law_thresholds(
         As in :func:`law_errors`.
     tolerance
         Largest modulus ε of the relative error.
-
-    Returns
-    -------
-    dict
-        By the names in :data:`QUANTITIES`: |K|/ε, but for the height and for the phase, which feel
-        the saddle-node in the first order (Eq. R7 of the article).
 
     Examples
     --------
@@ -390,7 +384,11 @@ def contact_values(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Quantities of the n-T orbit of a ball and of its bifurcations, exactly.
+    """Quantities of the n-T orbit of a ball and of its bifurcations, exactly, as arrays by name.
+
+    They are NaN without an orbit on the stable side of the saddle-node, whether or not a ball
+    follows it. For a corrected ball, phase, velocity and apparent restitution are those of a
+    contact from t_c before its instant to D - t_c after it.
 
     Parameters
     ----------
@@ -398,13 +396,6 @@ def contact_values(
         As in :func:`law_errors`; parameters and numbers broadcast.
     quantities
         Names from :data:`QUANTITIES`.
-
-    Returns
-    -------
-    dict
-        By these names: arrays, NaN where there is no orbit on the stable side of the saddle-node,
-        also if no ball follows it. For a corrected ball, phase, velocity and apparent restitution
-        are those of a contact from t_c before its instant to D - t_c after it.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
         raise ValueError(f"quantities = {quantities!r}: must be a list of {', '.join(QUANTITIES)}")
@@ -502,7 +493,7 @@ def exact_errors(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
+    """Signed relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
 
     Parameters
     ----------
@@ -512,21 +503,13 @@ def exact_errors(
         A function from a ball to the ball in its place, such as ``Corrected``; by default the
         restitution model with the r(v) of the ball, whose :func:`free_impact` may be given.
 
-    Returns
-    -------
-    dict
-        Signed errors by the names of the quantities, NaN where a model has no orbit.
-
     Examples
     --------
     >>> from bouncing_ball_beyond import Corrected, SpringDamper
     >>> ball = SpringDamper(20.0, restitution=0.65)
-    >>> errors = [
-    ...     exact_errors(ball, amplitude=1.0, simple=simple, quantities=["max_height"])
-    ...     for simple in (None, Corrected)
-    ... ]
-    >>> [round(float(error["max_height"]), 6) for error in errors]
-    [-0.041148, -0.000121]
+    >>> error = exact_errors(ball, amplitude=1.0, simple=Corrected, quantities=["max_height"])
+    >>> round(float(error["max_height"]), 6)
+    -0.000121
     """
     given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
     exact = contact_values(ball, **given)
@@ -563,7 +546,7 @@ def error_thresholds(
     samples: int = 49,
     table: Table = SINE,
 ) -> dict:
-    """The ϖ from which on a simple model is within a tolerance, exactly.
+    """The ϖ from which on a simple model is within a tolerance: an :class:`ErrorThreshold` each.
 
     Parameters
     ----------
@@ -576,11 +559,6 @@ def error_thresholds(
     low, high, samples
         The range of ϖ and the number of samples in it, at equal ratios. Two crossings between two
         samples are not noticed.
-
-    Returns
-    -------
-    dict
-        An :class:`ErrorThreshold` for each quantity.
 
     Examples
     --------

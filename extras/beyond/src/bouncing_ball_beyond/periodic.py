@@ -37,6 +37,8 @@ def orbit(
 ) -> Any:
     """The n-T orbit of a ball at the amplitude Λ of the table, with one impact in n periods.
 
+    OrbitNotFound if all arguments are numbers and there is none.
+
     Parameters
     ----------
     ball, amplitude, n
@@ -45,11 +47,6 @@ def orbit(
     side : {"stable", "unstable"}
         The side of the saddle-node: impacts after or before the phase at which the table rises
         fastest. Tables that rise several times in a period have more orbits: see `orbits`.
-
-    Raises
-    ------
-    OrbitNotFound
-        If all arguments are numbers and there is no orbit.
 
     Examples
     --------
@@ -100,8 +97,6 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
         elif near[i] or found[i]:
             found[i] = near[i] or found[i]
             continue
-        elif not ends[i]:
-            why = "none is found, and without a table its impacts do not end"
         ball = equations.ball.rows(i)
         values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
         found[i] = OrbitNotFound(

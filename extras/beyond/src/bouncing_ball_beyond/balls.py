@@ -21,15 +21,12 @@ H = 1e-30
 """The imaginary part of a complex step: that of f(x + iH) is H f′(x)."""
 
 FEW = 40
-"""Fewer balls are followed by scalar loops, because one step on arrays costs as much as this many
-scalar ones."""
+"""Fewer balls are followed by scalar loops: a step on arrays costs as much as this many."""
 
 
 class Impact(NamedTuple):
-    """The end of an impact, by numbers or arrays of one shape.
-
-    `release` is negative within a contact and zero at its end, and None for an instant.
-    """
+    """The end of an impact, as arrays of one shape; `release` is negative in a contact, zero at its
+    end, and None for an instant."""
 
     duration: np.ndarray
     gap: np.ndarray

@@ -45,12 +45,8 @@ def solve_bordered(
     """Solve the linear equations of the legs together with p further ones, the border.
 
     Derivatives have the shape (rows, k, q, q + 2 + p), right sides (rows, k, q, m), the border
-    (rows, p, N) and its right sides (rows, p, m); solutions (rows, N, m), NaN if singular.
-
-    Each pair of legs is turned by an orthogonal matrix, so that one half of its equations tells the
-    impact between the two and the other half is a leg from the first impact to the one after the
-    second. The number of legs is halved until one matrix is small: this is stable for any orbit,
-    and its work is proportional to the number of legs.
+    (rows, p, N) and its right sides (rows, p, m); solutions (rows, N, m), NaN if singular. The legs
+    are eliminated by pairs (docs/orbits.md).
     """
     rows, k, q, columns = derivatives.shape
     m = right.shape[-1]

@@ -398,7 +398,8 @@ def contact_values(
         Names from :data:`QUANTITIES`.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
-        raise ValueError(f"quantities = {quantities!r}: must be a list of {', '.join(QUANTITIES)}")
+        allowed = ", ".join(QUANTITIES)
+        raise ValueError(f"quantities = {quantities!r}: must be a list of names out of {allowed}")
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
@@ -461,8 +462,7 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
     """Height, velocity, phase and apparent restitution of orbits with one impact, by rows."""
     impacts, ball, amplitudes, _ = equations.split(z)
-    touch = impacts[:, 0, 0]
-    speed = impacts[:, 0, 1]
+    touch, speed = impacts[:, 0, :2].T
     amplitude = amplitudes[:, 0]
     ends = equations.ends(z)
     leaves = ends.leaves[:, 0]

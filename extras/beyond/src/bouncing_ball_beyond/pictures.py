@@ -68,8 +68,7 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
 
     `found` are branches, curves, or lists of them such as a cascade, all along the same parameters.
     The quantity is one of the dataset, such as "max_height"; those of impacts have a line for each.
-    By default the figure is a new one. ValueError if there is no such quantity, or if branches are
-    not along the same parameters.
+    By default the figure is a new one.
     """
     branches = [each for group in found for each in _branches(group)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
@@ -91,9 +90,7 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
             entries |= _draw(axes, branch, quantity, colour)
             lines[_name(branch)] = sample(color=colour)
         entries = dict(sorted(entries.items(), key=_order)) | (lines if len(lines) > 1 else {})
-        axes.set_xlabel(_label(names[0]))
-        axes.set_ylabel(_label(names[1]))
-        axes.set_title(_title(branches))
+        axes.set(xlabel=_label(names[0]), ylabel=_label(names[1]), title=_title(branches))
         _scale(axes)
         if ax is None:
             legend_below(figure, entries, columns=3)
@@ -142,8 +139,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
     """For each orbit the number of the next one, or of the last one, that is not special.
 
-    The ends of a branch may be special orbits as well: one counts if it is alone on its side of a
-    special orbit, and no multiplier is next to the unit circle.
+    An end counts if it is alone beside a special orbit and no multiplier is near the unit circle.
     """
     places = [each.z for each in special]
     marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]

@@ -74,11 +74,9 @@ def to_dataset(found: Found) -> xr.Dataset:
     """The dataset of an orbit, of a branch or curve with its special orbits, or of several orbits.
 
     It has a row for each orbit along ``point``, with quantities of its impacts along ``impact``;
-    special orbits have a ``kind``, and are at their places. Attributes are the ball and the table
-    of the first orbit, while parameters are variables. ``to_netcdf`` writes a file.
-
-    The orbits of a list have the same number of impacts and balls of one kind, or ValueError; what
-    is no orbit in it, such as an `OrbitNotFound`, is left out.
+    special orbits have a ``kind``, and are at their places. Attributes are ball and table of the
+    first orbit; parameters are variables. The orbits of a list have the same number of impacts and
+    balls of one kind; an `OrbitNotFound` is left out.
 
     Examples
     --------

@@ -173,10 +173,7 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
 
 
 def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The solutions to which Newton's method leads from starts.
-
-    Where impacts become much faster or longer than all of those at the starts, it is lost.
-    """
+    """The solutions to which Newton's method leads from starts, lost where it is far from all."""
 
     def sizes(z: NDArray) -> NDArray:
         return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)

@@ -168,10 +168,7 @@ def special_near(
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period: the doubling of these, taken twice.
-
-    The equations of the longer orbit are singular there, those of the shorter one are not.
-    """
+    """Where orbits merge with those of half their period: the doubling of these, taken twice."""
     half, near = equations.halved(ends)
     solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))
     if not found[0]:

@@ -258,6 +258,9 @@ def test_names_without_an_answer_are_refused_with_the_reason(name, typed):
         ("gz-sim", "gazebo-sim"),
         ("matter.js", "matter-js"),
         ("Box2D", "box2d"),
+        ("libGDX", "box2d-2"),
+        ("p5play", "planck"),
+        ("bevy_rapier3d", "rapier"),
     ],
 )
 def test_other_names_are_known(typed_name, name):
@@ -273,6 +276,40 @@ def test_design_and_diagnose_name_the_functions_of_an_engine_by_number():
             call()
     with pytest.raises(Refused, match="Chaos, which was not run"):
         design(ball, "unreal")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("unity-2d", "take box2d-2"),
+        ("phaser3", "take matter-js"),
+        ("gdevelop", "take box2d-2"),
+        ("construct 3", "take box2d-2"),
+        ("avian3d", "a solver of its own"),
+        ("chaos", "Chaos, which was not run"),
+    ],
+)
+def test_a_product_on_top_of_an_engine_is_said_to_be_one(name, said):
+    """Of unity-2d it was asked whether unity was meant, which is PhysX."""
+    with pytest.raises(Refused, match=said):
+        engine_by_number(name)
+
+
+def test_below_a_constant_threshold_no_number_is_offered(typed):
+    """A least change of restitution = 1 gave r = 0.000, after 6 s."""
+    said = "--engine box2d-2 --speed '0.9 m/s' --gravity 0 --time-step 1/60 --restitution 1"
+    out = typed(f"diagnose {said} restitution=1")[1]
+    assert "b2_velocityThreshold; it is a constant: no number helps" in out
+    assert "Least change" not in out
+    assert "no number bounces in box2d-2" in typed(f"design {said}")[2]
+
+
+def test_the_snippet_of_one_body_is_not_of_both(typed):
+    said = "diagnose --engine unity bounciness=0.8 --time-step 1/50"
+    assert "= 0.8f;  // of both bodies" in typed(said)[1]
+    assert "= 0.8f;  // of one body, with 0 of the other one" in typed(f"{said} --one-body")[1]
+    out = typed(f"{said} --other restitution=1")[1]
+    assert "= 0.8f;  // of one body, with 1 of the other one" in out
 
 
 def test_the_command(typed):

@@ -139,7 +139,7 @@ _JOLT = ByNumber(
     name="jolt",
     rule=step_rules.jolt,
     ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
-    written="bodySettings.mRestitution = {number}f;  // of both bodies",
+    written="bodySettings.mRestitution = {number}f;  // of {bodies}",
     parameter="mRestitution",
     pair=LARGER,
     threshold=1.0,
@@ -153,7 +153,7 @@ _PHYSX = ByNumber(
     name="physx",
     rule=partial(step_rules.physx, ahead=0.04),
     ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
-    written="material->setRestitution({number}f);  // of both shapes",
+    written="material->setRestitution({number}f);  // of {bodies}",
     threshold=2.0,
     set_by="bounceThresholdVelocity",
     springs="physx",
@@ -165,7 +165,7 @@ _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
     ran="Box2D 2.3.10 of Python",
-    written="fixtureDef.restitution = {number}f;  // of one of both fixtures",
+    written="fixtureDef.restitution = {number}f;  // of {bodies}",
     pair=LARGER,
     threshold=1.0,
     is_restless=True,
@@ -176,7 +176,7 @@ _DART = ByNumber(
     name="dart",
     rule=step_rules.dart,
     ran="DART 6.20 (dartpy)",
-    written="dynamicsAspect->setRestitutionCoeff({number});  // of both bodies",
+    written="dynamicsAspect->setRestitutionCoeff({number});  // of {bodies}",
     pair=PRODUCT,
     threshold=0.1,
     is_of_rebound=True,
@@ -187,7 +187,7 @@ _RAPIER = ByNumber(
     name="rapier",
     rule=step_rules.rapier,
     ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
-    written="ColliderBuilder::ball(radius).restitution({number})  // and the ground",
+    written="ColliderBuilder::ball(radius).restitution({number})  // of {bodies}",
     sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
     remembers=2000,
     notes=("Before 0.35 Rapier had another rule",),
@@ -199,7 +199,7 @@ BY_NUMBER = {
         replace(
             _JOLT,
             name="godot-jolt",
-            written="physics_material.bounce = {number}  # of both bodies",
+            written="physics_material.bounce = {number}  # of {bodies}",
             parameter="bounce",
             pair=_CLAMPED_SUM,
             set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
@@ -214,7 +214,7 @@ BY_NUMBER = {
             _PHYSX,
             name="unity",
             rule=partial(step_rules.physx, ahead=0.02),
-            written="material.bounciness = {number}f;  // of both colliders",
+            written="material.bounciness = {number}f;  // of {bodies}",
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
             springs="",
@@ -224,7 +224,7 @@ BY_NUMBER = {
         replace(
             _PHYSX,
             name="isaac-lab",
-            written="RigidBodyMaterialCfg(restitution={number})  # of both bodies",
+            written="RigidBodyMaterialCfg(restitution={number})  # of {bodies}",
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
@@ -237,7 +237,7 @@ BY_NUMBER = {
         replace(
             _PHYSX,
             name="isaac-sim",
-            written="PhysicsMaterial(restitution={number})  # of both bodies",
+            written="PhysicsMaterial(restitution={number})  # of {bodies}",
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.0,
             set_by="physxScene:bounceThreshold",
@@ -252,7 +252,7 @@ BY_NUMBER = {
             name="box2d",
             rule=step_rules.box2d,
             ran="Box2D 3 (box2d3-wasm 5.2.0)",
-            written="shapeDef.material.restitution = {number}f;  // of one of both shapes",
+            written="shapeDef.material.restitution = {number}f;  // of {bodies}",
             pair=LARGER,
             threshold=1.0,
             set_by="b2WorldDef.restitutionThreshold",
@@ -265,7 +265,7 @@ BY_NUMBER = {
             _BOX2D_2,
             name="planck",
             ran="planck 1.4.2",
-            written="body.createFixture({{shape, restitution: {number}}})  // one of both",
+            written="body.createFixture({{shape, restitution: {number}}})  // of {bodies}",
             set_by="Settings.velocityThreshold",
             lowered="Settings.velocityThreshold = {threshold};",
             notes=(),
@@ -274,7 +274,7 @@ BY_NUMBER = {
             name="chipmunk",
             rule=step_rules.chipmunk,
             ran="Chipmunk 7 (pymunk 7.3.1)",
-            written="shape.elasticity = {number}  # of both shapes",
+            written="shape.elasticity = {number}  # of {bodies}",
             parameter="elasticity",
             pair=PRODUCT,
             sinks=0.0,
@@ -284,7 +284,7 @@ BY_NUMBER = {
             _DART,
             name="gazebo-sim",
             written="<bounce><restitution_coefficient>{number}</restitution_coefficient></bounce>"
-            "  <!-- of both collisions -->",
+            "  <!-- of {bodies} -->",
             parameter="restitution_coefficient",
             ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
             notes=(
@@ -296,7 +296,7 @@ BY_NUMBER = {
             name="matter-js",
             rule=step_rules.matter,
             ran="matter-js 0.20.0",
-            written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // one of both",
+            written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // of {bodies}",
             pair=LARGER,
             notes=(
                 "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
@@ -337,9 +337,9 @@ BY_NUMBER = {
 }
 """The engines, and products on top of one, by their names."""
 _OTHER_NAMES = {
+    "bevyrapier": "rapier",
     "box2d3": "box2d",
     "cannon": "cannon-es",
-    "chipmunk2d": "chipmunk",
     "dartpy": "dart",
     "dartsim": "dart",
     "gazeboharmonic": "gazebo-sim",
@@ -348,32 +348,39 @@ _OTHER_NAMES = {
     "ignition": "gazebo-sim",
     "ignitiongazebo": "gazebo-sim",
     "isaac": "isaac-sim",
+    "libgdx": "box2d-2",
     "matter": "matter-js",
     "nvidiaphysx": "physx",
+    "p5play": "planck",
     "pybox2d": "box2d-2",
     "pymunk": "chipmunk",
-    "rapier2d": "rapier",
-    "rapier3d": "rapier",
+    "bevyxpbd": "avian",
+    "chaos": "unreal",
     "ue": "unreal",
-    "unity3d": "unity",
     "xpbd": "newton-xpbd",
 }
 WITHOUT_ANSWER = {
     "ammo": "ammo.js is Bullet, and was not run; for the Bullet of Python take pybullet",
+    "avian": "Avian has a solver of its own, which was not run",
     "adams": "Adams was not run, and its source cannot be read",
     "bepu": "BepuPhysics 2 has no restitution: a contact is a spring with a frequency and a "
     "damping ratio, which was not run",
     "blender": "Blender has Bullet, and was not run; for the Bullet of Python take pybullet",
     "brax": "Brax has four pipelines, of which none was run; for the one of MJX take mujoco",
+    "construct": "Construct has Box2D, of a version that was not run: take box2d-2, or box2d for "
+    "Box2D 3",
     "coppeliasim": "CoppeliaSim has several engines: take the one that is chosen there, such as "
     "pybullet, ode or mujoco",
+    "gdevelop": "GDevelop has Box2D in two dimensions, of a version that was not run: take box2d-2",
     "godot": "Godot has two engines: take godot-jolt for Jolt Physics; Godot Physics was not run",
     "havok": "Havok was not run, and its source cannot be read",
     "isaac-gym": "Isaac Gym has a PhysX of its own, and was not run; for PhysX 5 take physx",
+    "phaser": "Phaser has two engines: for Matter take matter-js; Arcade Physics was not run",
     "physx-3": "PhysX 3 was not run; unity and physx have the rule of PhysX 4 and 5",
     "sapien": "SAPIEN has PhysX, and was not run; for PhysX 5 take physx",
     "simscape": "Simscape was not run, and its source cannot be read",
     "three": "three.js has no physics: take the engine beside it, such as cannon-es or rapier",
+    "unity-2d": "Unity has a Box2D in 2D, which was not run: take box2d-2, or box2d for Box2D 3",
     "unreal": "Unreal 5 has Chaos, which was not run, and Unreal 4 has PhysX 3.4",
     "warp": "Warp has no contacts of its own: take mujoco-warp, or newton",
     "webots": "Webots has an ODE of its own, which was not run; for ODE take ode",
@@ -392,7 +399,7 @@ def engine_by_number(name: str) -> ByNumber | None:
     known = {re.sub(r"\W", "", each): each for each in (*BY_NUMBER, *WITHOUT_ANSWER)} | _OTHER_NAMES
     plain = re.sub(r"[\W_]", "", name.lower())
     # A version at the end, and words such as "engine", belong to no name.
-    bare = re.sub(r"(physics|engine|js)*(v?\d+)?$", "", plain)
+    bare = re.sub(r"(physics|engine|js)*(v?\d+d?)?$", "", plain)
     found = known.get(plain) or known.get(bare)
     if found in WITHOUT_ANSWER:
         raise Refused(f"{name}: {WITHOUT_ANSWER[found]}")
@@ -540,8 +547,11 @@ class Rebound:
     def snippet(self) -> str:
         """What is pasted into the engine."""
         row = self.source
+        bodies = "one of both bodies" if row.pair is LARGER else "both bodies"
+        if self.other is not None:
+            bodies = f"one body, with {self.other:g} of the other one"
         # Also a whole number has a decimal point, which C++ wants before an f.
-        line = row.written.format(number=float(f"{self.written:.4g}"))
+        line = row.written.format(number=float(f"{self.written:.4g}"), bodies=bodies)
         lowered = row.lowered.format(threshold=float(f"{self.threshold / row.unit:.2g}"))
         return line if self.threshold == row.threshold else f"{line}\n{lowered}"
 
@@ -569,7 +579,7 @@ class Rebound:
             (
                 self.number > 0 and is_slow and r.high < 0.1,
                 f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of "
-                f"{row.limit}",
+                f"{row.limit}{'' if row.lowered else '; it is a constant: no number helps'}",
             ),
             (
                 r.low < 0.1 <= r.high and r.low < r.mean / 2 and speed < 2 * slowest,
@@ -683,6 +693,12 @@ class Case(NamedTuple):
     threshold: float
     other: float | None = None
 
+    @property
+    def never_bounces(self) -> bool:
+        """Whether no number helps, because the threshold is a constant."""
+        fastest = self.bounce.impact_speed + self.bounce.load * self.step
+        return fastest <= self.threshold and not self.engine.lowered
+
     def number(self, written: float) -> float:
         """Return the number of both bodies together."""
         return self.engine.pair.of(written, written if self.other is None else self.other)
@@ -764,6 +780,11 @@ def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     engine = engine.scaled(bounce.gravity)
     case = Case(engine, bounce, _step(time_step), engine.threshold)
+    if case.never_bounces:
+        raise Refused(
+            f"no number bounces in {engine.name} at {show(bounce.impact_speed, 'm/s')}: it has a "
+            f"threshold of {engine.limit}, a constant"
+        )
     return case.at_shorter_steps(case.wanted())
 
 
@@ -812,7 +833,7 @@ def rebound(
         other=None if other is None else _given(engine, other).get("number", engine.default),
     )
     found = case.rebound(given["number"])
-    if bounce.restitution is None or found.deviation <= TOLERANCE:
+    if bounce.restitution is None or found.deviation <= TOLERANCE or case.never_bounces:
         return found
     change = case.wanted()
     if other is not None and change.deviation > TOLERANCE:

@@ -157,7 +157,7 @@ MISTAKES = {
     f'{BALL} --time-step "2 mm"': "does not fit",
     f"{BALL} --time-step": "requires an argument",
     f'{BALL} --drop-height "1 m" --speed "2 m/s"': "either the drop height or the speed",
-    f'{BALL} --radius "1 cm" --density steel': "either the radius or the density",
+    f'{BALL} --radius "1 cm" --density steel': "give two of mass, radius and density",
     f'{BALL} --penetration "1 mm" --stiffness "1 kN/m"': "either the penetration or the stiffness",
     f'{BALL} --stiffness "1 kN/m" --contact-time "1 ms"': "the stiffness or the contact time",
     f'{BALL} --stiffness "1,500 N/m"': "can be read as",

@@ -145,10 +145,13 @@ def test_the_scheme_that_is_taken_for_drake_is_said():
 
 
 def test_what_a_row_takes_as_given_is_said():
-    """The Poisson ratio of a row was assumed silently, and Gazebo's min_depth lowers r."""
+    """The Poisson ratio of a row was assumed silently, and Gazebo's min_depth lowers r; of 0, which
+    Gazebo has, it was refused.
+    """
     numbers = {"youngsModulus": 1e7, "coefficientRestitution": 0.7}
     assert "Poisson ratio is taken as 0.3" in str(asked(None, "liggghts-hertz", numbers, "0.1 ms"))
-    assert "min_depth is taken as 0" in str(asked(None, "gazebo", {}, "1 ms"))
+    assert "min_depth = 0" in str(asked(None, "gazebo", {}, "1 ms"))
+    assert "min_depth = 0" in str(asked(None, "gazebo", {"minDepth": 0}, "1 ms"))
 
 
 def test_a_damper_that_is_far_too_strong_stops_the_body():
@@ -521,7 +524,7 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
         ("physx", {"restitutionCombineMode": "mean"}, "none of average, min, multiply, max"),
         ("pybullet", {"contactStiffness": -2}, "not between 0 and inf"),
         # Names that the engine has and the row has not; E was read as e, and the last one counted.
-        ("gazebo", {"min_depth": 1e-3}, "gazebo does not use 'min_depth'"),
+        ("gazebo", {"min_depth": 1e-3}, "min_depth above 0 lowers r"),
         ("lammps-hertz", {"kn": 1e7, "e": 0.7, "E": 0.5}, "does not use 'E'"),
         ("lammps", {"kn": 1e5, "gamma_n": 2, "Kn": 2e5}, "'Kn' gives kn twice"),
         # These were an AttributeError.

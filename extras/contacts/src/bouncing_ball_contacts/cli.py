@@ -23,7 +23,9 @@ from bouncing_ball_contacts.units import (
 if TYPE_CHECKING:
     from bouncing_ball_contacts.rebounds import Rebound
 
-_DENSITY = click.Option(["--density"], help="In place of the size; also steel, rubber, wood, …")
+_DENSITY = click.Option(
+    ["--density"], help="In place of the size or the mass; also steel, rubber, …"
+)
 _BODY = [
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
     click.Option(["--restitution"], help="√(h′/h) that is wanted, 0 to 1."),

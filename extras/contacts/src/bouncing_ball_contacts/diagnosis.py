@@ -370,6 +370,8 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
     number = in_si(name, value, engine.units.get(name, ""))
     if number == engine.defaults.get(name):
         return number
+    if name == "min_depth":
+        raise Refused(f"min_depth = {value} is not computed: a min_depth above 0 lowers r")
     if number == 0 and name in (engine.names[0], *_DIVISORS):
         raise Refused(f"{name} = 0 is not computed: give a small number")
     return within(name, number, 0, 1 if name in _SHARES else math.inf)

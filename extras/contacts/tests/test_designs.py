@@ -35,14 +35,6 @@ def test_every_engine_keeps_the_permitted_penetration(name, of_ball):
     assert outcome.restitution.deviation(0.8) <= 0.02
 
 
-@pytest.mark.parametrize("name", ["lammps-hertz", "newton"])
-def test_a_penetration_is_kept_and_used_at_a_short_step(name):
-    wanted = Bounce(mass="50 g", restitution=0.3, radius="30 mm", penetration="1 mm")
-    found = design(wanted, name, "10 us")
-    assert found.chosen == YOURS
-    assert 0.98e-3 <= found.row.outcome.depth[1] <= 1e-3
-
-
 @pytest.mark.parametrize("name", ENGINES)
 def test_every_engine_has_a_contact_at_a_given_step(name, of_ball):
     found = of_ball(name)
@@ -66,14 +58,6 @@ def test_every_restitution_is_reached(name, r):
     mean = found.row.outcome.restitution[1]
     # The step of this row is one with half of the tolerance.
     assert mean == pytest.approx(r, abs=0.01)
-
-
-def test_the_stiffest_contact_within_the_tolerance_is_taken():
-    strict, normal, lax = (
-        design(Bounce(**BALL), "mujoco", "1 ms", tolerance=t).rows[YOURS] for t in (0.01, 0.02, 0.1)
-    )
-    assert strict.stiffness < normal.stiffness < lax.stiffness
-    assert strict.outcome.depth[1] > normal.outcome.depth[1] > lax.outcome.depth[1]
 
 
 def test_a_stiffer_contact_can_be_asked_for():
@@ -121,12 +105,6 @@ def test_a_spring_that_gains_energy_is_said_so():
     assert most > 1.001 and f"up to {most:.3f}: at some instants the body gains" in repr(found)
 
 
-def test_the_impulse_is_shown_where_an_engine_has_it():
-    assert IMPULSE in design(SHORT, "physx", "1 ms").rows
-    for step in ("0.2 ms", "10 ms"):
-        assert IMPULSE not in design(SHORT, "lammps", step).rows
-
-
 @pytest.mark.parametrize("name", ["pybullet", "physx", "ode", "gazebo"])
 def test_the_impulse_is_the_one_of_the_engine(name):
     """PhysX and Gazebo had the number of PyBullet, whose product over both bodies counts."""
@@ -144,13 +122,6 @@ def test_the_impulse_is_the_one_of_the_engine(name):
 def test_a_bounce_is_needed():
     with pytest.raises(Refused, match="give a bounce"):
         design(None, "mujoco")
-
-
-def test_a_step_that_is_short_enough_is_taken_with_what_was_given():
-    found = design(Bounce(**BALL, stiffness="2 kN/m"), "mujoco", "20 us")
-    assert found.chosen == YOURS
-    assert found.row.stiffness == pytest.approx(2e3, rel=1e-5)
-    assert found.row.step == 2e-5
 
 
 def test_the_note_speaks_of_the_contact_that_is_written():
@@ -304,10 +275,6 @@ def test_a_body_that_could_not_bounce_has_a_threshold_below_its_speed():
     assert "it never lies still" in repr(found)
 
 
-def test_the_permitted_penetration_is_said_to_be_assumed(of_ball):
-    assert "a tenth of the radius" in str(of_ball("mujoco"))
-
-
 def test_a_body_of_several_points_is_a_cube():
     """It was called a solid ball of steel."""
     found = design(Bounce(mass="1 kg", restitution=0.8, points=4), "mujoco", "2 ms")
@@ -371,16 +338,12 @@ def test_points_share_the_force(name):
         for problem in (Problem(replace(SHORT, points=n), ENGINES[name]) for n in (1, 4))
     )
     assert four.outcome.restitution == pytest.approx(one.outcome.restitution, abs=1e-3)
-    # At an impedance near 1 points do not matter.
+    # At an impedance near 1 points do not matter, and Drake has one contact for a pair of shapes.
     by_impedance = ("genesis", "mujoco", "mujoco-warp", "newton-mujoco")
-    if not name.startswith("drake") and name not in ("ode", *by_impedance):
-        first = ENGINES[name].names[0]
-        assert four.parameters[first] == pytest.approx(one.parameters[first] / 4, rel=1e-3)
-
-
-def test_drake_has_one_contact_for_a_pair_of_shapes():
-    one, four = (design(replace(SHORT, points=n), "drake-sap", "0.2 ms") for n in (1, 4))
-    assert one.parameters == four.parameters
+    share = 1 if name in ("drake", "drake-sap", *by_impedance) else 4
+    first = np.atleast_1d(one.parameters[ENGINES[name].names[0]])[0]
+    shared = np.atleast_1d(four.parameters[ENGINES[name].names[0]])[0]
+    assert shared == pytest.approx(first * share if name == "ode" else first / share, rel=1e-3)
 
 
 def test_two_free_balls_change_places_if_they_overlap_by_both_radii():
@@ -492,22 +455,6 @@ def test_liggghts_takes_soft_and_hard_grains_and_no_restitution_below_its_least(
         design(Bounce(mass=0.2, restitution=0.01, radius=0.03, drop_height=10), "liggghts-hertz")
 
 
-def test_no_depth_is_negative_and_no_number_has_a_power_of_ten():
-    for height in ("1 mm", "1 km"):
-        wanted = Bounce(mass="1 kg", restitution=0.4, drop_height=height, radius="10 cm")
-        table = str(design(wanted, "mujoco")).split("\n\n")[0]
-        assert not re.search(r"[-−]\d", table)
-        assert not re.search(r"\de[+-]?\d", table)
-
-
-def test_the_answer_begins_with_the_table_then_the_snippet_then_the_assumptions():
-    found = design(Bounce(mass="50 g", restitution=0.8), "mujoco", "2 ms")
-    text = str(found)
-    places = [text.index(part) for part in ("what you want", "<option", "Given:", "Assumed:")]
-    assert places == sorted(places)
-    assert text.startswith(repr(found)) and "<option" not in repr(found)
-
-
 @pytest.mark.parametrize("name", list(ENGINES))
 def test_every_snippet_has_the_numbers_that_were_computed(name, of_ball):
     found = of_ball(name)
@@ -535,18 +482,6 @@ def test_if_no_contact_keeps_all_a_shallow_one_comes_before_a_near_one():
     found = problem.wanted()
     assert found.step < 5e-5
     assert found.step == max(step for n in _COUNTS if (step := problem.step_of(n)(1e-3)) < 5e-5)
-
-
-def test_a_random_ball_bounces_as_wanted():
-    rng = np.random.default_rng(7)
-    for _ in range(6):
-        name = str(rng.choice(list(ENGINES)))
-        r = float(rng.uniform(0.1, 0.95))
-        mass = float(10 ** rng.uniform(-5, 2))
-        wanted = Bounce(mass=mass, restitution=r, drop_height=float(10 ** rng.uniform(-1, 1)))
-        outcome = design(wanted, name).row.outcome
-        assert outcome.restitution.deviation(r) <= 0.02, (name, r, mass)
-        assert outcome.depth[1] <= wanted.limit
 
 
 def random_request(rng):

@@ -281,14 +281,22 @@ def diagnose(
             "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}, '2 ms')"
         )
     row = engine_named(engine)
-    if row.sets_pair and other is not None:
-        raise Refused(f"{row.name} sets the contact of a pair: no body has one of its own")
     is_told = bounce.friction is not None and "friction" in row.rules
     rubs = {"friction": bounce.friction} if is_told else {}
     given = _given(row, {**rubs, **(parameters or {})})
     differs = None if other is None else _given(row, other)
-    if time_step is None:
-        raise Refused("the time step is missing: --time-step '2 ms' or time_step='2 ms'")
+    refuse(
+        [
+            (
+                row.sets_pair and other is not None,
+                f"{row.name} sets the contact of a pair: no body has one of its own",
+            ),
+            (
+                time_step is None,
+                "the time step is missing: --time-step '2 ms' or time_step='2 ms'",
+            ),
+        ]
+    )
     contact = Contact(
         problem=Problem(bounce, row),
         one={**row.defaults, **given},

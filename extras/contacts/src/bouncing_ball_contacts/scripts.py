@@ -4,7 +4,7 @@ import math
 
 from bouncing_ball_contacts.designs import Design
 from bouncing_ball_contacts.engines import filled, snippet_of
-from bouncing_ball_contacts.units import Refused, span
+from bouncing_ball_contacts.units import refuse, span
 
 FAMILIES = {
     "mujoco": "mujoco",
@@ -17,20 +17,15 @@ FAMILIES = {
     "newton": "newton",
 }
 """The engines that have scripts; those of engines with several contacts are the same."""
-# A ball, and a box with four contact points, in those engines that have boxes.
-_SHAPES = {
-    "mujoco": (
-        'size="@radius@"',
-        'type="box" size="@radius@ @radius@ @radius@"',
-    ),
-    "pybullet": (
-        "pybullet.GEOM_SPHERE, radius=@radius@",
-        "pybullet.GEOM_BOX, halfExtents=[@radius@, @radius@, @radius@]",
-    ),
-    "drake": (
-        "Sphere(@radius@)",
-        "Box(2 * @radius@, 2 * @radius@, 2 * @radius@)",
-    ),
+_BALLS = {
+    "mujoco": 'size="@radius@"',
+    "pybullet": "pybullet.GEOM_SPHERE, radius=@radius@",
+    "drake": "Sphere(@radius@)",
+}
+_BOXES = {
+    "mujoco": 'type="box" size="@radius@ @radius@ @radius@"',
+    "pybullet": "pybullet.GEOM_BOX, halfExtents=[@radius@, @radius@, @radius@]",
+    "drake": "Box(2 * @radius@, 2 * @radius@, 2 * @radius@)",
 }
 
 
@@ -46,37 +41,39 @@ def drop_script(design: Design) -> str:
         If there is no script for the engine or for this bounce.
     """
     bounce = design.bounce
-    family = FAMILIES.get(design.engine)
-    if family is None:
-        known = ", ".join(FAMILIES)
-        raise Refused(f"no script is written for {design.engine}: only for {known}")
+    family = FAMILIES.get(design.engine, "")
     is_pair = bounce.other_mass is not None
+    is_box = bounce.points > 1
     text = snippet_of(f"{family}-meet" if is_pair else f"{family}-drop")
-    if not text:
-        raise Refused(f"no script of two free balls is written for {design.engine}")
-    if bounce.points > 1 and (bounce.points != 4 or family not in _SHAPES or is_pair):
-        raise Refused("a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points")
-    if not (bounce.gravity or is_pair):
-        raise Refused("a script drops a body: it needs gravity")
-    row = design.row
+    refuse(
+        [
+            (
+                not family,
+                f"no script is written for {design.engine}: only for {', '.join(FAMILIES)}",
+            ),
+            (not text, f"no script of two free balls is written for {design.engine}"),
+            (
+                is_box and (bounce.points != 4 or family not in _BOXES or is_pair),
+                "a script drops a ball, or in MuJoCo, PyBullet and Drake a box of 4 points",
+            ),
+            (not (bounce.gravity or is_pair), "a script drops a body: it needs gravity"),
+        ]
+    )
+    step = design.row.step
+    depth = design.row.outcome.depth[1]
+    low, _, high = design.row.outcome.restitution
     speed = bounce.impact_speed
-    low, _, high = row.outcome.restitution
-    lasts = 8 * row.outcome.depth[1] / speed
-    if is_pair:
-        # They touch within the eleventh step.
-        gap = 10.5 * speed * row.step
-        steps = math.ceil(lasts / row.step) + 22
-        fall = 0.0
-    else:
-        gap = speed**2 / (2 * bounce.gravity)
-        fall = speed / bounce.gravity
-        steps = math.ceil((2.05 * fall + lasts) / row.step) + 10
+    lasts = 8 * depth / speed
+    fall = 0.0 if is_pair else speed / bounce.gravity
+    # Two balls touch within the eleventh step.
+    gap = 10.5 * speed * step if is_pair else speed * fall / 2
+    steps = math.ceil((2.05 * fall + lasts) / step) + (22 if is_pair else 10)
     # Twice as long as until all bounces are over, because steps of gravity prolong the last ones.
     seconds = 2 * fall * (1 + high) / max(1 - high, 0.02) + lasts + 3
     radius = bounce.size
     other = bounce.other_mass or bounce.mass
     other_radius = radius * (other / bounce.mass) ** (1 / 3)
-    values = {
+    numbers = {
         "mass": bounce.mass,
         "radius": radius,
         "other_mass": other,
@@ -89,25 +86,26 @@ def drop_script(design: Design) -> str:
         "height": gap,
         "start": radius + gap,
         "apart": radius + other_radius + gap,
-        "top": 2 * (radius + other_radius + gap + row.outcome.depth[1]),
-        "step": row.step,
+        "top": 2 * (radius + other_radius + gap + depth),
+        "step": step,
         # Within a step, so that rounding errors take none away.
-        "end": (steps + 0.5) * row.step,
+        "end": (steps + 0.5) * step,
     }
-    texts = {name: f"{value:.9g}" for name, value in values.items()}
-    texts["steps"] = str(steps)
-    texts["long"] = str(max(steps, math.ceil(seconds / row.step)))
-    texts["last"] = str(math.ceil(0.5 / row.step))
-    texts["seconds"] = f"{seconds:.2g}"
-    # At this step the ball is in contact.
-    texts["fall"] = str(math.ceil(fall / row.step) + 1)
-    texts["rise"] = span(low**2 * gap, high**2 * gap, form="g")
-    texts["leave"] = span(low, high)
-    texts["recipe"] = design.snippet
-    ball, box = _SHAPES.get(family, ("", ""))
-    texts["shape"] = filled(box if bounce.points > 1 else ball, texts)
-    # In PyBullet a box gets its four points at once on a box, and not on a plane.
-    texts["table"] = "GEOM_BOX, halfExtents=[9, 9, 9]" if bounce.points > 1 else "GEOM_PLANE"
-    texts["below"] = "-9" if bounce.points > 1 else "0"
-    texts["body"] = "box of a half height" if bounce.points > 1 else "ball of a radius"
+    size = {"radius": f"{radius:.9g}"}
+    texts = {name: f"{value:.9g}" for name, value in numbers.items()} | {
+        "steps": str(steps),
+        "long": str(max(steps, math.ceil(seconds / step))),
+        "last": str(math.ceil(0.5 / step)),
+        "seconds": f"{seconds:.2g}",
+        # At this step the ball is in contact.
+        "fall": str(math.ceil(fall / step) + 1),
+        "rise": span(low**2 * gap, high**2 * gap, form="g"),
+        "leave": span(low, high),
+        "recipe": design.snippet,
+        "shape": filled((_BOXES if is_box else _BALLS).get(family, ""), size),
+        # In PyBullet a box gets its four points at once on a box, and not on a plane.
+        "table": "GEOM_BOX, halfExtents=[9, 9, 9]" if is_box else "GEOM_PLANE",
+        "below": "-9" if is_box else "0",
+        "body": "box of a half height" if is_box else "ball of a radius",
+    }
     return filled(text, texts)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import LARGEST, Refused, in_si
+from bouncing_ball_contacts.units import LARGEST, Refused, in_si, refuse
 
 Lines = NDArray[np.intp]
 
@@ -174,15 +174,15 @@ def _text_of(source: Any) -> tuple[str, str]:
             f"{type(source).__name__} is no recording: give a file, the name of an experiment, or "
             "columns such as {'time (s)': [0.45, 1.17, 1.75]}"
         )
-    path = Path(source)
-    if str(source) in experiments() and not path.exists():
-        path = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
-    if not path.exists():
-        known = ", ".join(experiments())
-        raise Refused(f"the file {source} does not exist, and the experiments are {known}")
+    inside = Path(str(files(__package__).joinpath("experiments", f"{source}.csv")))
+    path = inside if str(source) in experiments() and not Path(source).exists() else Path(source)
+    known = ", ".join(experiments())
+    refuse(
+        [(not path.exists(), f"the file {source} does not exist, and the experiments are {known}")]
+    )
     data = path.read_bytes()
-    if b"\0" in data or data.startswith(b"PK"):
-        raise Refused(f"{path.name} is no text: save it as csv in UTF-8")
+    is_text = b"\0" not in data and not data.startswith(b"PK")
+    refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8")])
     return path.name, data.decode("utf-8-sig", errors="replace")
 
 
@@ -259,13 +259,23 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     head, rows, is_decimal_comma = _rows_of(name, text)
     begin, *lines = rows
     headings = rows.pop(begin)
-    if _number(headings[0] or "no", is_decimal_comma) is not None:
-        raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
-    if unknown := set(leave_out) - set(lines):
-        raise Refused(f"{name} has no line {min(unknown)} of numbers to leave out")
-    for i, row in rows.items():
-        if any(row[len(headings) :]):
-            raise Refused(f"{name}, line {i}: {len(row)} cells below {len(headings)} headings")
+    unknown = set(leave_out) - set(lines)
+    refuse(
+        [
+            (
+                _number(headings[0] or "no", is_decimal_comma) is not None,
+                f"{name}, line {begin}: a table begins with headings: {HEADINGS}",
+            ),
+            (unknown, f"{name} has no line {min(unknown, default=0)} of numbers to leave out"),
+            *(
+                (
+                    any(row[len(headings) :]),
+                    f"{name}, line {i}: {len(row)} cells below {len(headings)} headings",
+                )
+                for i, row in rows.items()
+            ),
+        ]
+    )
     rows |= {i: [] for i in leave_out}
     columns = []
     for heading, *cells in itertools.zip_longest(headings, *rows.values(), fillvalue=""):

@@ -113,21 +113,28 @@ def in_si(name: str, value: Any, unit: str) -> float:
 def _typed(name: str, text: str, unit: str, wanted: str) -> float:
     """Return the number of a text in the SI unit."""
     plain = text.strip().replace("−", "-")
-    if re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain):
-        both = (plain.replace(",", ""), plain.replace(",", "."))
-        raise Refused(f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one")
-    plain = re.sub(r"(?<=\d),(?=\d)", ".", plain)
-    found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", plain)
-    if not found:
-        raise Refused(f"{name}: {text!r} does not begin with a number; {wanted}")
-    divisor = float(found[2] or 1)
-    if divisor == 0:
-        raise Refused(f"{name}: {text!r} divides by zero")
+    both = (plain.replace(",", ""), plain.replace(",", "."))
+    is_double = re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain)
+    found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", both[1])
+    first, second, typed = found.groups() if found else ("0", None, "")
+    divisor = float(second or 1)
     known = {"": 1.0, **_UNITS.get(unit, {unit: 1.0})}
-    if found[3] not in known:
-        units = ", ".join(filter(None, known)) or "none"
-        raise Refused(f"{name}: {found[3]!r} in {text!r} does not fit; {wanted}, in {units}")
-    return float(found[1]) / divisor * known[found[3]]
+    units = ", ".join(filter(None, known)) or "none"
+    refuse(
+        [
+            (
+                is_double,
+                f"{name}: {text!r} can be read as {both[0]!r} or as {both[1]!r}; write one",
+            ),
+            (not found, f"{name}: {text!r} does not begin with a number; {wanted}"),
+            (divisor == 0, f"{name}: {text!r} divides by zero"),
+            (
+                typed not in known,
+                f"{name}: {typed!r} in {text!r} does not fit; {wanted}, in {units}",
+            ),
+        ]
+    )
+    return float(first) / divisor * known[typed]
 
 
 def positive(name: str, value: Any, unit: str) -> float:

@@ -240,7 +240,7 @@ MISTAKES = {
     f"diagnose {RAPIER}": "restitution is missing: give restitution=0.8",
     f"diagnose {RAPIER} restitution=1.2": "not between 0 and 1",
     f"diagnose {RAPIER} threshold=1": "rapier does not use 'threshold': it has restitution",
-    "diagnose --engine jolt mRestitution=1 gravity=1 --time-step 1/60": "it has mRestitution and",
+    "diagnose --engine jolt mRestitution=1 gravity=1 --time-step 1/60": "it has mRestitution, ",
     f"diagnose {RAPIER} restitution=1 --drop-height 1mm": "is longer than the fall",
     "design --engine jolt --speed 1e200 --restitution 0.8 --time-step 1ms": "is not computed",
     "design --engine jolt --restitution 0.8 --time-step 1ns": "moves 4.43 nm in a step of 1 ns",

@@ -344,9 +344,8 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
         If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
     names = {as_compared(name): name for name in engine.rules}
-    has = ", ".join(engine.rules)
-    found = parameters_of(engine.name, names, has, typed)
-    found = {name: _value(engine, name, value) for name, value in found.items()}
+    raw = parameters_of(engine.name, names, list(engine.rules), typed)
+    found = {name: _value(engine, name, value) for name, value in raw.items()}
     body = {**engine.defaults, **found}
     missing = [name for name in engine.rules if name not in body]
     refuse(

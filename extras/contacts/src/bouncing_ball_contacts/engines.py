@@ -8,7 +8,7 @@ body. Laws are per unit of mass (:mod:`.schemes`); for two free bodies m is thei
 import difflib
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any, NamedTuple
@@ -242,11 +242,12 @@ def as_compared(name: str) -> str:
 
 
 def parameters_of(
-    engine: str, known: Mapping[str, str], has: str, typed: Parameters
+    engine: str, known: Mapping[str, str], names: Sequence[str], typed: Parameters
 ) -> dict[str, Any]:
     """Return what was typed by the names of the engine.
 
-    ``known`` has the name that each one stands for which may be typed, and ``has`` says them.
+    ``known`` has what each one stands for that may be typed, as it is compared; ``names`` are
+    those of the engine.
 
     Raises
     ------
@@ -257,9 +258,10 @@ def parameters_of(
     for each, value in typed.items():
         name = known.get(as_compared(str(each)))
         if name is None:
-            near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, known, 1)]
+            near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
             others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
-            raise Refused(f"{engine} does not use {each!r}: it has {has}{''.join(near or others)}")
+            hint = "".join(near or others)
+            raise Refused(f"{engine} does not use {each!r}: it has {', '.join(names)}{hint}")
         if name in found:
             raise Refused(f"{each!r} gives {name} twice")
         found[name] = value

@@ -863,6 +863,6 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
 def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the number, the threshold, the damping and how two numbers are combined, as typed."""
     combine = "combine" if engine.is_physx else ""
-    names = [engine.parameter, engine.set_by, engine.damped_by, combine]
-    found = parameters_of(engine.name, engine.names, " and ".join(filter(None, names)), typed)
+    names = filter(None, [engine.parameter, engine.set_by, engine.damped_by, combine])
+    found = parameters_of(engine.name, engine.names, list(names), typed)
     return {what: _READ[what](what, value) for what, value in found.items()}

@@ -77,7 +77,12 @@ def nearby(steps: int, count: int) -> Trials:
 
 @dataclass(frozen=True)
 class Law:
-    """A contact force per unit of mass; the parameters are arrays, one entry for each contact."""
+    """A contact force per unit of mass; the parameters are arrays, one entry for each contact.
+
+    Laws of explicit steps have ``push``, the acceleration in m/s² at a penetration p > 0 in m and
+    its rate w in m/s, and those of implicit steps ``implicit_velocity``, which is v⁺ of a step from
+    z if v is the velocity without the contact; what a solver gives is stepped by `OfSolver`.
+    """
 
     stiffness: Array
     damping: Array
@@ -98,20 +103,6 @@ class Law:
     def of_position(self) -> "Law":
         """The law whose velocity moves the body: the same one, but in Gazebo."""
         return self
-
-    def push(self, p: Array, w: Array, gravity: Array) -> Array:
-        """Return the acceleration in m/s² at a penetration p > 0 in m and its rate w in m/s.
-
-        A contact that a solver gives has none: it is stepped by `OfSolver`.
-        """
-        raise NotImplementedError(f"a force of {type(self).__name__}")
-
-    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
-        """Return v⁺ of an implicit step from z, if v is the velocity without the contact.
-
-        The laws of engines that take explicit steps have none.
-        """
-        raise NotImplementedError(f"implicit steps of {type(self).__name__}")
 
     def rest(self, gravity: float) -> Array:
         """Return the depth at rest in m, where the spring carries the body: k p = g."""
@@ -369,7 +360,7 @@ class SemiImplicit:
     pulls: bool = False
     approach: bool = False
 
-    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
+    def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         rate = np.maximum(-v, 0.0) if self.approach else -v
         push = law.push(-z, rate, g)
         return np.where(z < 0, free + h * (push if self.pulls else np.maximum(push, 0.0)), free)
@@ -384,7 +375,7 @@ class Implicit:
 
     ahead: bool = False
 
-    def velocity(self, law: Law, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
+    def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
         touching = z + h * free < 0 if self.ahead else z < 0
         return np.where(touching, np.maximum(free, law.implicit_velocity(z, free, h)), free)
 

@@ -162,7 +162,7 @@ MISTAKES = {
     f'{BALL} --stiffness "1 kN/m" --contact-time "1 ms"': "the stiffness or the contact time",
     f'{BALL} --stiffness "1,500 N/m"': "can be read as",
     f'{BALL} --stiffness "1 kN/m" --engine lammps-hertz': "no stiffness in N/m",
-    f"{BALL} --density cheese": "none of steel",
+    f"{BALL} --density cheese": "or 'rubber'",
     f"{BALL} --points 0": "no whole number from 1 to 1000",
     f"{BALL} --points two": "is not a valid integer",
     f'{BALL} --other-mass "1 kg"': "approach each other: --speed '2 m/s'",

@@ -17,6 +17,7 @@ from bouncing_ball_contacts.units import (
     Refused,
     in_si,
     positive,
+    refuse,
     step_in_si,
 )
 
@@ -121,10 +122,16 @@ def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None)
 def _write_script(found: Design, path: Path) -> None:
     text = drop_script(found)
     imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
-    if path.stem in re.findall(r"\w+", " ".join([found.engine, *imports])):
-        raise Refused(f"a script named {path.name} hides the module of the engine: rename it")
-    if path.exists():
-        raise Refused(f"{path} exists, and is not overwritten")
+    modules = re.findall(r"\w+", " ".join([found.engine, *imports]))
+    refuse(
+        [
+            (
+                path.stem in modules,
+                f"a script named {path.name} hides the module of the engine: rename it",
+            ),
+            (path.exists(), f"{path} exists, and is not overwritten"),
+        ]
+    )
     path.write_text(text, "utf-8")
 
 
@@ -167,19 +174,33 @@ def design_command(
     **bounce: Any,
 ) -> None:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    _print(_written_for(engine, bounce, {}, time_step, tolerance, pick, script), as_json)
+    found = _written_for(
+        engine,
+        body=bounce,
+        contact={},
+        time_step=time_step,
+        tolerance=tolerance,
+        pick=pick,
+        script=script,
+    )
+    _print(found, as_json)
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     """Return the values of texts NAME=VALUE."""
     found: dict[str, str] = {}
     for text in pairs:
-        name, equals, value = text.partition("=")
-        if not equals or not name.strip():
-            raise Refused(f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5")
-        if name.strip() in found:
-            raise Refused(f"{name.strip()} is given twice")
-        found[name.strip()] = value.strip()
+        name, equals, value = map(str.strip, text.partition("="))
+        refuse(
+            [
+                (
+                    not (equals and name),
+                    f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5",
+                ),
+                (name in found, f"{name} is given twice"),
+            ]
+        )
+        found[name] = value
     return found
 
 

@@ -732,7 +732,15 @@ def design(
     chosen = problem.best(rows, keeps) if pick is None else pick.strip().lower()
     names = ", ".join(map(repr, rows))
     refuse([(chosen not in rows, f"row {pick!r} is not one that is written here: {names}")])
-    found = Design(bounce, known.name, known, step, rows, chosen, ())
+    found = Design(
+        bounce=bounce,
+        engine=known.name,
+        source=known,
+        time_step=step,
+        rows=rows,
+        chosen=chosen,
+        notes=(),
+    )
     return replace(found, notes=tuple(_notes(found, problem, keeps)))
 
 

@@ -390,19 +390,19 @@ def _vector(name: str, value: Any) -> tuple[float, ...]:
         value = re.findall(r"[^\s,()\[\]\"']+", value)
     numbers = tuple(in_si(name, each, "") for each in np.atleast_1d(np.asarray(value, object)))
     least, most, words = _VECTORS[name]
-    if not least <= len(numbers) <= most:
-        raise Refused(f"{name} has {words}, not {len(numbers)}")
-    if name == "solref":
-        numbers += ENGINES["mujoco"].defaults["solref"][len(numbers) :]
-        first, second = numbers
-        # Numbers that lack their signs, such as 20000 86, would be a time constant of hours.
-        if not (first < 0 and second <= 0) and not (0 < first <= 1 and second > 0):
-            raise Refused(
-                f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, "
-                f"such as '{-abs(first):g} {-abs(second):g}', nor a time constant up to 1 s and a "
-                "damping ratio, both positive"
-            )
-    return numbers
+    refuse([(not least <= len(numbers) <= most, f"{name} has {words}, not {len(numbers)}")])
+    if name != "solref":
+        return numbers
+    first, second = numbers + ENGINES["mujoco"].defaults["solref"][len(numbers) :]
+    # Numbers that lack their signs, such as 20000 86, would be a time constant of hours.
+    is_either = (first < 0 and second <= 0) or (0 < first <= 1 and second > 0)
+    neither = (
+        f"solref = '{first:g} {second:g}' is neither two negative numbers, -k/m and -c/m, such as "
+        f"'{-abs(first):g} {-abs(second):g}', nor a time constant up to 1 s and a damping ratio, "
+        "both positive"
+    )
+    refuse([(not is_either, neither)])
+    return first, second
 
 
 def _spelled(value: Any) -> str:

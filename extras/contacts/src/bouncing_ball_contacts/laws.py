@@ -111,10 +111,6 @@ class Judged:
     verdict: str = "undecided"
 
 
-def root_mean_square(errors: Array) -> float:
-    return math.sqrt(float(np.mean(errors**2)))
-
-
 def _least_squares(law: ContactLaw, impacts: Impacts, curves: Curves) -> tuple[Array, Array]:
     """Return a of a law for each ratio, and what it misses of ln r.
 
@@ -159,7 +155,7 @@ def _judged(
         law=name,
         parameter=float(a[best, 0]),
         restitution=float(np.exp(law.log_r(a[best, 0], np.array(at)))),
-        rms=root_mean_square(r * np.expm1(-missed[best])),
+        rms=math.sqrt(float(np.mean((r * np.expm1(-missed[best])) ** 2))),
         needed=math.sqrt(worse[-1] / (-2 * math.log(REJECTED))) * float(np.mean(r)),
         probability=float(probability),
     )

@@ -247,7 +247,7 @@ def orbit_with_rest(
     1.9469
     """
     # The simulation is not needed by other orbits.
-    from bouncing_ball_beyond.simulation import TURN, Balls, Leaving, fly, follow, reduced
+    from bouncing_ball_beyond.simulation import TURN, Balls, follow, reduced
 
     check_ball(ball)
     check_table(table)
@@ -261,14 +261,12 @@ def orbit_with_rest(
             f"the table never falls faster than a ball: its greatest -w″ is"
             f" {amplitude * table.lift:.6g}"
         )
-    none = np.zeros(1)
     start = float(starts[0])
+    zero = np.zeros(1)
     for _ in range(CYCLES):
-        before = Balls(ball, none + amplitude, none, none + start, none, table)
-        time, speed = fly(before, Leaving(none, none, none, none + start, none, none, none))
-        turns, phase = reduced(start + time)
-        first = Balls(ball, none + amplitude, turns, phase, speed, table)
-        record = follow(first, MOST)[0][..., 0]
+        # A ball that is laid on the table where it lifts off leaves at once.
+        laid = Balls(ball, zero + amplitude, zero, zero + start, zero, table)
+        record = follow(laid, MOST)[0][1:, :, 0]
         turns, phase, u, _, rests, _, w, _ = record.T
         ends = np.flatnonzero((rests > 0) & (w == 0))
         if not len(ends) or not np.isfinite(rests[ends[0]]):

@@ -138,15 +138,12 @@ class ShakerAnswer:
     @property
     def reason(self) -> str:
         """Why a restitution coefficient is not good enough; empty if it is."""
-        no_orbit = [value > self.amplitude for value in self.saddle_node[:2]]
-        if any(no_orbit):
-            return (
-                f"the ball does not bounce, {_where(no_orbit)}, so that there is no height to"
-                " compare"
-            )
-        unstable = [value < self.amplitude for value in self.period_doubling[:2]]
-        if any(unstable):
-            return f"the orbit is unstable {_where(unstable)}, so that the height means nothing"
+        if not self.bounces:
+            where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
+            return f"the ball does not bounce, {where}, so that there is no height to compare"
+        if not self.stable:
+            where = WHERE[tuple(value < self.amplitude for value in self.period_doubling[:2])]
+            return f"the orbit is unstable {where}, so that the height means nothing"
         if not abs(self.error) <= self.tolerance:
             return "the heights of both models differ by more than the tolerance"
         return ""
@@ -215,22 +212,20 @@ class ShakerAnswer:
         if self.amplitude * self.table.lift < 1:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
+        verdict = "A restitution coefficient is good enough"
         if begun == 0 or doubled == 2:
-            return [
-                *sentences,
-                f"Whether a restitution coefficient is good enough has no answer: {reason}.",
-            ]
-        verdict = f"is not good enough: {reason}" if reason else "is good enough"
-        return [*sentences, f"A restitution coefficient {verdict}."]
+            verdict = f"Whether a restitution coefficient is good enough has no answer: {reason}"
+        elif reason:
+            verdict = f"A restitution coefficient is not good enough: {reason}"
+        return [*sentences, f"{verdict}."]
 
 
-def _where(fails: list[bool]) -> str:
-    """In which of the two models, restitution and contact, something fails that fails in one."""
-    if all(fails):
-        return "in both models"
-    return "in the restitution model only" if fails[0] else "on the contact only"
-
-
+WHERE = {
+    (True, True): "in both models",
+    (True, False): "in the restitution model only",
+    (False, True): "on the contact only",
+}
+"""Where something fails, by whether it fails in the restitution model and on the contact."""
 BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
 """By the number of models, restitution and contact, in which the ball bounces."""
 STABLE = ("stable", "stable in one of the two models only", "unstable, its period has doubled")

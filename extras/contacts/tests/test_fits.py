@@ -14,6 +14,7 @@ from bouncing_ball_contacts import Refused, design, fit
 from bouncing_ball_contacts.intervals import curves_of, estimates, impacts_of, without_scatter
 from bouncing_ball_contacts.laws import LAWS, ContactLaw, judge
 from bouncing_ball_contacts.recordings import Recording, rounding_of
+from bouncing_ball_contacts.tables import experiments
 
 SPEC = importlib.util.spec_from_file_location(
     "interval_coverage", Path(__file__).with_name("interval_coverage.py")
@@ -130,7 +131,7 @@ def test_a_number_that_is_typed_wrongly_is_pointed_at():
     typed = {"v (m/s)": v, "e": [0.8, 0.08, 0.81, 0.8, 0.8], "error": [0.01] * 5}
     found = fit(typed)
     assert found.interval[0] < found.restitution < found.interval[1]
-    assert any("r = 0.08 at 3.13 m/s is far" in note for note in found.notes)
+    assert any("r = 0.08 at 3.13 m/s: far" in note for note in found.notes)
     # Two that are alike are not one that is typed wrongly.
     for e in ([0.8, 0.75, 0.81, 0.8, 0.8], [0.8, 0.4, 0.41, 0.8, 0.8]):
         assert not any("far from" in note for note in fit({**typed, "e": e}).notes)
@@ -322,3 +323,39 @@ def test_a_fit_is_a_bounce_for_an_engine():
     assert 7.314e-4 < fit("croquet").bounce().contact_time < 1.06 * 7.314e-4
     short = fit("croquet", contact_time="0.3657 ms").bounce()
     assert short.contact_time == pytest.approx(fit("croquet").bounce().contact_time / 2)
+
+
+@pytest.mark.parametrize(
+    ("readings", "named"),
+    [
+        ({"height (mm)": [1000, 640, 412, 262, 260, 107]}, ("r = 0.996 at", "r = 0.642 at")),
+        ({"height (mm)": [1000, 640, 410, 226, 168, 107, 69, 44]}, ("r = 0.742", "r = 0.862")),
+        ({"height (mm)": [1000, 640, 412, 262, 107]}, ("r = 0.639 at",)),
+        (
+            {"time (s)": [0, 0.9, 1.62, 2.25, 2.65, 3.02, 3.32, 3.56]},
+            ("r = 0.875", "r = 0.635", "r = 0.925"),
+        ),
+    ],
+)
+def test_one_wrong_reading_is_named_by_the_impacts_that_it_enters(readings, named):
+    """Of a top that was misread r was 0.83 for 0.80, and no line said so: one r was too high and
+    the next one too low.
+    """
+    (note,) = [note for note in fit(readings).notes if "as by one wrong number" in note]
+    assert note.count("r = ") == len(named) and all(each in note for each in named)
+
+
+def test_no_reading_of_the_experiments_is_called_wrong():
+    for name in experiments():
+        assert not any("wrong number" in note for note in fit(name).notes)
+
+
+def test_what_a_table_lacks_is_explained(tmp_path):
+    """Frames beside a frame rate, and a title with commas, were columns that are not known."""
+    path = tmp_path / "film.csv"
+    path.write_text("# frame rate: 240\nframe,y_px\n0,10\n1,11\n")
+    with pytest.raises(Refused, match=r"divide frames by their rate, for a column t \(s\)"):
+        fit(path)
+    path.write_text("Heights of a ball, third run, indoors\n1000,640,410\n")
+    with pytest.raises(Refused, match="a title or a comment begins with #"):
+        fit(path)

@@ -20,6 +20,7 @@ from bouncing_ball_contacts.intervals import (
     curves_of,
     estimates,
     impacts_of,
+    misread,
     without_contacts,
 )
 from bouncing_ball_contacts.laws import LINEAR, REJECTED, Judged, judge
@@ -245,10 +246,8 @@ def fit(
     curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
-    # A number that is typed wrongly is by far the farthest one.
-    far = np.abs(impacts.log_r - np.median(impacts.log_r))
-    farthest = int(np.argmax(far))
-    is_far = len(v) > 3 and far[farthest] > max(0.2, 5 * float(np.sort(far)[-2]))
+    wrong = misread(impacts)
+    each_r = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in wrong]
     if scattering.low > 0:
         raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
     _, low, high = (still or scattering).of_r
@@ -268,9 +267,9 @@ def fit(
     # The severest first.
     notes = [
         (
-            is_far,
-            f"r = {impacts.restitution[farthest]:.3g} at {v[farthest]:.3g} m/s is far from all "
-            "others: is a number wrong? --leave-out leaves its line out",
+            each_r,
+            f"{', '.join(each_r)}: far from all others, as by one wrong number; --leave-out leaves "
+            "its line out",
         ),
         (r > 1, f"r = {r:.4f} is above 1 within its error: 1 is taken"),
         # A speed that is typed is rounded.

@@ -43,6 +43,7 @@ from scipy import linalg, optimize, special
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.schemes import Array
+from bouncing_ball_contacts.tables import Lines
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
 
 ACCEPTED = 0.05
@@ -139,6 +140,26 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         _, after = speeds_of(after, drag)
     readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
     return Impacts(before, np.log(after / before), readings, KINDS[kind][1])
+
+
+def misread(impacts: Impacts) -> Lines:
+    """Return the impacts that one wrong reading moved away from all others; none if there is none.
+
+    A top of a series enters two impacts with opposite signs, and a time enters three. What a
+    reading moved is by far more than what is left without it.
+    """
+    away = impacts.log_r - np.median(impacts.log_r)
+    readings = impacts.readings
+    # A single reading of a chain moves nothing.
+    squares = np.sum(readings**2, axis=0)
+    moved = readings * (readings.T @ away) / np.where(squares > 0, squares, 1.0)
+    left = np.abs(away[:, None] - moved).max(axis=0)
+    worst = int(np.argmin(left))
+    found = np.flatnonzero(readings[:, worst])
+    # Two impacts seldom deviate oppositely by themselves, as one may.
+    least = 0.05 if len(found) > 1 else 0.2
+    is_far = np.abs(moved[:, worst]).max() > max(least, 5 * left[worst])
+    return found if is_far and len(away) - len(found) > 2 else found[:0]
 
 
 def without_contacts(recording: Recording, lasts: float) -> Recording:

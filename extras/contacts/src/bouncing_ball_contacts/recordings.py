@@ -337,7 +337,9 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        raise Refused(f"{table.name}: no bounces, as {there}: {HEADINGS}")
+        is_film = any("frame" in each.name.lower() for each in table.columns)
+        film = "divide frames by their rate, for a column t (s); " if is_film else ""
+        raise Refused(f"{table.name}: no bounces, as {there}: {film}{HEADINGS}")
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
         is_counted = each.role in ("trial", "height") and re.search(r"\d$", each.name + other.name)
@@ -359,7 +361,7 @@ def _contact_time(table: Table) -> float:
     return sum(known) / max(len(known), 1)
 
 
-def _recording(table: Table) -> Recording:
+def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     """Return the recording of one ball."""
     kind, columns = _layout(table)
     errors = table.of("uncertainty")[:1] if kind == "coefficients" else []
@@ -379,7 +381,8 @@ def _recording(table: Table) -> Recording:
         for each in table.columns
         if each.name and each not in used and each.role not in TEXTS
     ]
-    gaps = ", ".join(str(line) for line in table.lines[~is_there])
+    is_gap = ~is_there & ~np.isin(table.lines, leave_out)
+    gaps = ", ".join(str(line) for line in table.lines[is_gap])
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     notes = [
         *((True, note) for note in recording.notes),
@@ -439,9 +442,9 @@ def read(
             )
     balls = table.parts("ball")
     if ball is None:
-        return {name: _recording(part) for name, part in balls.items()}
+        return {name: _recording(part, leave_out) for name, part in balls.items()}
     for name, part in balls.items():
         if name.lower() == ball.lower():
-            return {name: _recording(part)}
+            return {name: _recording(part, leave_out)}
     known = ", ".join(filter(None, balls)) or "no column of balls"
     raise Refused(f"{table.name} has {known}: name one, --ball")

@@ -46,7 +46,7 @@ NAMES = {
 HEADINGS = (
     "name them drop height and rebound height, time, interval, height, speed before and speed "
     "after, speed and restitution, or t and y, and write several balls one below the other, with a "
-    "column 'ball'"
+    "column 'ball'; a title or a comment begins with #"
 )
 _ROLES = {
     re.sub(r"[ .]", "", name.lower()): role

@@ -78,32 +78,28 @@ class Balls:
 
 
 @np.errstate(divide="ignore", invalid="ignore")
-def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> tuple:
-    """First zeros of functions f ≥ 0 of the time, one for each ball, by :func:`.safe_steps`.
+def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> NDArray:
+    """The times of first zeros of functions f ≥ 0, one for each ball, by :func:`.safe_steps`.
 
     There are none before the times ``start``. ``look(t, *given)`` is a later time before which
-    there is none either, f, f′ and f″ there, K, J, and where the search is over without a zero.
-    Returned are the times, NaN for the last balls if they are fewer than ``fewest``, and whether f
-    is zero there.
+    there is none either, f, f′ and f″ there, K and J. The last balls are left out, as NaN, if they
+    are fewer than ``fewest``.
     """
     time = np.full(start.shape, np.nan)
-    zero = np.zeros(start.shape, bool)
     left = np.arange(start.size)
     rows = np.array([start, *given])
     steps = 0
     while left.size >= fewest and steps < STEPS:
         steps += 1
-        t, f, slope, second, bend, jerk, over = look(*rows)
+        t, f, slope, second, bend, jerk = look(*rows)
         step, last = safe_steps(t, np.maximum(f, 0.0), slope, second, bend, jerk)
-        rows[0] = np.where(over, t, t + step)
-        done = last | over
-        if done.any():
-            time[left[done]] = rows[0, done]
-            zero[left] = last & ~over
-            (going,) = (~done).nonzero()
+        rows[0] = t + step
+        if last.any():
+            time[left[last]] = rows[0, last]
+            (going,) = (~last).nonzero()
             left = left[going]
             rows = rows.take(going, axis=1)
-    return time, zero
+    return time
 
 
 def landings(
@@ -119,11 +115,11 @@ def landings(
         bend, jerk, ascent, descent, *state = given
         t = np.where((ascent <= t) & (t < descent), descent, t)
         gap, w, *waves = state
-        return t, *table.flights(t, gap, w, waves), bend, jerk, False
+        return t, *table.flights(t, gap, w, waves), bend, jerk
 
     limits = [1 + bend * amplitude, jerk * amplitude, absolute - aloft, absolute + aloft]
     fewest = FEW if table.compiled else 1
-    time, _ = first_zeros(look, start, [*limits, gap, w, *waves], fewest)
+    time = first_zeros(look, start, [*limits, gap, w, *waves], fewest)
     for i in np.isnan(time).nonzero()[0] if table.compiled else ():
         time[i], _ = one_ball.landing(*(each[i] for each in (start, gap, w, *waves, amplitude)))
     return time
@@ -138,13 +134,14 @@ def emergences(
     def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state
         position, rate, second = table.flights(t, gap, w, waves)
-        return t, -position, -rate, -second, bend, jerk, (rate <= 0) | (position >= 0)
+        # The search ends where it falls back, or is above: f = 0 there.
+        goes_on = (rate > 0) & (position < 0)
+        return t, np.where(goes_on, -position, 0.0), -np.abs(rate), -second, bend, jerk
 
     _, _, bend, jerk, *_ = table.bounds
     limits = [1 + bend * amplitude, jerk * amplitude]
-    time, rises = first_zeros(look, start, [*limits, gap, w, *waves])
-    position, rate, _ = table.flights(time, gap, w, waves)
-    return np.where(rises | ((position >= 0) & (rate > 0)), time, np.inf)
+    time = first_zeros(look, start, [*limits, gap, w, *waves])
+    return np.where(table.flights(time, gap, w, waves)[1] > 0, time, np.inf)
 
 
 def resumptions(
@@ -156,12 +153,15 @@ def resumptions(
         gap, w, *waves = state
         position, rate, second = table.flights(t, gap, w, waves)
         third = table.third(t, w, rate, waves)
-        f = position + kappa * rate
-        return t, f, rate + kappa * second, second + kappa * third, bend, jerk, position >= 0
+        # Above the level there is nothing to resume, and the search ends: f = 0 there.
+        f = np.where(position < 0, position + kappa * rate, 0.0)
+        slope = np.where(position < 0, rate + kappa * second, -1.0)
+        return t, f, slope, second + kappa * third, bend, jerk
 
     _, _, bend, jerk, snap, _ = (amplitude * bound for bound in table.bounds)
     limits = [1 + bend + kappa * jerk, jerk + kappa * snap]
-    return first_zeros(look, np.zeros(gap.shape), [*limits, kappa, gap, w, *waves])
+    time = first_zeros(look, np.zeros(gap.shape), [*limits, kappa, gap, w, *waves])
+    return time, table.flights(time, gap, w, waves)[0] < 0
 
 
 def instants(

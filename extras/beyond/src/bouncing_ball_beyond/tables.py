@@ -539,10 +539,6 @@ class Sine(Table):
         """The sine, which has no parameters."""
         return super().at(**values) if values else self
 
-    def rows(self, which: Any) -> Any:
-        """The sine, which has no parameters."""
-        return self
-
     def __call__(self, tau: Values, order: int = 0) -> Values:
         """sin τ or a derivative of it."""
         value = CYCLE[order % 2](tau)

@@ -384,3 +384,7 @@ def test_what_is_refused(make, message):
     with pytest.raises(ValueError, match=message) as caught:
         make()
     assert "\n" not in str(caught.value)
+
+
+def test_an_instant_has_no_duration_in_its_own_time_either():
+    assert float(Rigid(0.5).free(2.0)) == 0

@@ -422,3 +422,13 @@ def test_thresholds_with_a_known_free_impact_and_of_one_quantity():
     (one,) = error_thresholds(BALL, amplitude=1.0, quantities=["phase"]).values()
     assert list(both) == ["phase", "saddle_node"]
     assert one.ratio == pytest.approx(both["phase"].ratio, rel=1e-10)  # 1e-12 from each search
+
+
+def test_a_ball_that_leaves_slowly_has_the_values_of_its_orbit():
+    """With r = 0.1 it leaves with a relative speed of half of g/Ω."""
+    ball = SpringDamper(50.0, 0.1)
+    known = orbit(ball, amplitude=2.8)
+    assert known.relative_bounce_velocity < 1
+    found = contact_values(ball, amplitude=2.8, quantities=["max_height", "phase"])
+    assert found["max_height"] == pytest.approx(known.max_height, rel=1e-12)
+    assert found["phase"] == pytest.approx(known.phase, rel=1e-12)

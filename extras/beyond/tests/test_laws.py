@@ -665,3 +665,17 @@ def test_derivatives_in_one_panel_are_those_of_differences() -> None:
         along = end(x + 1j * H * nudge).imag / H
         slopes = [(end(x + h * nudge) - end(x - h * nudge)) / (2 * h) for h in (step, step / 2)]
         np.testing.assert_allclose(along, (4 * slopes[1] - slopes[0]) / 3, rtol=1e-7, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "scale"),
+    [
+        (adams_impact, lambda stiffness, v: (v**2 / stiffness) ** 0.4),
+        (adams_impact_linear, lambda stiffness, v: v / stiffness**0.5),
+        (simscape_contact, lambda stiffness, v: v / stiffness**0.5),
+    ],
+)
+def test_a_law_of_an_impact_has_its_full_damping_at_a_tenth_of_the_depth(law, scale):
+    """The depth that the page on laws names, for one who copies it into a multibody program."""
+    found = law(restitution=0.7, duration=0.2, speed=3.5).parameters
+    assert found["depth"] == pytest.approx(0.1 * scale(found["stiffness"], 3.5), rel=1e-12)

@@ -19,6 +19,23 @@ def test_the_kinds_of_motions():
     assert (found.reason == "").all()
 
 
+@pytest.mark.parametrize(
+    ("call", "given"),
+    [
+        (bb.motion_of, {"phase": 0.0, "velocity": -np.pi}),
+        (bb.lyapunov, {"phase": 0.0, "velocity": -np.pi}),
+        (bb.basins, {"starts": 2}),
+        (bb.orbit_diagram, {"starts": 2, "samples": 4}),
+    ],
+)
+def test_a_motion_without_further_arguments_is_that_of_two_thousand_impacts(call, given):
+    """A chaotic ball is followed to the last of them, so that one more would be seen."""
+    chaotic = {"amplitude": [2.3] if call is bb.orbit_diagram else 2.3}
+    counts = {name: each for name, each in given.items() if name in ("starts", "samples")}
+    found = call(bb.Rigid(0.85), **chaotic, **counts)
+    assert found.identical(call(bb.Rigid(0.85), **chaotic, **given, impacts=2000))
+
+
 def test_two_impacts_in_two_periods_between_the_first_two_doublings():
     """At ϖ = 20 and r = 0.65 the 1-T orbit doubles its period at 1.23 and loses it before 1.35."""
     ball = bb.SpringDamper(20.0, restitution=0.65)

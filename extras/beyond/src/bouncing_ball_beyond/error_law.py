@@ -438,9 +438,9 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
     if name == "saddle_node":
         kind = "saddle-node"
         x = impact.line - impact.shift
+        y = impact.shift * impact.line / table.slope * table(table.steepest, 3)
         amplitude = x / table.slope
         phase = table.steepest - impact.shift
-        y = impact.shift * amplitude * table(table.steepest, 3)
     else:
         kind = "period doubling"
         across, along, share, turn = _doubling_shift(impact, table)
@@ -449,6 +449,9 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
         amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
         amplitude = amplitude * (1 + share)
         phase = phase + turn
+    if table.compiled:
+        # On a sine one instant has the velocity x and the push y.
+        amplitude, phase = table.amplitude_at(x, y)
     # The impacts of a corrected ball are at the centroids, and all others start before them.
     delay = 0.0 if row.sinks else impact.centroid
     guess = [phase - delay, impact.half + x - (1 - y) * delay]

@@ -161,7 +161,6 @@ class ForceLaw(Ball):
 
     @property
     def parameters(self) -> dict[str, Values]:
-        """Names and values of the parameters of the force."""
         return dict(self.values)
 
     def at(self, **values: Any) -> Any:
@@ -181,7 +180,6 @@ class ForceLaw(Ball):
 
     @cached_property
     def _origin(self) -> Any:
-        """The law of one ball from which `at` has made this one, or one of its own balls."""
         arrays = {name: np.ravel(x)[0] for name, x in self.values.items() if np.ndim(x)}
         return replace(self, values={**self.values, **arrays}) if arrays else self
 
@@ -217,7 +215,6 @@ class ForceLaw(Ball):
 
     @property
     def integrated(self) -> bool:
-        """Whether the force has no kinks."""
         return not self.kinks
 
     @property
@@ -280,7 +277,6 @@ class ForceLaw(Ball):
     def first_impact(
         self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
     ) -> tuple[Values, Impact]:
-        """T of the first releases, and the impacts."""
         return self._followed(tau, u, amplitude, gravity, table=table)
 
     def free(self, u: Values) -> Values:
@@ -378,12 +374,10 @@ class ForceLaw(Ball):
 
     @cached_property
     def _free_impacts(self) -> dict[float, list]:
-        """What :meth:`_free_impact` has found, by the numbers of the ranges."""
         return {}
 
     @cached_property
     def _ranges(self) -> dict[float, NDArray | None]:
-        """What :meth:`_range` has found, by the numbers of the ranges."""
         return {}
 
     @np.errstate(invalid="ignore")
@@ -426,7 +420,6 @@ class ForceLaw(Ball):
         return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
 
     def own(self, given: Mapping) -> dict[str, Values]:
-        """The parameters of the law among what is given."""
         return {name: given[name] for name in self.values}
 
     def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
@@ -552,7 +545,6 @@ def check_force(law: ForceLaw) -> None:
 
 
 def _check_one(law: ForceLaw, given: dict) -> None:
-    """Check the force of one ball, whose parameters are given."""
     depth = _depth_of_one(law)
     depths = depth * np.geomspace(1e-3, 30.0, 321)
     rates = np.linspace(-3.003, 3.0, 241)

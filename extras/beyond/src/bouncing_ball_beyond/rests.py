@@ -40,16 +40,15 @@ CYCLES = 20
 
 @dataclass(frozen=True)
 class RestEquations(OrbitEquations):
-    """Orbits with a rest: z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), with the lift-off at τ₀.
-
-    After the last of the k impacts the bounces are summed up.
+    """Orbits with a rest: z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), with the lift-off at τ₀, and
+    the functions of :class:`OrbitEquations`. After the last of the k impacts the bounces are summed
+    up.
     """
 
     unknowns = 2
 
     @cached_property
     def size(self) -> int:
-        """2k + 1."""
         return 2 * self.impacts + 1
 
     kinds = (
@@ -63,7 +62,6 @@ class RestEquations(OrbitEquations):
     """The first two have no tests: both multipliers are zero."""
 
     def orbit(self, z: NDArray, kind: str = "") -> "RestOrbit":
-        """One orbit with a rest."""
         return RestOrbit(self, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
@@ -102,13 +100,11 @@ class RestEquations(OrbitEquations):
         return np.cumprod(np.abs(speeds[:, ::-1]) < TAIL, axis=1)[:, ::-1].astype(bool)
 
     def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
-        """As of orbits without a rest, by one matrix."""
         legs = np.stack([-linear.legs[..., 0], 0 * linear.legs[..., 0]], axis=-1)
         matrix = np.concatenate([linear.derivatives, border], axis=1)
         return solved_or_nan(matrix, np.concatenate([legs, right], axis=1))
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        """The equations, shape (rows, N - p), and their Jacobian, shape (rows, N - p, N)."""
         linear = self.linear(z)
         return linear.legs[..., 0], linear.derivatives
 
@@ -134,7 +130,9 @@ class RestEquations(OrbitEquations):
         return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
 
     def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
-        """How far the ball is above the table where flights turn back, without the last bounces."""
+        """How far the ball is above the table where flights turn back, without the last slow
+        bounces.
+        """
         ends = self.ends(z)
         slow = self._tail(ends.speed)
         slow[:, 0] = False
@@ -142,11 +140,9 @@ class RestEquations(OrbitEquations):
         return super().clearance(z, _Lifted(*ends._replace(flight=time)))
 
     def contact_clearance(self, z: NDArray) -> NDArray:
-        """There are no contacts."""
         return np.full(len(z), FAR)
 
     def halves(self, z: NDArray) -> NDArray:
-        """There are no halves."""
         return np.ones((len(z), 1))
 
     def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
@@ -161,7 +157,6 @@ class _Superstable(Linear):
 
     @property
     def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
-        """Both are zero."""
         return np.zeros(len(self.legs)), np.zeros(len(self.legs))
 
 
@@ -239,12 +234,10 @@ def orbit_with_rest(
 
     Examples
     --------
-    >>> from bouncing_ball_beyond import Rigid, follow
+    >>> from bouncing_ball_beyond import Rigid
     >>> orbit = orbit_with_rest(Rigid(0.3), amplitude=1.9)
     >>> orbit.periods, round(orbit.rest, 6)
     (1, 0.449792)
-    >>> round(follow(orbit, to=2.1).first("end of a rest").amplitude, 4)
-    1.9469
     """
     # The simulation is not needed by other orbits.
     from bouncing_ball_beyond.simulation import TURN, Balls, follow, reduced

@@ -351,13 +351,11 @@ def on_shaker(
 
 
 def _half_stroke(table: Table) -> float:
-    """Half of the distance between the lowest and the highest position, in units of W."""
     highest, lowest = table.peaks
     return (highest - lowest) / 2
 
 
 def _one_of(**quantities: float | str | None) -> str:
-    """The name of the only quantity that is given."""
     given = [name for name, value in quantities.items() if value is not None]
     if len(given) != 1:
         raise ValueError(f"exactly one of {', '.join(quantities)} must be given")

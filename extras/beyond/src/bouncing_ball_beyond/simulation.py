@@ -71,7 +71,6 @@ class Balls:
     map: ImpactMap | None = None
 
     def take(self, which: Any) -> "Balls":
-        """Some of the balls, by a mask or their indices."""
         arrays = ("amplitude", "turns", "phase", "speed")
         rows = {name: getattr(self, name)[which] for name in arrays}
         return replace(self, ball=self.ball.rows(which), **rows)
@@ -254,7 +253,6 @@ def may_sink(gap: Values, w: Values, strongest: NDArray, left: NDArray) -> NDArr
 
 
 def reduced(phase: Values) -> tuple[NDArray, NDArray]:
-    """:func:`.one_ball.reduced` for arrays."""
     turns = np.floor(phase / TURN + 0.5)
     return turns, phase - turns * TURN
 
@@ -318,7 +316,6 @@ def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
 
 
 def follow_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
-    """:func:`follow` for balls that have a scalar loop, one after the other."""
     given: Any = balls.ball.looped(balls.table)
     state = balls.turns, balls.phase, balls.speed, balls.amplitude, *given, balls.ball.kappa
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
@@ -336,7 +333,6 @@ def follow_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
 def follow_by_map(
     balls: Balls, contacts: ImpactMap, impacts: int
 ) -> tuple[NDArray, NDArray, Balls]:
-    """:func:`follow` for balls with a map of their contacts."""
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     turns, phase, speed = balls.turns.copy(), balls.phase.copy(), balls.speed.copy()
     done = np.zeros(balls.phase.size, int)
@@ -484,7 +480,6 @@ def dataset(
 
 
 def described(found: xr.Dataset, descriptions: Mapping) -> xr.Dataset:
-    """A dataset whose variables have a long name, a symbol and a unit."""
     for name in found.variables:
         if name in descriptions:
             labels = zip(("long_name", "symbol", "units"), descriptions[name], strict=True)

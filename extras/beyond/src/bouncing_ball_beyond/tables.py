@@ -15,17 +15,15 @@ import numpy as np
 from bouncing_ball_beyond.one_ball import CHATTER, TURN
 
 SAMPLES = 64
-"""Samples in a period of the highest harmonic: between two of them a derivative of W changes by
-1.2e-3 of the size of the second derivative after it, over k².
-"""
+"""Samples in a period of the highest harmonic."""
 
 JUMP = 2.0
-"""How many times larger than all other steps between samples the one from the last to the first may
-be.
+"""The step from the last sample to the first, over all other steps, up to which a period is
+smooth.
 """
 ROUGH = 0.1
-"""The share of the upper harmonics in the acceleration (root of the mean square) above which
-samples do not tell by themselves how many harmonics are meant.
+"""The share of the upper harmonics in the acceleration above which samples do not tell how many are
+meant.
 """
 
 FUNDAMENTAL = {"harmonic_1": 1.0, "phase_1": 0.0}
@@ -141,7 +139,7 @@ class Table:
             The highest harmonic that is kept, by default all that the samples tell apart. Noise
             of heights counts k² times in the acceleration: give it for measured ones.
         acceleration : bool
-            Whether the values are accelerations, whose harmonics are divided by -k².
+            Whether the values are accelerations.
 
         Raises
         ------
@@ -197,9 +195,8 @@ class Table:
         harmonics: Any,
         gravity: float = 9.80665,
     ) -> tuple["Table", float]:
-        """The table of a measured acceleration, with a greatest |W″| of 1, and its Λ.
-
-        The harmonics of a known frequency are fitted by least squares.
+        """The table of a measured acceleration by least squares, with a greatest |W″| of 1, and its
+        Λ.
 
         Parameters
         ----------
@@ -208,8 +205,7 @@ class Table:
         acceleration : array_like, shape (samples,)
             Upwards, in m/s²; a constant part, such as gravity, does not count.
         frequency : float
-            That of the table in Hz. Of two frequencies it is the greatest of which both are
-            multiples.
+            That of the table in Hz; of two frequencies the greatest of which both are multiples.
         harmonics : int or list of int
             The highest harmonic, or the orders of all that are fitted, such as [12, 17].
         gravity : float
@@ -442,8 +438,8 @@ class Table:
         return phase, np.maximum.accumulate(np.maximum(angles, 0))
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
-        """The phase after the steepest one, or before it (-1), at which W′ is a given slope; the
-        steepest one for slopes above the greatest one.
+        """The phase after the steepest one, or before it (-1), at which W′ is a slope, if there
+        is one.
         """
         phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
@@ -519,7 +515,7 @@ class Table:
 
 
 class Sine(Table):
-    """W = sin τ, the table of the paper, whose formulas are closed."""
+    """W = sin τ, the table of the paper: the functions of a table by closed formulas."""
 
     compiled = True
 
@@ -536,32 +532,26 @@ class Sine(Table):
         return "Sine()"
 
     def at(self, **values: Values) -> Any:
-        """The sine, which has no parameters."""
         return super().at(**values) if values else self
 
     def __call__(self, tau: Values, order: int = 0) -> Values:
-        """sin τ or a derivative of it."""
         value = CYCLE[order % 2](tau)
         return -value if order % 4 > 1 else value
 
     def rise(self, start: Values, time: Values) -> tuple:
-        """sin and cos at a time after a start, less those there."""
         half = time / 2
         middle = start + half
         part = 2 * np.sin(half)
         return part * np.cos(middle), -part * np.sin(middle)
 
     def waves(self, phase: Values, amplitude: Values) -> list:
-        """Λ cos τ and Λ sin τ."""
         sine, versine = swing(phase)
         return [amplitude * (1 - versine), amplitude * sine]
 
     def pulls(self, waves: Values) -> tuple:
-        """w′, -w″ and -w‴ at the start."""
         return waves[0], waves[1], waves[0]
 
     def flights(self, t: Values, gap: Values, w: Values, waves: Values) -> tuple:
-        """δ, δ′ and δ″ a time t after a release."""
         x, y = waves
         sine, versine = swing(t)
         position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
@@ -573,15 +563,12 @@ class Sine(Table):
         return waves[0] + w - t - rate
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
-        """± arccos of the slope."""
         return side * np.arccos(np.clip(slope, -1, 1))
 
     def phase_of_angle(self, angle: Values) -> Values:
-        """The angle itself."""
         return angle
 
     def instant(self, speed: Values, amplitude: Values) -> tuple:
-        """The point at the distance Λ from the origin whose abscissa is the speed."""
         with np.errstate(invalid="ignore"):
             height = np.sqrt((amplitude - speed) * (amplitude + speed))
             if np.iscomplexobj(speed):
@@ -591,7 +578,6 @@ class Sine(Table):
         return phase, height, height, speed
 
     def amplitude_at(self, speed: Values, push: Values) -> tuple:
-        """The distance of a point from the origin, and its angle."""
         return np.hypot(speed, push), np.arctan2(push, speed)
 
     def levels(self, amplitude: Values) -> Values:
@@ -600,7 +586,6 @@ class Sine(Table):
         return np.stack([level, np.pi - level], axis=-1)
 
     def lift_offs(self, amplitude: Values) -> Values:
-        """arcsin 1/Λ, if Λ > 1."""
         level = np.asarray(1 / np.maximum(amplitude, 1.0))
         return np.arcsin(np.where(level < 1, level, np.nan))[..., np.newaxis]
 

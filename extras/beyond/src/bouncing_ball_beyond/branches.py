@@ -154,10 +154,7 @@ class FollowedBranch:
 
 
 class SpecialCurve(FollowedBranch):
-    """Special orbits of one kind along two parameters: a `FollowedBranch` with their kind.
-
-    Its ``special`` orbits are those of codimension two.
-    """
+    """Special orbits of one kind along two parameters, with those of codimension two."""
 
     _where = "this curve; its orbits of codimension two are"
 
@@ -212,10 +209,7 @@ class _Passed(NamedTuple):
 def followed(
     start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
 ) -> list[Any]:
-    """Branches from their starts to a value of their parameter, with their special orbits.
-
-    ``own`` is the kind of the special orbits at the starts, which are not listed.
-    """
+    """Branches with their special orbits, but without those of the kind ``own`` at the starts."""
     steps = march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
@@ -261,10 +255,8 @@ def followed(
 
 
 def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period.
-
-    Curves of saddle-nodes do so where the doubling of half the period is a generalized one.
-    """
+    """Where orbits merge with those of half their period; on curves of saddle-nodes this is a
+    generalized doubling of half the period."""
     if not equations.kind:
         return halved_at(equations, ends)
     half, near = equations.halved(ends)

@@ -1,7 +1,4 @@
-"""Orbits along a parameter, cascades of period doublings, and the limits of orbits with one impact.
-
-Many branches, rows, are followed side by side.
-"""
+"""Orbits along a parameter, cascades of doublings, and the limits of orbits with one impact."""
 
 from collections.abc import Iterable
 from dataclasses import replace

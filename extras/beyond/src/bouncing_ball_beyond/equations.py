@@ -36,11 +36,8 @@ VANISHED = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Legs (rows, k, q), for q unknowns of an impact, and the times of their flights (rows, k).
-
-    Their derivatives (rows, k, q, q + 2 + p) are by the unknowns of the impact, by τ and u of the
-    next one, and by the p parameters.
-    """
+    """Legs (rows, k, q), their derivatives (rows, k, q, q + 2 + p) by the q unknowns of the impact,
+    τ and u of the next one and the p parameters, and their times of flight (rows, k)."""
 
     legs: NDArray
     derivatives: NDArray
@@ -415,11 +412,8 @@ class OrbitEquations:
     def least_release(
         self, linear: Linear | None, z: NDArray, flights: Flights | None = None
     ) -> NDArray:
-        """How well balls leave the table after impacts: the least of all, zero if one does not.
-
-        It is the rate of the release function, the relative speed after an instant, or the summit
-        of the flight after an instant below the table. Instants need no derivatives.
-        """
+        """How well balls leave after impacts, the least of all: the rate of the release, or δ′ of an
+        instant, which needs no derivatives, or the summit after one below the table."""
         if linear is not None and self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)
         flights = flights or self.ends(z)

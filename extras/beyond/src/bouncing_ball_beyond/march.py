@@ -52,9 +52,7 @@ CLOSED = "the branch is closed: it is back at its start"
 
 
 class Solution(NamedTuple):
-    """What Newton's method ends with, by rows: orbits, which of them are found, and the tangent of
-    their curve, with normal · tangent = 1.
-    """
+    """Orbits by rows, which of them are found, and tangents with normal · tangent = 1."""
 
     z: NDArray
     found: NDArray
@@ -99,11 +97,8 @@ def newton(
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
-    """Special orbits; only rows that are not found yet go on, because their gradients cost.
-
-    As long as steps to points become shorter fast, gradients are changed by Broyden's rule: they
-    explain the last value, which should have been zero.
-    """
+    """Special orbits; only rows that are not found yet go on, because their gradients cost: as long
+    as steps to points become shorter fast, they are changed by Broyden's rule."""
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
@@ -200,10 +195,8 @@ def _same_sign(before: Points, after: Points) -> Points:
 def _predicted(
     equations: OrbitEquations, here: Points, step: NDArray, units: NDArray, window: NDArray
 ) -> tuple:
-    """Steps along the tangents; one that would leave its window ends there, at this parameter.
-
-    Returns their lengths, ends and normals, which are the last ones, and their numbers in z.
-    """
+    """Steps along the tangents, up to the window: their lengths, ends and normals, which of them
+    are the last ones, and the number of the parameter in z that ends them."""
     low, high = window.swapaxes(0, 1)
     ahead = unit(here.tangents / units)
     rate = (ahead * units)[:, equations.size :]
@@ -225,10 +218,10 @@ def _predicted(
 def march(
     start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int
 ) -> list[tuple[Points, str]]:
-    """The accepted points of each branch, and why it ends: its window, or another reason.
+    """The accepted points of each branch, and why it ends.
 
-    A step is halved if Newton's method fails, if the tangent turns, or if the multipliers change
-    too much. Those beyond an end tell nothing: such a step has a point in between, just before it.
+    A step is halved if Newton's method fails, or tangents or multipliers change too much. One that
+    goes beyond an end, where multipliers tell nothing, has a point just before it.
     """
     equations = start.equations
     here = points_at(equations, start.z, start.direction, equations.linear(start.z))

@@ -1,7 +1,4 @@
-"""Along what orbits change: a parameter, the frequency of a table, or a path of one's own.
-
-The variable may be an array and complex: derivatives along a path are complex steps.
-"""
+"""Along what orbits change, by numbers, arrays or complex steps of one variable."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -213,24 +213,10 @@ class RestOrbit(PeriodicOrbit):
 def orbit_with_rest(
     ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
 ) -> RestOrbit:
-    """The motion of a ball between two rests on the table, if it repeats after one of them.
+    """The motion of a ball of instants between two rests on the table, if it repeats after one.
 
-    Parameters
-    ----------
-    ball : Ball
-        With instantaneous impacts.
-    amplitude : float
-        Λ.
-    impacts : int, optional
-        The number of impacts after which the bounces are summed up; by default that of the
-        simulation, which leaves an error of 1e-15.
-    table : Table
-        The waveform of the table, by default a sine.
-
-    Raises
-    ------
-    OrbitNotFound
-        If the ball never leaves the table, or does not come to rest.
+    After so many `impacts` the bounces are summed up; by default after those of the simulation,
+    which leaves an error of 1e-15. OrbitNotFound if the ball does not leave, or come to rest.
 
     Examples
     --------

@@ -71,10 +71,8 @@ def guess_of_instants(
 def near_instants(
     equations: OrbitEquations, amplitude: NDArray, sign: int
 ) -> tuple[list[PeriodicOrbit | None], NDArray]:
-    """Orbits with one impact near those of the corrected model, on a side of the saddle-node.
-
-    One for each row, or None; and which of them a ball follows, shape (rows,).
-    """
+    """Orbits with one impact near those of the corrected model on a side of the saddle-node, by
+    rows, or None; and which of them a ball follows."""
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
@@ -88,10 +86,8 @@ def near_instants(
 def shortest_contacts(
     equations: OrbitEquations, amplitude: NDArray, sign: int
 ) -> tuple[list[PeriodicOrbit | None], NDArray]:
-    """Orbits with one impact and the shortest contact on a side of the saddle-node.
-
-    One for each row, if possible one that a ball follows, or None; and which of them it follows.
-    """
+    """Orbits with the shortest contact on a side of the saddle-node, by rows, or None, if possible
+    some that a ball follows; and which of them it follows."""
     found: list[PeriodicOrbit | None] = []
     for i, each in enumerate(amplitude):
         alone = single(equations, i)

@@ -412,7 +412,7 @@ class OrbitEquations:
     def least_release(
         self, linear: Linear | None, z: NDArray, flights: Flights | None = None
     ) -> NDArray:
-        """How well balls leave after impacts, the least of all: the rate of the release, or δ′ of an
+        """How well balls leave after impacts, the least of all: the rate of the release, δ′ of an
         instant, which needs no derivatives, or the summit after one below the table."""
         if linear is not None and self.ball.lasts:
             return linear.derivatives[..., 0, 2].min(axis=-1)

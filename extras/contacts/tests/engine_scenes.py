@@ -198,9 +198,10 @@ def promise(found, scene):
     """
     engine = engine_named(found.engine)
     low, _, high = found.row.outcome.restitution
-    slides = "slide" in scene.how or "spin" in scene.how
-    if slides and found.chosen != IMPULSE:
-        low, high = Problem(found.bounce, engine).promised(found.row.outcome)
+    spin = abs(scene.how.get("spin", 0.0)) * found.bounce.size
+    speed = (scene.how.get("slide", 0.0) + spin) / found.bounce.impact_speed
+    if speed and found.chosen != IMPULSE:
+        low, high = Problem(found.bounce, engine).promised(found.row.outcome, speed)
     is_excepted = scene.shape == "box" and engine.flat_only and bool(scene.how)
     return low, high, scene.is_promised and not is_excepted
 

@@ -230,7 +230,7 @@ def cells(name, shape, wanted, time_step, more, friction):
     here = problem.outcome(law, found.row.step, exact(offsets(401)))
     low, _, high = here.restitution
     slide = found.bounce.impact_speed / 2 if friction and shape == "ball" else 0.0
-    wider = problem.promised(here) if slide else (low, high)
+    wider = problem.promised(here, 0.5) if slide else (low, high)
     measured = engine_runs.measure(found, shape, slide)
     at_least, at_most = measured.restitution
     texts = [

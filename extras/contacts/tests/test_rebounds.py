@@ -340,6 +340,14 @@ def test_ode_has_two_numbers_of_its_own(typed):
     assert by_spring == own and "soft_cfm" in own
 
 
+def test_the_threshold_of_ode_is_named(typed):
+    """r = 0.000 to 0.795 was said to be by the step."""
+    out = typed(
+        "diagnose --engine ode bounce=0.8 bounce_vel=2 --drop-height 20.5cm --time-step 0.01"
+    )
+    assert "! bounce_vel = 2 lowers r" in out[1]
+
+
 def test_the_page_has_what_was_measured():
     """The table of docs/bounces.md is the one of these drops; ``python`` of this file prints it."""
     page = (Path(__file__).parents[1] / "docs" / "bounces.md").read_text("utf-8")

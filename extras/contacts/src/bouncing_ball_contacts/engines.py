@@ -879,6 +879,7 @@ ENGINES: Mapping[str, Engine] = {
             "sliding had 0.84 to 1.10 for 0.80",
             number="bounce",
             threshold="bounce_vel",
+            undisturbed={"bounce_vel": 0.0},
         ),
         Engine(
             name="gazebo",

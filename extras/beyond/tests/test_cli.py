@@ -64,7 +64,7 @@ MISTAKES = {
     f"orbit {RIGID} --frequency-ratio -1": "--frequency-ratio = -1",
     f"orbit {RIGID} --frequency-ratio x": "--frequency-ratio",
     "orbit --restitution 0.65": "Missing option '--amplitude'",
-    "orbit --amplitude 1": "--restitution",
+    "orbit --amplitude 1": "Missing option --restitution or --law.",
     "orbit --restitution 0.65 --amplitude 0.3": "below the saddle-node at Λ = 0.666398",
     f"orbit {RIGID} --output orbit.txt": "--output",
     f"orbit {RIGID} --law hooke": "--law",

@@ -13,6 +13,7 @@ from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.chains import dense, solve_bordered
+from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
@@ -207,6 +208,12 @@ def test_where_there_are_no_orbits_the_list_is_empty(ball, impacts, periods):
     assert orbits(ball, impacts=impacts, periods=periods, amplitude=0.5) == []
 
 
+@pytest.mark.parametrize("impacts", [2, 3])
+def test_orbits_of_a_shorter_period_are_none_of_a_longer_one(impacts):
+    """At Λ = 1.2 the 1-T orbit, which a search of 2-T orbits finds, has not doubled yet."""
+    assert orbits(Rigid(0.5), impacts=impacts, periods=impacts, amplitude=1.2) == []
+
+
 def test_where_a_contact_law_has_no_orbit_the_list_is_empty():
     assert orbits(tsuji(stiffness=3.0, damping=1.5), amplitude=0.3) == []
 
@@ -255,6 +262,13 @@ def test_a_reason_tells_two_amplitudes_apart():
         ),
         (lambda: orbit(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
         (lambda: orbits(0.7, amplitude=1.0), "ball = 0.7: must be a ball, such as Rigid(0.7)"),
+        (lambda: orbits(Rigid([0.5, 0.6]), amplitude=1.0), "must be one ball"),
+        (
+            lambda: orbit_near(Rigid(0.5), amplitude=1, phases=np.nan, velocities=-3),
+            "phases: must be a row of finite numbers",
+        ),
+        (lambda: limits(Rigid(0.5), n=0), "n = 0: must be in [1, 1000]"),
+        (lambda: limits(Rigid(0.5), n=1.5), "n = 1.5: must be a whole number"),
         (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be in [1, 1000]"),
         (lambda: orbit(Rigid(0.5), amplitude=1, side="left"), "side = 'left': must be 'stable' or"),
         (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "one entry"),

@@ -499,6 +499,13 @@ TEXT = {"quantities": "max_height"}
     [
         (lambda: bb.simulate(ONE, amplitude=1.0, impacts=2.5), r"impacts = 2\.5: must be a whole"),
         (lambda: bb.motion_of(ONE, amplitude=1.0, impacts=0), "impacts = 0: must be a whole nu"),
+        (lambda: bb.basins(ONE, amplitude=-1.0, starts=2), "amplitude = -1: must be at least 0"),
+        (
+            lambda: bb.orbit_diagram(ONE, amplitude=[-1.0, 1.0]),
+            "amplitude = -1: must be at least 0",
+        ),
+        (lambda: bb.law_errors(bb.SpringDamper(9.0, restitution=0.5), amplitude=-1), "must be in"),
+        (lambda: bb.read_orbits(3), "source = 3: must be a file or a dataset"),
         (lambda: bb.basins(ONE, amplitude=1.2, starts=0), "starts = 0: must be a whole number"),
         (lambda: bb.history(ONE, amplitude=1.0, periods=0), r"periods = 0: must be in \(0, ∞\)"),
         (

@@ -204,6 +204,13 @@ def whole_number(name: str, value: Values, least: int = 1) -> int:
     return int(number)
 
 
+def check_whole_numbers(name: str, value: Values) -> None:
+    """Raise ValueError unless a number, or all of an array, are whole numbers from 1 to 1000."""
+    numbers = np.ravel(checked(name, value, 1, 1000, low_allowed=True))
+    for number in numbers[numbers % 1 != 0]:
+        raise ValueError(f"{name} = {number:g}: must be a whole number")
+
+
 def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
     """Pairs of a name and an array as arrays of one shape; a ValueError names those that differ."""
     named = list(named)

@@ -29,10 +29,12 @@ class Command(click.Command):
         given, _, _ = self.make_parser(ctx).parse_args(list(args))
         missing = [each.opts[0] for each in self.params if each.required and each.name not in given]
         has_ball = any(each.name == "law" for each in self.params)
-        if has_ball and not given.keys() & {"restitution", "damping_ratio", "law"}:
+        no_ball = has_ball and not given.keys() & {"restitution", "damping_ratio", "law"}
+        if no_ball:
             missing.append("--restitution or --law")
-        if len(missing) > 1 and not {*args} & {*ctx.help_option_names}:
-            raise click.UsageError(f"Missing options {', '.join(missing)}.")
+        if (no_ball or len(missing) > 1) and not {*args} & {*ctx.help_option_names}:
+            several = "s" if len(missing) > 1 else ""
+            raise click.UsageError(f"Missing option{several} {', '.join(missing)}.")
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: click.Context) -> Any:

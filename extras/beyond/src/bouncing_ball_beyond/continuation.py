@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond.balls import Ball, brief, whole_number
+from bouncing_ball_beyond.balls import Ball, brief, check_whole_numbers, whole_number
 from bouncing_ball_beyond.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
 from bouncing_ball_beyond.one_ball import TURN
@@ -235,6 +235,7 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     1.047198
     """
     check_table(table)
+    check_whole_numbers("n", n)
     row, (periods,), shape = rows_of(ball, n=n)
     between = _between_limits(OrbitEquations(row, 1, periods, table=table))
     rows = len(between)

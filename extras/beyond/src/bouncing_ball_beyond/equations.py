@@ -571,7 +571,8 @@ class PeriodicOrbit:
             "bounce_velocity": self.bounce_velocity,
             "apparent_restitution": self.apparent_restitution,
             "max_height": self.max_height,
-            "stable": self.stable,
+            # A special orbit is between both, and rounding would decide.
+            **({} if self.kind else {"stable": self.stable}),
             "admissible": self.admissible,
         }
         width = max(map(len, rows))

@@ -156,7 +156,7 @@ def law_errors(
     -0.01
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    amplitude = np.asarray(amplitude, float)
+    amplitude = np.asarray(checked("amplitude", amplitude, 0, np.inf, low_allowed=False))
     reference = restitution_values(impact, amplitude, table)
     # NaN below the saddle-node.
     r = reference["apparent_restitution"]

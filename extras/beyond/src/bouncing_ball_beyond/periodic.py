@@ -5,7 +5,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bouncing_ball_beyond.balls import Ball, brief, check_ball, checked, whole_number
+from bouncing_ball_beyond.balls import (
+    Ball,
+    brief,
+    check_ball,
+    check_whole_numbers,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
 from bouncing_ball_beyond.march import newton
@@ -16,7 +23,7 @@ from bouncing_ball_beyond.search import (
     rows_of,
     shortest_contacts,
 )
-from bouncing_ball_beyond.tables import SINE, Table, check_table
+from bouncing_ball_beyond.tables import SINE, Table, check_table, finite_row
 
 
 def solved(equations: OrbitEquations, z: NDArray, what: str) -> PeriodicOrbit:
@@ -56,9 +63,7 @@ def orbit(
     """
     check_table(table)
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
-    counts = np.ravel(checked("n", n, 1, 1000, low_allowed=True))
-    for count in counts[counts % 1 != 0]:
-        raise ValueError(f"n = {count:g}: must be a whole number")
+    check_whole_numbers("n", n)
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
@@ -130,6 +135,8 @@ def orbits(
     [(8.209, True), (8.007, False)]
     """
     check_ball(ball)
+    if any(map(np.ndim, ball.parameters.values())):
+        raise ValueError(f"ball = {ball!r}: must be one ball")
     amplitude = one_amplitude(amplitude)
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
@@ -156,19 +163,20 @@ def orbit_near(
     """
     check_ball(ball)
     amplitude = one_amplitude(amplitude)
-    phases, velocities = (np.atleast_1d(np.asarray(x, float)) for x in (phases, velocities))
-    if phases.shape != velocities.shape or phases.ndim != 1:
+    tau = finite_row("phases", np.atleast_1d(phases))
+    before = finite_row("velocities", np.atleast_1d(velocities))
+    if tau.shape != before.shape:
         raise ValueError("phases, velocities: must have one entry for each impact")
     check_table(table)
-    u = amplitude * table(phases, 1) - velocities
-    T = ball.first_release(phases, u, amplitude, table=table)
+    u = amplitude * table(tau, 1) - before
+    T = ball.first_release(tau, u, amplitude, table=table)
     if not np.isfinite(T).all():
         raise OrbitNotFound("an impact of the guess does not end: the ball stays on the table")
-    impact = ball.contact(phases, u, T, amplitude, table=table)
-    bounce = impact.speed + amplitude * table(phases + impact.duration, 1)
-    lengths = impact.duration + bounce - np.roll(velocities, -1)
-    turns = np.round((phases + lengths - np.roll(phases, -1)) / (2 * np.pi))
-    times = phases[0] + np.append(0.0, np.cumsum(np.roll(phases, -1) - phases + 2 * np.pi * turns))
+    impact = ball.contact(tau, u, T, amplitude, table=table)
+    bounce = impact.speed + amplitude * table(tau + impact.duration, 1)
+    lengths = impact.duration + bounce - np.roll(before, -1)
+    turns = np.round((tau + lengths - np.roll(tau, -1)) / (2 * np.pi))
+    times = tau[0] + np.append(0.0, np.cumsum(np.roll(tau, -1) - tau + 2 * np.pi * turns))
     periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
     if periods < 1:
         raise OrbitNotFound("the guess takes no time: its velocities are not those of flights")

@@ -260,7 +260,10 @@ def orbit_with_rest(
             break
         start = float(reduced(start + length)[1])
     else:
-        raise OrbitNotFound("the ball leaves at other lift-offs each time")
+        raise OrbitNotFound(
+            "the ball leaves at other lift-offs each time: its motion does not repeat, or has"
+            " several rests, with which it is not followed"
+        )
     hops = list(zip(times[: at + 1], u[: at + 1], strict=True))
     # Bounces that the simulation sums up: Newton's method makes them exact.
     while impacts is not None and len(hops) < impacts:

@@ -192,6 +192,8 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
     0.0
     """
     is_file = isinstance(source, str | PathLike)
+    if not is_file and not isinstance(source, xr.Dataset):
+        raise ValueError(f"source = {source!r}: must be a file or a dataset")
     data = xr.load_dataset(source) if is_file else source
     name = f"{source}: " if is_file else ""
     if not {"ball", "along", "form"} <= data.attrs.keys():

@@ -72,7 +72,7 @@ STEADY, PERIODS = 1e-9, 30
 """A contact is permanent if its motion changes relatively by less in a period, or, unless another
 number is given, after so many."""
 
-SAFE = 4.0
+SAFE = 8.0
 """It is also permanent if all its further changes, so many times, cannot lift the ball: see
 :meth:`_Contacts.compare_periods`."""
 
@@ -761,7 +761,7 @@ class _Contacts:
         change = np.abs(now - self.before[:, turned])
         moved = change[0] + change[1] / np.sqrt(stiffness) + change[2]
         ratio = moved / self.moved[turned]
-        larger = np.fmax(ratio, self.ratio[turned])
+        larger = np.maximum(ratio, self.ratio[turned])
         to_come = moved * larger / (1 - larger)
         stays = (larger < 1) & (SAFE * to_come < least)
         steady = (change[:2] <= STEADY * self.size[:, turned]).all(0)

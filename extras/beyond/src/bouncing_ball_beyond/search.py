@@ -116,10 +116,9 @@ def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     x = equations.split(z)[0]
     z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
     z = z[(equations.ends(z).flight > 0).all(axis=1)]
-    if not len(z):
-        return z
+    z = _distinct(equations, z)
     # Some starts lead to orbits many periods later, at times with fewer digits.
-    return newton(equations, _distinct(equations, z)).z
+    return newton(equations, z).z if len(z) else z
 
 
 @np.errstate(all="ignore")
@@ -211,4 +210,4 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     # Two roundings of one orbit.
     apart = np.abs(rows[:, np.newaxis] - rows).max(axis=-1, initial=0.0)
     rows = rows[~np.tril(apart < 1e-5, -1).any(axis=1)]
-    return np.concatenate([rows, np.full((len(rows), 1), z[0, -1])], axis=1)
+    return np.concatenate([rows, z[: len(rows), -1:]], axis=1)

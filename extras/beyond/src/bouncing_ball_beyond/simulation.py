@@ -389,7 +389,7 @@ def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
 
 
 def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray]]:
-    """The grid that arguments and array parameters of a ball span.
+    """The grid that arguments, one of them the amplitude, and array parameters of a ball span.
 
     Parameters of a ball vary together: along an axis with the name of the parameter, or "ball" if
     several are arrays. Returns an array with the axes of the grid, the ball with parameters for
@@ -402,6 +402,9 @@ def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray
     arrays += [axis(name, value, dim) for name, value in rows.items()]
     every = xr.broadcast(*arrays)
     flat = [each.values.ravel() for each in every]
+    amplitude = flat[list(values).index("amplitude")]
+    if (amplitude < 0).any():
+        raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
     if rows:
         ball = ball.at(**dict(zip(rows, flat[len(values) :], strict=True)))
     grid = every[0].assign_coords(xr.merge(each.coords for each in arrays).coords)
@@ -425,8 +428,6 @@ def first_impacts(
     name = "velocity" if absolute else "relative_velocity"
     given = {name: velocity if absolute else relative_velocity}
     grid, ball, (amplitude, phase, value) = grid_of(ball, amplitude=amplitude, phase=phase, **given)
-    if (amplitude < 0).any():
-        raise ValueError(f"amplitude = {amplitude.min():g}: must be at least 0")
     speed = amplitude * table(phase, 1) * absolute - value
     if (speed < 0).any():
         raise ValueError(

@@ -5,9 +5,10 @@ Everything that the other modules know of the waveform is here. The sine of the 
 that complex steps give all derivatives.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -116,10 +117,15 @@ class Table:
     """Whether the loops of :mod:`.one_ball` follow single balls."""
 
     def __init__(self, harmonics: Any) -> None:
+        if not isinstance(harmonics, Iterable):
+            raise ValueError(f"harmonics = {harmonics!r}: must be a list of (k, a, p)")
         harmonics = sorted(checked_harmonic(each) for each in harmonics)
         orders = tuple(k for k, _, _ in harmonics)
-        if not orders or len(set(orders)) < len(orders) or not any(a for _, a, _ in harmonics):
-            raise ValueError("harmonics: must be some, each order once, and not all of the size 0")
+        if not any(a for _, a, _ in harmonics):
+            raise ValueError("harmonics: one of a size other than 0 is needed")
+        for k, after in pairwise(orders):
+            if k == after:
+                raise ValueError(f"harmonics: the order {k} is there twice")
         values = orders, *zip(*((a, p) for _, a, p in harmonics), strict=True)
         for name, value in zip(("orders", "sizes", "phases"), values, strict=True):
             object.__setattr__(self, name, value)
@@ -228,7 +234,9 @@ class Table:
         orders = harmonics
         if np.ndim(harmonics) == 0:
             orders = range(1, highest(harmonics) + 1)
-        k = np.array(sorted({highest(each) for each in orders}))
+        k = np.array(sorted({highest(each) for each in orders}), int)
+        if not k.size:
+            raise ValueError("harmonics: one at least must be fitted")
         if len(time) != len(acceleration):
             raise ValueError(
                 f"time, acceleration: have {len(time)} and {len(acceleration)} samples"
@@ -244,8 +252,14 @@ class Table:
         if rank < columns.shape[1]:
             raise ValueError("time: the samples do not tell all of the harmonics apart")
         cosines, sines = np.split(fitted[1:] / gravity, 2)
-        if np.abs(fitted[1:]).max() <= 1e-12 * np.abs(acceleration).max():
+        if np.ptp(acceleration) <= 1e-12 * np.abs(acceleration).max():
             raise ValueError("acceleration: is constant: the table would be at rest")
+        left = np.var(acceleration - columns @ fitted) / np.var(acceleration)
+        if left > 0.5:
+            raise ValueError(
+                f"frequency, harmonics: leave {left:.0%} of the variance of the acceleration over;"
+                " is the frequency right, and are all harmonics there?"
+            )
         return cls._of_accelerations(k, cosines - 1j * sines)
 
     @classmethod

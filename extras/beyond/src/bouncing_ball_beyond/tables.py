@@ -558,10 +558,6 @@ class Sine(Table):
         part = 2 * np.sin(half)
         return part * np.cos(middle), -part * np.sin(middle)
 
-    def waves(self, phase: Values, amplitude: Values) -> list:
-        sine, versine = swing(phase)
-        return [amplitude * (1 - versine), amplitude * sine]
-
     def pulls(self, waves: Values) -> tuple:
         return waves[0], waves[1], waves[0]
 
@@ -571,10 +567,6 @@ class Sine(Table):
         position = gap + t * (w - t / 2) + (y * versine + x * (t - sine))
         rate = (w - t) + (y * sine + x * versine)
         return position, rate, (y - 1) + (x * sine - y * versine)
-
-    def third(self, t: Values, w: Values, rate: Values, waves: Values) -> Values:
-        """w′, which is -w‴, from what gravity and the table have changed of the speed."""
-        return waves[0] + w - t - rate
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
         return side * np.arccos(np.clip(slope, -1, 1))

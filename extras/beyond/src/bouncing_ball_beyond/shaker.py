@@ -220,7 +220,7 @@ class ShakerAnswer:
         return [*sentences, f"{verdict}."]
 
 
-WHERE = {
+WHERE: dict[tuple, str] = {
     (True, True): "in both models",
     (True, False): "in the restitution model only",
     (False, True): "on the contact only",

@@ -206,7 +206,7 @@ def leave(balls: Balls) -> Leaving:
     if not balls.ball.lasts:
         return rest(balls, gap, w)
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
-    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w, 0 * w)
+    return Leaving(own_time, duration, balls.turns + turns, phase, gap, w, emerges=0 * w)
 
 
 def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
@@ -244,7 +244,7 @@ def rest(balls: Balls, gap: Values, w: Values) -> Leaving:
     ends = phase + np.where(duration < np.inf, duration, 0.0)
     turns = balls.turns + np.round((ends - leaves) / TURN)
     gap, w, emerges = (np.where(rests, 0.0, each) for each in (gap, w, emerges))
-    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w, emerges)
+    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w, emerges=emerges)
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, left: NDArray) -> NDArray:
@@ -637,7 +637,8 @@ def drop(
     nothing = np.zeros(gap.shape)
     w = -amplitude * table(phase, 1)
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)
-    time, speed = fly(balls, Leaving(nothing, nothing, nothing, phase, gap, w, nothing))
+    dropped = Leaving(nothing, nothing, nothing, phase, gap, w, emerges=nothing)
+    time, speed = fly(balls, dropped)
     turns, lands = reduced(phase + time)
     fall = np.array([nothing, phase, nothing, nothing, nothing, gap, w, time])
     first = replace(balls, turns=turns, phase=lands, speed=speed)

@@ -115,6 +115,15 @@ def moved(trial, poses, others=None, peak=math.nan):
     return Motion(poses[:, 2] - below, peak, poses, others)
 
 
+def followed(trial, advance):
+    """Return a motion of steps that ``advance`` makes one by one.
+
+    It returns the pose, the centre of the other body if there is one, and the contact force.
+    """
+    poses, others, forces = zip(*(advance() for _ in range(trial.steps)), strict=True)
+    return moved(trial, poses, others if trial.shape == "two" else None, max(forces))
+
+
 def _mujoco_model(trial):
     import mujoco
 
@@ -145,19 +154,17 @@ def mujoco(trial):
     import mujoco
 
     model, data = _mujoco_model(trial)
-    motion = []
     force = np.zeros(6)
-    peak = 0.0
-    for _ in range(trial.steps):
+
+    def advance():
         mujoco.mj_step(model, data)
-        motion.append(data.qpos.copy())
         total = 0.0
         for i in range(data.ncon):
             mujoco.mj_contactForce(model, data, i, force)
             total += force[0]
-        peak = max(peak, total)
-    motion = np.array(motion)
-    return moved(trial, motion[:, :7], motion[:, 7:10] if trial.shape == "two" else None, peak)
+        return data.qpos[:7].copy(), data.qpos[7:10].copy(), total
+
+    return followed(trial, advance)
 
 
 @functools.cache
@@ -176,12 +183,13 @@ def mujoco_warp(trial):
     model, data = _mujoco_model(trial)
     on_device = mujoco_warp.put_model(model)
     state = mujoco_warp.put_data(model, data, nconmax=32, njmax=128)
-    motion = []
-    for _ in range(trial.steps):
+
+    def advance():
         mujoco_warp.step(on_device, state)
-        motion.append(state.qpos.numpy()[0].copy())
-    motion = np.array(motion)
-    return moved(trial, motion[:, :7], motion[:, 7:10] if trial.shape == "two" else None)
+        found = state.qpos.numpy()[0].copy()
+        return found[:7], found[7:10], math.nan
+
+    return followed(trial, advance)
 
 
 def pybullet(trial):
@@ -214,16 +222,15 @@ def pybullet(trial):
         pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
     pybullet.resetBaseVelocity(other, [trial.slide, 0, -trial.speed], [0, trial.spin, 0])
     exec(trial.design.snippet, {"pybullet": pybullet, "one": one, "other": other})
-    poses = []
-    others = []
-    peak = 0.0
-    for _ in range(trial.steps):
+
+    def advance():
         pybullet.stepSimulation()
         center, (*xyz, w) = pybullet.getBasePositionAndOrientation(other)
-        poses.append([*center, w, *xyz])
-        others.append(pybullet.getBasePositionAndOrientation(one)[0])
-        peak = max(peak, sum(contact[9] for contact in pybullet.getContactPoints(one, other)))
-    return moved(trial, poses, others if trial.shape == "two" else None, peak)
+        below, _ = pybullet.getBasePositionAndOrientation(one)
+        force = sum(contact[9] for contact in pybullet.getContactPoints(one, other))
+        return [*center, w, *xyz], below, force
+
+    return followed(trial, advance)
 
 
 def drake(trial):
@@ -371,18 +378,18 @@ def newton(trial):
     contacts = pipeline.contacts()
     control = model.control()
     newton.eval_fk(model, model.joint_q, model.joint_qd, states[0])
-    poses = []
-    others = []
-    for _ in range(trial.steps):
+
+    def advance():
         states[0].clear_forces()
         pipeline.collide(states[0], contacts)
         solver.step(states[0], states[1], control, contacts, trial.step)
         states.reverse()
         found = states[0].body_q.numpy()
         *center_and_axis, w = found[0]
-        poses.append([*center_and_axis[:3], w, *center_and_axis[3:]])
-        others.append(found[-1, :3].copy())
-    return moved(trial, poses, others if trial.shape == "two" else None)
+        pose = [*center_and_axis[:3], w, *center_and_axis[3:]]
+        return pose, found[-1, :3].copy(), math.nan
+
+    return followed(trial, advance)
 
 
 def liggghts(trial):
@@ -488,20 +495,20 @@ def ode(trial):
         setattr(surface, name, value)
     size = ctypes.sizeof(odepy.dContactGeom)
     points = (odepy.dContactGeom * 8)()
-    poses = []
-    others = []
-    for _ in range(trial.steps):
+
+    def advance():
         for point in points[: odepy.dCollide(*shapes, len(points), points, size)]:
             contact.geom = point
             joint = odepy.dJointCreateContact(world, group, ctypes.byref(contact))
             odepy.dJointAttach(joint, *bodies)
         odepy.dWorldStep(world, trial.step)
         odepy.dJointGroupEmpty(group)
+        center = odepy.dBodyGetPosition(bodies[0])[:3]
         turned = odepy.dBodyGetQuaternion(bodies[0])[:4]
-        poses.append([*odepy.dBodyGetPosition(bodies[0])[:3], *turned])
-        if trial.shape == "two":
-            others.append(odepy.dBodyGetPosition(bodies[1])[:3])
-    return moved(trial, poses, others or None)
+        below = odepy.dBodyGetPosition(bodies[1])[:3] if trial.shape == "two" else None
+        return [*center, *turned], below, math.nan
+
+    return followed(trial, advance)
 
 
 _MATERIAL = """    def Material "{of}" (
@@ -652,20 +659,20 @@ def physx(trial, other=None):
             for name in (("Body", "Other") if trial.shape == "two" else ("Body",))
         ]
     read = np.zeros((len(found), *found[0].shape), np.float32)
-    poses = []
-    others = []
-    for _ in range(trial.steps):
+
+    def advance():
         engine.step_sync(trial.step)
         for body, pose in zip(found, read, strict=True):
             body.read(pose)
         pose = read[0, 0]
-        poses.append([*pose[:3], pose[6], *pose[3:6]])
-        others.append(read[-1, 0, :3].copy())
+        return [*pose[:3], pose[6], *pose[3:6]], read[-1, 0, :3].copy(), math.nan
+
+    motion = followed(trial, advance)
     for body in found:
         body.destroy()
     engine.wait_task(engine.detach_ovstage())
     stage.destroy()
-    return moved(trial, poses, others if trial.shape == "two" else None)
+    return motion
 
 
 @functools.cache
@@ -708,13 +715,13 @@ def genesis(trial):
     if trial.shape == "two":
         one.set_mass(trial.other)
         one.set_pos([0.0, 0.0, -trial.size])
-    poses = []
-    others = []
-    for _ in range(trial.steps):
+
+    def advance():
         scene.step()
-        poses.append([*map(float, other.get_pos()), *map(float, other.get_quat())])
-        others.append([*map(float, one.get_pos())])
-    return moved(trial, poses, others if trial.shape == "two" else None)
+        pose = [*map(float, other.get_pos()), *map(float, other.get_quat())]
+        return pose, [*map(float, one.get_pos())], math.nan
+
+    return followed(trial, advance)
 
 
 def _by_program(name, trial, *values):

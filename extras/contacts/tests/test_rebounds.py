@@ -461,6 +461,9 @@ def test_what_is_assumed_of_a_ball_is_listed(typed):
     assert "a radius of 100 mm (--radius)" in typed(said)[1]
     out = typed(f"{said} --drop-height 1m --radius '10 cm'")[1]
     assert "Assumed" not in out and "radius 100 mm" in out
+    # Of an engine with springs the force is that of a mass.
+    out = typed("diagnose --engine pybullet restitution=0.8 --drop-height 1m --time-step 1/240")[1]
+    assert "; a radius of 100 mm (--radius); a mass of 1 kg (--mass)." in out
 
 
 def test_a_number_needs_no_mass_and_a_wrong_name_is_said_before_the_step(typed):

@@ -302,6 +302,10 @@ class Bounce:
                     self.radius is None,
                     f"{solid} of {of}, {self.size_name} {show(self.size, 'm')}",
                 ),
+                (
+                    self.radius is not None and "radius" not in self.given,
+                    f"a radius of {show(self.size, 'm')} (--radius)",
+                ),
             ]
         )
 

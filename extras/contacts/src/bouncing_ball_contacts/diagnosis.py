@@ -212,6 +212,7 @@ class Diagnosis:
                 (defaults, f"the defaults {_assigned(defaults)}"),
                 (others and rest, f"of the other body the defaults {_assigned(rest)}"),
                 *((True, each) for each in self.bounce.assumed),
+                (not self.bounce.given.keys() & {"mass", "density"}, "a mass of 1 kg (--mass)"),
             ]
         )
         lines = [

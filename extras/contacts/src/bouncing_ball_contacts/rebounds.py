@@ -634,18 +634,9 @@ class Rebound:
         given.append(f"time step {show(self.time_step, 's', 4)}")
         of_both = " (of both bodies)" if change and change.other is None is not self.other else ""
         is_default = row.damping == BY_NUMBER[self.engine].damping
-        assumed = [
-            *bounce.assumed,
-            *holding(
-                [
-                    (
-                        not bounce.given.keys() & {"mass", "radius"},
-                        f"a radius of {show(bounce.size, 'm')} (--radius)",
-                    ),
-                    (row.pixels, f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"),
-                ]
-            ),
-        ]
+        assumed = bounce.assumed
+        if row.pixels:
+            assumed.append(f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)")
         lines = [
             (True, repr(self)),
             (change, f"Least change: {change.gives if change else ''}{of_both}."),

@@ -125,7 +125,8 @@ def orbits(
     """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
 
     With one impact the list is complete; with several this is a search from 2592 first impacts, and
-    orbits may be missed. They are in the order of the durations of their contacts, then of phases.
+    orbits may be missed. With a contact law it takes seconds, and several impacts up to a minute.
+    They are in the order of the durations of their contacts, then of phases.
 
     Examples
     --------

@@ -171,7 +171,7 @@ class Bounce:
         refuse(
             [
                 (
-                    self.mass is None in (self.radius, self.density),
+                    self.mass is None and None in (self.radius, self.density),
                     "the mass is missing: --mass '50 g' or mass='50 g', or radius and density",
                 ),
                 (

@@ -246,8 +246,7 @@ def fit(
     curves = curves_of(impacts, known, at, rounding)
     scattering, still = estimates(impacts, curves)
     r = math.exp(scattering.value)
-    wrong = misread(impacts)
-    each_r = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in wrong]
+    wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
     if scattering.low > 0:
         raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
     _, low, high = (still or scattering).of_r
@@ -267,8 +266,8 @@ def fit(
     # The severest first.
     notes = [
         (
-            each_r,
-            f"{', '.join(each_r)}: far from all others, as by one wrong number; --leave-out leaves "
+            wrong,
+            f"{', '.join(wrong)}: far from all others, as by one wrong number; --leave-out leaves "
             "its line out",
         ),
         (r > 1, f"r = {r:.4f} is above 1 within its error: 1 is taken"),

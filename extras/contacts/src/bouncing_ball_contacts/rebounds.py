@@ -507,9 +507,8 @@ def falling(**quantities: Quantity) -> Bounce:
     size = {} if given.keys() & {"mass", "radius"} else {"radius": 0.1}
     mass = {} if "density" in given else {"mass": 1.0}
     found = Bounce(**mass | size | given)
-    typed = {name.replace("_", " ") for name in given}
-    words = {name: value for name, value in found.given.items() if name in typed}
-    object.__setattr__(found, "given", words)
+    typed = {name: text for name, text in found.given.items() if name.replace(" ", "_") in given}
+    object.__setattr__(found, "given", typed)
     return found
 
 
@@ -547,9 +546,9 @@ class Rebound:
     def snippet(self) -> str:
         """What is pasted into the engine."""
         row = self.source
-        bodies = "one of both bodies" if row.pair is LARGER else "both bodies"
-        if self.other is not None:
-            bodies = f"one body, with {self.other:g} of the other one"
+        alike = "one of both bodies" if row.pair is LARGER else "both bodies"
+        one = f"one body, with {self.other or 0:g} of the other one"
+        bodies = alike if self.other is None else one
         # Also a whole number has a decimal point, which C++ wants before an f.
         line = row.written.format(number=float(f"{self.written:.4g}"), bodies=bodies)
         lowered = row.lowered.format(threshold=float(f"{self.threshold / row.unit:.2g}"))
@@ -568,9 +567,12 @@ class Rebound:
         settling = self.bounce.load * self.time_step / max(1 - self.number, 1e-9)
         hops = row.is_restless and 0 < self.number < 1 and slowest < settling
         height = settling**2 / (2 * self.bounce.load) if hops else 0.0
-        rests = f"above a threshold of {show(settling, 'm/s')}"
-        if not row.lowered:
-            rests = f"below a step of {show(self.time_step * slowest / max(settling, 1e-9), 's')}"
+        shorter = self.time_step * slowest / max(settling, 1e-9)
+        rests = (
+            f"above a threshold of {show(settling, 'm/s')}"
+            if row.lowered
+            else f"below a step of {show(shorter, 's')}"
+        )
         said = [
             (
                 self.number == 0 < self.written,
@@ -634,9 +636,8 @@ class Rebound:
         given.append(f"time step {show(self.time_step, 's', 4)}")
         of_both = " (of both bodies)" if change and change.other is None is not self.other else ""
         is_default = row.damping == BY_NUMBER[self.engine].damping
-        assumed = bounce.assumed
-        if row.pixels:
-            assumed.append(f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)")
+        pixels = f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"
+        assumed = bounce.assumed + holding([(row.pixels, pixels)])
         lines = [
             (True, repr(self)),
             (change, f"Least change: {change.gives if change else ''}{of_both}."),

@@ -337,8 +337,8 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        is_film = any("frame" in each.name.lower() for each in table.columns)
-        film = "divide frames by their rate, for a column t (s); " if is_film else ""
+        by_rate = "divide frames by their rate, for a column t (s); "
+        film = by_rate if "'frame" in there.lower() else ""
         raise Refused(f"{table.name}: no bounces, as {there}: {film}{HEADINGS}")
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
@@ -381,8 +381,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
         for each in table.columns
         if each.name and each not in used and each.role not in TEXTS
     ]
-    is_gap = ~is_there & ~np.isin(table.lines, leave_out)
-    gaps = ", ".join(str(line) for line in table.lines[is_gap])
+    gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     notes = [
         *((True, note) for note in recording.notes),

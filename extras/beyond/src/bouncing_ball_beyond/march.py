@@ -42,13 +42,18 @@ STRAIGHT = 0.95
 TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
 
+FADED = 1e-6
+"""The speed of an impact, in g/Ω, below which it has vanished if a step does not even halve it: so
+branches end whose contacts last longer and longer."""
+
 BEFORE_END = 1e-3
 """The share of a step to an end of a branch that is left to the end in a point before it."""
 
 
+IMPACT = "grazing of an impact"
 AT_GOAL = "the end of the window"
 CLOSED = "the branch is closed: it is back at its start"
-"""Two of the reasons why a branch ends."""
+"""Two of the reasons why a branch ends, and the kind of orbit at which an impact vanishes."""
 
 
 class Solution(NamedTuple):
@@ -254,6 +259,11 @@ def march(
             inside = ((values >= low) & (values <= high)).all(axis=1)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
         good &= (turned < TURN) | (length < 1e-6)
+        fades = np.zeros(rows.size, bool)
+        if equations.ball.lasts and equations.kind != IMPACT:
+            speed = equations.watched.index(IMPACT)
+            before, after = (each.tests[:, speed] for each in (here, there))
+            fades = good & (0 < after) & (after < FADED) & (after > before / 2) & (after < before)
         easy = (cosine > 0.99) & (turned < TURN / 2)
         moved = zip(here, there, strict=True)
         here = Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
@@ -271,6 +281,8 @@ def march(
             kind = until[rows[j]]
             passed = np.array(equations.watched)[crossed[j]]
             ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
+            if not ends[rows[j]] and fades[j]:
+                ends[rows[j]] = f"the speed of an impact has fallen below {FADED:g}"
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"all {points} points are used"
         for j in np.flatnonzero(step < SHORTEST_STEP):

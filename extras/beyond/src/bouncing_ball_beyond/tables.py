@@ -558,6 +558,11 @@ class Sine(Table):
         part = 2 * np.sin(half)
         return part * np.cos(middle), -part * np.sin(middle)
 
+    def waves(self, phase: Values, amplitude: Values) -> list:
+        """Λ cos τ and Λ sin τ."""
+        sine, versine = swing(phase)
+        return [amplitude * (1 - versine), amplitude * sine]
+
     def pulls(self, waves: Values) -> tuple:
         return waves[0], waves[1], waves[0]
 

@@ -227,7 +227,7 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     An orbit is followed towards smaller and greater Λ, around the phase at which the table rises
     fastest. In place of a limit there may be an OrbitNotFound with the reason, such as the grazing
     of an impact. If n or a parameter is an array, there is a list. A law without a rebound, r = 0,
-    may take a minute: its contacts last longer and longer as Λ falls.
+    may take minutes: its contacts last longer and longer as Λ falls.
 
     Examples
     --------

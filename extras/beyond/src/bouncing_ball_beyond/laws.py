@@ -340,7 +340,8 @@ class ForceLaw(Ball):
 
     @np.errstate(all="ignore")
     def guess(self, u: NDArray, T: NDArray) -> Guess:
-        """Free impacts of one ball, about those at the speeds u and of the lengths T."""
+        """Free impacts of one ball, about those at the speeds u and of the lengths T; None if some
+        do not end."""
         numbers, which = np.unique(np.floor(np.log(u) / np.log(NEIGHBOURS)), return_inverse=True)
         for k in set(numbers) - self._free_impacts.keys():
             self._free_impacts[k] = self._free_impact(NEIGHBOURS ** (k + 0.5))
@@ -351,10 +352,13 @@ class ForceLaw(Ball):
 
     def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
         """F of a free impact over its length and speed, and the inverse of its linear equations, at
-        the nodes of each of :data:`WHOLE` that are enough, or of the last one.
+        the nodes of each of :data:`WHOLE` that are enough, or of the last one. None if it does not
+        end.
         """
         *_, finest = WHOLE
         T = np.ravel(self.free(np.array([u])))
+        if np.isnan(T).any():
+            return []
         _, impact = self._followed(0.0, u, 0.0, 0.0, T * finest.nodes, guessed=False)
         duration, gap, speed, _ = impact
         states = np.stack([(-gap) ** (1 / self.root), -speed, duration], axis=1)

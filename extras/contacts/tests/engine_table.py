@@ -217,7 +217,7 @@ HEAD = [
 def label(name, shape, wanted, more):
     """Return the first two cells of a row: the engine, and what is given."""
     given = ", ".join(map(str, wanted.values()))
-    return [f"{name}, {shape}", given + "".join(f", {key}" for key in more)]
+    return [f"{name}, {shape}", given + "".join(f", {value}" for value in more.values())]
 
 
 def cells(name, shape, wanted, time_step, more, friction):

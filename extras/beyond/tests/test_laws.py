@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from integrated import SINE, contact
 from scipy.integrate import solve_ivp
 from scipy.special import gamma
 
@@ -29,6 +30,7 @@ from bouncing_ball_beyond.named_laws import (
     tsuji,
 )
 from bouncing_ball_beyond.periodic import orbit
+from bouncing_ball_beyond.tables import Table
 
 # The integrator and the panels each have errors of some 1e-12 of the speed.
 CLOSE = 1e-11
@@ -107,6 +109,27 @@ class TestPermanentContact:
         end, *_ = integrated(law, phases[latest], 0.02, amplitude, longest=60.0)
         assert end > 4 * np.pi
         assert abs(impact.duration[latest] - end) < 1e-8
+
+    @pytest.mark.parametrize(
+        "law, amplitude, tau, u, harmonics",
+        [
+            (hunt_crossley(restitution=0.6, duration=1.5, speed=3.0), 0.719, 0.5, 0.02, SINE),
+            (
+                hunt_crossley(restitution=0.965, duration=0.45, speed=3.0),
+                0.2164,
+                0.54,
+                0.0104,
+                ((1, 1.0, 0.0), (3, 0.3, -0.17)),
+            ),
+        ],
+    )
+    def test_a_ball_may_leave_after_three_quiet_periods(self, law, amplitude, tau, u, harmonics):
+        """From one period to the next, the place of the ball has hardly changed before."""
+        table = Table(harmonics)
+        _, impact = law.first_impact(np.array([tau]), np.array([u]), amplitude, table=table)
+        end, *_ = contact(law, amplitude, tau, u, harmonics)
+        assert end - tau > 3 * 2 * np.pi
+        assert abs(impact.duration[0] - (end - tau)) < 1e-8
 
     def test_a_ball_that_oscillates_beside_its_place_need_not_come_to_rest(self):
         """Its oscillation halves in a period: thirty of them need the force 4200 times."""

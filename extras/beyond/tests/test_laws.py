@@ -87,6 +87,17 @@ def one_line(error):
 IMPACTS = {name: law(restitution=0.7, duration=0.12, speed=3.0) for name, law in LAWS.items()}
 
 
+def test_a_law_without_a_rebound_is_followed():
+    """Its free impacts do not end, and are no guess of those on the table."""
+    ball = tsuji(stiffness=1e3, damping=2.5)
+    assert np.isnan(ball.free(3.0))
+    branch = path_follow(orbit(ball, amplitude=3.0), to=2.8)
+    assert branch.end == "amplitude = 2.8 is reached"
+    tau, u, T, amplitude = branch.z[-1]
+    duration, *_ = integrated(ball, tau, u, amplitude)
+    assert abs(ball.contact(tau, u, T, amplitude).duration - duration) < 1e-8
+
+
 class TestPermanentContact:
     """Contacts in which balls are shaken for some periods before they leave, or stay."""
 

@@ -339,21 +339,23 @@ class ForceLaw(Ball):
         return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
 
     @np.errstate(all="ignore")
-    def guess(self, u: NDArray, T: NDArray) -> Guess:
+    def guess(self, u: NDArray, T: NDArray) -> Guess | None:
         """Free impacts of one ball, about those at the speeds u and of the lengths T; None if some
         do not end."""
         numbers, which = np.unique(np.floor(np.log(u) / np.log(NEIGHBOURS)), return_inverse=True)
         for k in set(numbers) - self._free_impacts.keys():
             self._free_impacts[k] = self._free_impact(NEIGHBOURS ** (k + 0.5))
         most = min(len(self._free_impacts[k]) for k in numbers)
+        if not most:
+            return None
         known = [self._free_impacts[k][-most] for k in numbers]
         push = np.stack([push for push, _ in known], axis=-1)[:, which]
         return Guess(WHOLE[-most], push * (u / T), which, [inverse for _, inverse in known])
 
     def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
         """F of a free impact over its length and speed, and the inverse of its linear equations, at
-        the nodes of each of :data:`WHOLE` that are enough, or of the last one. None if it does not
-        end.
+        the nodes of each of :data:`WHOLE` that are enough, or of the last one; no entry if it does
+        not end.
         """
         *_, finest = WHOLE
         T = np.ravel(self.free(np.array([u])))

@@ -50,10 +50,12 @@ BEFORE_END = 1e-3
 """The share of a step to an end of a branch that is left to the end in a point before it."""
 
 
-IMPACT = "grazing of an impact"
 AT_GOAL = "the end of the window"
 CLOSED = "the branch is closed: it is back at its start"
-"""Two of the reasons why a branch ends, and the kind of orbit at which an impact vanishes."""
+"""Two of the reasons why a branch ends."""
+
+IMPACT = "grazing of an impact"
+"""The kind of orbit at which the speed of an impact is zero."""
 
 
 class Solution(NamedTuple):

@@ -1,39 +1,393 @@
 # Carbonelli, Perret-Liaudet, Rigaud and Feki (2011): a ball that bounces on a vibrating table.
 #
-#     snakemake --cores 2                      everything, below results/
-#     snakemake --cores 2 permanent_contact    the figures of one stage
-#     snakemake --cores 2 fig14 table1         a figure and a table
-#     snakemake --cores 2 diff                 compares the results with the reference
-#     snakemake --cores 2 fig14 diff           makes and compares Figure 14 only
-#     snakemake --cores 2 accept               makes the results the new reference
+#     snakemake --cores 2                  everything: results/index.html
+#     snakemake --cores 2 fig14 table1     a figure and a table
+#     snakemake --cores 2 continuation     the datasets of a stage
+#     snakemake --cores 2 diff             compare the results with the reference
+#     snakemake --cores 2 fig14 diff       make and compare Figure 14 only
+#     snakemake --cores 2 accept           make the results the new reference
 
+import os
+import sys
+from pathlib import Path
+
+import yaml
 from snakemake.utils import min_version
 
 min_version("9.5")
 
+# The folder of this file. A run may have another folder (--directory), which gets its results.
+TOP = Path(workflow.basedir)
+sys.path.insert(0, str(TOP / "src"))
+from bouncing_ball.configuration import mistakes
 
-report: "workflow/report/workflow.rst"
+# Scripts import the package of this checkout, whatever else is installed.
+os.environ["PYTHONPATH"] = str(TOP / "src")
 
 
-include: "workflow/rules/configuration.smk"
-include: "workflow/rules/common.smk"
-include: "workflow/rules/stages.smk"
-include: "workflow/rules/texts.smk"
-include: "workflow/rules/reference.smk"
-include: "workflow/rules/targets.smk"
+configfile: TOP / "config/config.yaml"
+
+
+# A mistake in the configuration ends the run before any job.
+schema = yaml.safe_load((TOP / "config/schema.yaml").read_text("utf-8"))
+if found := [f"configuration: {line}" for line in mistakes(config, schema)]:
+    sys.exit("\n".join(found))
+
+
+# Figures, tables and datasets are registered in config.yaml, each in the section of its stage.
+
+STAGES = {name: section for name, section in config.items() if isinstance(section, dict)}
+ENTRIES = {
+    name: entry for section in STAGES.values() for name, entry in section.items() if name != "title"
+}
+FIGURES = [name for name, entry in ENTRIES.items() if "caption" in entry]
+TABLES = [name for name, entry in ENTRIES.items() if entry.get("table")]
+DATASETS = [name for name in ENTRIES if name not in STAGES["schematics"]]
+
+
+def names(stage):
+    """The figures, tables and datasets of a stage."""
+    return [name for name in STAGES[stage] if name != "title"]
+
+
+def datasets(stage):
+    """The files of the datasets of a stage, by name."""
+    return {name: f"results/figures/{name}.nc" for name in names(stage)}
+
+
+def parameters(stage):
+    """The title and the parameters of each dataset of a stage."""
+    about = ("caption", "table")
+    return {
+        name: {key: value for key, value in ENTRIES[name].items() if key not in about}
+        for name in names(stage)
+    }
+
+
+def files(name):
+    """The files of a figure, a table or a dataset."""
+    kinds = ["nc"] * (name in DATASETS)
+    kinds += ["png", "svg"] * (name in FIGURES)
+    kinds += ["md", "csv"] * (name in TABLES)
+    return [f"results/figures/{name}.{kind}" for kind in kinds]
+
+
+# An entry without a function is found here, because a job would remove its stage's results first.
+for stage in STAGES:
+    for name in names(stage):
+        needed = {
+            f"workflow/scripts/{stage}.py": name in DATASETS,
+            "src/bouncing_ball/figures.py": name in FIGURES,
+            "src/bouncing_ball/tables.py": name in TABLES,
+        }
+        for file in [file for file, is_needed in needed.items() if is_needed]:
+            if f'"{name}":' not in (TOP / file).read_text("utf-8"):
+                sys.exit(f"configuration: {stage}.{name}: {file} has no function for it")
+
+
+# The code of the rules. A change of one of these files runs a rule again; a test compares the lists
+# with the imports. Descriptions (variables.py) and provenance.py decide no number.
+
+
+def checkout(*paths):
+    """Files of this checkout, as paths from the folder of the run."""
+    return [os.path.relpath(TOP / path) for path in paths]
+
+
+def modules(*names):
+    """Modules of the package, as paths from the folder of the run."""
+    return checkout(*(f"src/bouncing_ball/{name}.py" for name in names))
+
+
+MODELS = modules("restitution", "spring_damper", "orbits", "continuation", "errors", "datasets")
+PAPER = modules("paper")
+DRAWING = modules("figures", "drawing", "paper", "datasets")
+JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
+WRITING = JUDGING + modules("article", "pages")
+TEMPLATES = ["paper.md", "supplement.md", "figures.md", "figures.html"]
 
 
 rule all:
-    """Figures, tables, claims and the article, and a page of them: results/index.html"""
+    """Make everything: the page results/index.html shows it"""
     default_target: True
     localrule: True
     input:
-        [files(name) for name in KINDS],
-        rules.article.output,
-        page=rules.article.output.index,
+        [files(name) for name in ENTRIES],
+        "results/figures/claims.nc",
+        "results/index.html",
+
+
+# The stages compute datasets.
+
+
+rule restitution_model:
+    """Motions and orbits of the restitution model, Eqs. 1 to 9"""
+    input:
+        code=checkout("workflow/scripts/restitution_model.py") + MODELS,
+    output:
+        **datasets("restitution_model"),
+    params:
+        entries=parameters("restitution_model"),
+        settings={},
     log:
-        "results/logs/all.log",
+        "results/logs/restitution_model.log",
     conda:
         "workflow/envs/environment.yaml"
-    shell:
-        "echo Look at {input.page} | tee {log}"
+    script:
+        "workflow/scripts/restitution_model.py"
+
+
+rule apparent_restitution:
+    """Apparent restitution and other quantities of the orbits along the frequency ratio ϖ"""
+    input:
+        code=checkout("workflow/scripts/apparent_restitution.py") + MODELS,
+    output:
+        **datasets("apparent_restitution"),
+    params:
+        entries=parameters("apparent_restitution"),
+        settings={"release": config["release"]},
+    log:
+        "results/logs/apparent_restitution.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/apparent_restitution.py"
+
+
+rule continuation:
+    """Branches of n-T orbits along the amplitude Λ, with their bifurcations"""
+    input:
+        code=checkout("workflow/scripts/continuation.py") + MODELS + PAPER,
+    output:
+        **datasets("continuation"),
+    params:
+        entries=parameters("continuation"),
+        settings={"release": config["release"], "largest_step": config["largest_step"]},
+    log:
+        "results/logs/continuation.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/continuation.py"
+
+
+rule permanent_contact:
+    """Thresholds of permanent contact along the frequency ratio ϖ"""
+    input:
+        code=checkout("workflow/scripts/permanent_contact.py") + MODELS,
+    output:
+        **datasets("permanent_contact"),
+    params:
+        entries=parameters("permanent_contact"),
+        settings={"release": config["release"]},
+    log:
+        "results/logs/permanent_contact.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/permanent_contact.py"
+
+
+rule error_thresholds:
+    """Frequency ratios ϖ above which the restitution model is accurate enough"""
+    input:
+        code=checkout("workflow/scripts/error_thresholds.py") + MODELS,
+    output:
+        **datasets("error_thresholds"),
+    params:
+        entries=parameters("error_thresholds"),
+        settings={"release": config["release"]},
+    log:
+        "results/logs/error_thresholds.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/error_thresholds.py"
+
+
+rule validity:
+    """Map of the stable orbits for which the advised frequency ratio is enough"""
+    input:
+        code=checkout("workflow/scripts/validity.py") + MODELS,
+    output:
+        **datasets("validity"),
+    params:
+        entries=parameters("validity"),
+        settings={"release": config["release"]},
+    log:
+        "results/logs/validity.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/validity.py"
+
+
+rule time_histories:
+    """Heights of ball and table over a cycle"""
+    input:
+        code=checkout("workflow/scripts/time_histories.py") + MODELS,
+    output:
+        **datasets("time_histories"),
+    params:
+        entries=parameters("time_histories"),
+        settings={"release": config["release"]},
+    log:
+        "results/logs/time_histories.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/time_histories.py"
+
+
+rule printed_numbers:
+    """Printed numbers under hypotheses on what the authors computed"""
+    input:
+        code=checkout("workflow/scripts/printed_numbers.py") + MODELS + PAPER + modules("measures"),
+    output:
+        **datasets("printed_numbers"),
+    params:
+        entries=parameters("printed_numbers"),
+        settings={},
+    log:
+        "results/logs/printed_numbers.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/printed_numbers.py"
+
+
+# Figures and tables are made from their datasets, and texts from all of them.
+
+
+def captions(name):
+    """What `snakemake --report` shows beside a figure or a table."""
+    entry = ENTRIES[name]
+    return {"name": name, "title": entry["title"], "caption": entry.get("caption", "")}
+
+
+for name in FIGURES:
+
+    rule:
+        name:
+            name
+        input:
+            data=[file for file in files(name) if file.endswith(".nc")],
+            code=checkout("workflow/scripts/draw.py") + DRAWING,
+        output:
+            png=report(f"results/figures/{name}.png", category="Figures", labels=captions(name)),
+            svg=f"results/figures/{name}.svg",
+        log:
+            f"results/logs/{name}.log",
+        conda:
+            "workflow/envs/environment.yaml"
+        script:
+            "workflow/scripts/draw.py"
+
+
+for name in TABLES:
+
+    rule:
+        name:
+            name
+        input:
+            data=f"results/figures/{name}.nc",
+            code=checkout("workflow/scripts/tables.py") + JUDGING,
+        output:
+            md=f"results/figures/{name}.md",
+            csv=report(f"results/figures/{name}.csv", category="Tables", labels=captions(name)),
+        log:
+            f"results/logs/{name}.log",
+        conda:
+            "workflow/envs/environment.yaml"
+        script:
+            "workflow/scripts/tables.py"
+
+
+rule claims:
+    """Judge the claims of the paper"""
+    input:
+        data=expand("results/figures/{name}.nc", name=DATASETS),
+        code=checkout("workflow/scripts/claims.py") + JUDGING,
+    output:
+        nc="results/figures/claims.nc",
+        md="results/figures/claims.md",
+        csv=report("results/figures/claims.csv", category="Tables", labels={"name": "claims"}),
+    log:
+        "results/logs/claims.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/claims.py"
+
+
+rule article:
+    """Write the article, its supplement, the list of figures and results/index.html"""
+    input:
+        data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims"]),
+        code=checkout(
+            "workflow/scripts/article.py",
+            *(f"workflow/templates/{name}.j2" for name in TEMPLATES),
+            "workflow/studies/choices.csv",
+        )
+        + WRITING,
+    output:
+        paper="results/paper.md",
+        supplement="results/supplement.md",
+        figures="results/figures/README.md",
+        index="results/index.html",
+    params:
+        entries=ENTRIES,
+    log:
+        "results/logs/article.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/article.py"
+
+
+# The reference: figures/, paper.md and supplement.md. These rules have no outputs, and run whenever
+# they are named.
+
+
+def named(wildcards):
+    """The figures, tables and datasets to compare: those on the command line, or else all."""
+    found = set()
+    for target in workflow.dag_settings.targets:
+        found.update(names(target) if target in STAGES else [Path(target).stem])
+    return sorted(found & {*ENTRIES})
+
+
+rule diff:
+    """Compare the results with the reference"""
+    localrule: True
+    input:
+        lambda wildcards: [file for name in named(wildcards) for file in files(name)]
+        or rules.all.input,
+    params:
+        names=named,
+        config=config,
+    log:
+        "results/logs/diff.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/compare.py"
+
+
+rule accept:
+    """Make the results the new reference"""
+    localrule: True
+    input:
+        rules.all.input,
+    log:
+        "results/logs/accept.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/accept.py"
+
+
+# A run that fails leaves no page of an earlier comparison.
+onstart:
+    for path in ("results/diff/index.html", "results/diff/report.txt"):
+        Path(path).unlink(missing_ok=True)

@@ -1,16 +1,51 @@
-"""The datasets of the reference, which are read once for all tests."""
+"""What several tests read: the configuration, the datasets of the reference, and the stages."""
 
+import importlib.util
+import json
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import xarray as xr
+import yaml
 
 from bouncing_ball.datasets import read
 
-FIGURES = Path(__file__).resolve().parents[1] / "figures"
+ROOT = Path(__file__).resolve().parents[1]
+FIGURES = ROOT / "figures"
+CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
+ENTRIES = {
+    name: entry
+    for section in CONFIG.values()
+    if isinstance(section, dict)
+    for name, entry in section.items()
+    if name != "title"
+}
+"""The registered figures, tables and datasets by name."""
 
 
 @cache
 def reference() -> dict[str, xr.Dataset]:
     """All datasets by name. They are not to be changed, but copied first."""
     return {path.stem: read(path) for path in FIGURES.glob("*.nc")}
+
+
+@cache
+def stage(name: str) -> ModuleType:
+    """The script of a stage as a module: its functions, without its run."""
+    path = ROOT / "workflow/scripts" / f"{name}.py"
+    specification = importlib.util.spec_from_file_location(name, path)
+    found = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(found)
+    return found
+
+
+@cache
+def table_with_another_row() -> xr.Dataset:
+    """Table 1 computed with a row that the paper does not print, between those that it prints."""
+    given = CONFIG["continuation"]["table1"] | {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}
+    found = stage("continuation").table1(given, CONFIG["release"], CONFIG["largest_step"])
+    return found.assign_attrs(
+        title=ENTRIES["table1"]["title"],
+        parameters=json.dumps(given | {"release": CONFIG["release"]}),
+    )

@@ -1,17 +1,17 @@
-"""The study of the choices: its result in the repository is what it finds."""
+"""The study of the choices: how it judges, and what its result in the repository has.
+
+`make choices` writes the result again, and git shows whether it has changed.
+"""
 
 import csv
 import importlib
 import sys
-from pathlib import Path
 
+import numpy as np
 import pytest
-from tests.reference import reference
+from tests.reference import ROOT, reference
 
 from bouncing_ball.claims import CLAIMS
-from bouncing_ball.datasets import printed_table
-
-ROOT = Path(__file__).parents[1]
 
 
 @pytest.fixture(scope="module")
@@ -26,27 +26,45 @@ def study():
             sys.path.remove(folder)
 
 
-def test_the_result_in_the_repository_is_that_of_the_study(study):
-    found = study.changed_verdicts(reference(), printed_table(study.PRINTED))
-    with open(study.RESULT, encoding="utf-8", newline="") as file:
-        assert list(csv.DictReader(file)) == found
+def test_the_parameters_of_a_figure_change_no_verdict(study):
+    """With fewer points, as datasets of other choices have."""
+    compute = study.ALONG_RATIO["fig10"]
+    for _, same in study.other_axes(reference()["fig10"], compute, [1.0], [1000.0]):
+        changed = study.verdicts(reference() | {"fig10": same}, {"fig10"})
+        assert changed == study.verdicts(reference(), {"fig10"})
 
 
-def test_the_parameters_of_the_figures_change_no_verdict(study):
-    """With fewer points, as those of other choices have."""
-    printed = printed_table(study.PRINTED)
-    for name in ("fig05", "fig06", "fig10"):
-        axes = study.other_axes(reference()[name], study.ALONG_RATIO[name], [1.0], [1000.0])
-        for _, same in axes:
-            changed = study.verdicts({**reference(), name: same}, printed, {name})
-            assert changed == study.verdicts(reference(), printed, {name})
+def test_an_axis_ends_where_it_is_chosen_to_end(study):
+    compute = study.PERMANENT_CONTACT["fig11"]
+    axes = dict(study.other_axes(reference()["fig11"], compute, [0.1, 2], [10, 100]))
+    names = ["0.1 to 100", "2 to 100", "0.5 to 10", "0.5 to 100"]
+    assert [*axes] == [f"ϖ from {name}" for name in names]
+    # The first points of 20 in a decade from 0.5 and from 2 on.
+    first = [0.1, 10 ** (7 / 20), 10 ** (-6 / 20), 10 ** (-6 / 20)]
+    ends = [each.frequency_ratio.values[[0, -1]] for each in axes.values()]
+    assert np.array(ends) == pytest.approx(np.transpose([first, [100, 100, 10, 100]]))
 
 
 def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it(study):
-    judged = study.verdicts(reference(), printed_table(study.PRINTED), {"fig12"})
+    judged = study.verdicts(reference(), {"fig12"})
     assert [name for name, _ in judged] == [
         claim.name for claim in CLAIMS if "fig12" in claim.datasets
     ]
+
+
+def test_another_exponent_of_the_largest_frequency_ratio_judges_the_same_printed_ends(study):
+    table = {
+        (1e3 if ratio == 1e4 else ratio, n): ends for (ratio, n), ends in study.TABLE_1.items()
+    }
+    moved = reference()["table1"].assign_coords(
+        frequency_ratio=[
+            1e3 if ratio == 1e4 else ratio for ratio in reference()["table1"].frequency_ratio.values
+        ]
+    )
+    here = study.verdicts(reference(), {"table1"})
+    there = study.verdicts(reference() | {"table1": moved}, {"table1"}, table)
+    assert [verdict for _, verdict in there] == [verdict for _, verdict in here]
+    assert [name for name, _ in there] == [name.replace("10000", "1000") for name, _ in here]
 
 
 def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):

@@ -3,12 +3,14 @@
 import json
 import os
 import platform
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from bouncing_ball import datasets
+from bouncing_ball import datasets, provenance
+from bouncing_ball.variables import Variable
 
 # What `git hash-object` says of "pass" and a line end.
 PASS = "2ae28399f5fda2dfb1b04405f4a3b4895f5fac1e"
@@ -21,8 +23,9 @@ def small():
     )
 
 
-def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path):
+def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkeypatch):
     path = tmp_path / "new" / "fig02.nc"
+    monkeypatch.setattr(provenance, "CHECKOUT", tmp_path)
     code = tmp_path / "code.py"
     code.write_bytes(b"pass\r\n")
     datasets.save(small, path, "Figure 2", {"n": np.int64(1), "range": {"max": 2.0}}, [code])
@@ -38,7 +41,7 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path):
     }
     assert "tolerance" not in saved.stable.attrs
     assert json.loads(saved.attrs["parameters"]) == {"n": 1, "range": {"max": 2.0}}
-    assert json.loads(saved.attrs["code"]) == {str(code): PASS}
+    assert json.loads(saved.attrs["code"]) == {"code.py": PASS}
     assert json.loads(saved.attrs["versions"])["numpy"] == np.__version__
     assert saved.attrs["computed_on"].startswith(platform.system())
     assert os.listdir(path.parent) == ["fig02.nc"]
@@ -52,7 +55,7 @@ def test_a_path_may_be_a_text_as_snakemake_gives_it(small, tmp_path):
 
 
 def test_a_variable_without_description_is_refused(small, tmp_path):
-    with pytest.raises(ValueError, match=r"^fig02.nc: .* has no description of height, speed$"):
+    with pytest.raises(ValueError, match=r"^fig02.nc: describe height, speed in variables.py$"):
         datasets.save(small.assign(height=1.0, speed=2.0), tmp_path / "fig02.nc", "", {}, [])
 
 
@@ -67,3 +70,37 @@ def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
     with pytest.raises(OSError, match="disk full"):
         datasets.save(small, path, "", {}, [])
     assert path.read_text() == "old"
+
+
+def test_a_description_belongs_to_its_dataset(small, tmp_path):
+    """A variable of one dataset has none in another; another package gives its own."""
+    named = small.assign(impacts=3)
+    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [])
+    with pytest.raises(ValueError, match="describe impacts in"):
+        datasets.save(named, tmp_path / "fig02.nc", "", {}, [])
+    own = {"n": Variable("order"), "phase": Variable("angle"), "stable": Variable("whether")}
+    datasets.save(
+        small, tmp_path / "mine.nc", "", {}, [], lambda name: own if name == "mine" else {}
+    )
+    assert datasets.read(tmp_path / "mine.nc").phase.long_name == "angle"
+
+
+def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settings(tmp_path):
+    def orbits(given, release):
+        """The parameters of a function are those of its entry, without the title."""
+        assert release == "force"
+        return xr.Dataset(coords={"n": np.arange(given["n"])})
+
+    entries = {name: {"title": name.upper(), "n": n} for n, name in enumerate(("fig02", "fig03"))}
+    snakemake = SimpleNamespace(
+        input=SimpleNamespace(code=[__file__]),
+        output={name: str(tmp_path / f"{name}.nc") for name in entries},
+        params=SimpleNamespace(entries=entries, settings={"release": "force"}),
+    )
+    datasets.save_stage({"fig02": orbits, "fig03": orbits}, snakemake)
+    for n, name in enumerate(entries):
+        data = datasets.read(tmp_path / f"{name}.nc")
+        assert data.sizes["n"] == n
+        assert data.attrs["title"] == name.upper()
+        assert datasets.parameters(data) == {"n": n, "release": "force"}
+        assert [*json.loads(data.attrs["code"])] == ["tests/test_datasets.py"]

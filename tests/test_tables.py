@@ -1,4 +1,4 @@
-"""Table 1, the thresholds and the readings of the printed numbers as texts."""
+"""Table 1, the thresholds and the hypotheses on the printed numbers as texts."""
 
 import csv
 import io
@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from tests.reference import reference, table_with_another_row
 
 from bouncing_ball import tables
 from bouncing_ball.verdicts import against_print
@@ -66,6 +67,14 @@ def test_an_end_that_is_not_printed_has_no_verdict(ends):
     assert tables.table1(ends)[2][3:] == ["1.03830", "", "", ""]
 
 
+def test_a_row_that_the_paper_does_not_print_has_numbers_alone_and_leaves_the_others():
+    rows = tables.table1(table_with_another_row())
+    more = [row for row in rows if row[0] == "50"]
+    assert [row[:3] for row in more] == [["50", str(n), end] for n in (1, 2, 3) for end in BOUNDS]
+    assert all(float(row[3]) > 0 and row[4:] == ["", "", ""] for row in more)
+    assert [row for row in rows if row not in more] == tables.table1(reference()["table1"])
+
+
 def test_table_1_under_other_parameters_is_not_judged(ends):
     ends.attrs["parameters"] = json.dumps(PARAMETERS | {"restitution": 0.7})
     assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not asked", "not asked"]
@@ -89,25 +98,28 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
     ]
 
 
-def test_the_readings_have_their_distances_and_counts():
-    over = ("reading", "number")
+def test_hypotheses_have_their_distances_and_counts():
+    """Names of numbers are not parsed: the variable `row` says which are ends of Table 1."""
+    over = ("hypothesis", "number")
     data = xr.Dataset(
         {
-            "found": (over, [[0.2547, 1.0383, 82.177], [0.2552, np.nan, np.nan]]),
-            "deviation_units": (over, [[-0.3, 6.3, 0.177], [0.2, np.nan, np.nan]]),
-            "agrees": (over, [[True, False, True], [True, False, False]]),
-            "rms_difference": ("reading", [2.884, np.nan]),
-            "printed_text": ("number", ["0.255", "1.032", "82"]),
+            "found": (over, [[0.2547, 1.0383, 0.5, 82.177], [0.2552, np.nan, 0.5, np.nan]]),
+            "deviation_units": (over, [[-0.3, 6.3, 0.0, 0.177], [0.2, np.nan, 0.0, np.nan]]),
+            "agrees": (over, [[True, False, True, True], [True, False, True, False]]),
+            "rms_difference": ("hypothesis", [2.884, np.nan]),
+            "printed_text": ("number", ["0.255", "1.032", "0.500", "82"]),
+            "row": ("number", [2.0, 2.0, 1e4, np.nan]),
         },
         {
-            "reading": ["equations as they stand", "other"],
-            "number": ["Table 1: 2, 1, saddle-node", "Table 1: 2, 1, period doubling", "height"],
+            "hypothesis": ["equations as they stand", "other"],
+            "number": ["a saddle-node", "a period doubling", "another", "height"],
         },
     )
-    assert tables.readings(data) == [
-        ["reading", "Table 1, ϖ = 2", "rms, compliant rows", "82", "reproduced"],
-        ["equations as they stand", "1 of 2", "2.88", "82.18 (+0.18)", "2 of 3"],
-        ["other", "1 of 2", "–", "–", "1 of 3"],
+    heads = ["Table 1, ϖ = 2", "Table 1, ϖ = 10000", "rms, compliant rows", "82", "reproduced"]
+    assert tables.hypotheses(data) == [
+        ["hypothesis", *heads],
+        ["equations as they stand", "1 of 2", "1 of 1", "2.88", "82.18 (+0.18)", "3 of 4"],
+        ["other", "1 of 2", "1 of 1", "–", "–", "2 of 4"],
     ]
 
 

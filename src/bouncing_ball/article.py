@@ -1,13 +1,13 @@
 """The article and its supplement: templates filled in from datasets.
 
-A template has text and names of numbers, and no numbers; `filters` below are what it can do with a
-number. Numbers are rounded to the nearest, and a bound away from what it bounds (`to="up"` for an
-upper bound, `to="down"` for a lower one), so that the sentence with it stays true. A number that a
-dataset does not have, because it was computed with other parameters, is a dash.
+A template has text and names of numbers, and no numbers. The filters below print a number. All
+numbers are rounded to the nearest; an upper or lower bound gets more digits if it would become
+false. A number that a dataset does not have, because it was computed with other parameters, is a
+dash.
 """
 
 from collections.abc import Iterable
-from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
+from decimal import ROUND_HALF_EVEN, Decimal
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bouncing_ball import claims, paper, restitution, spring_damper, tables
+from bouncing_ball import measures, paper, restitution, spring_damper, tables
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
@@ -59,15 +59,16 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         error_limit=paper.LIMIT,
         stiff=paper.STIFF,
         stiff_errors=stiff_errors(datasets),
-        stable_ranges=claims.stable_ranges,
+        other_contacts=other_contacts(datasets["hypotheses"]),
+        stable_ranges=measures.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
-        error_of_eq_8=claims.error_of_eq_8,
-        departure=claims.departure,
-        spread=claims.spread,
+        error_of_eq_8=measures.error_of_eq_8,
+        departure=measures.departure,
+        spread=measures.spread,
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
-        crossing=claims.crossing,
+        crossing=measures.crossing,
         choices=tables.markdown(tables.choices(CHOICES.read_text("utf-8"))),
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
@@ -77,41 +78,40 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
 
 # Numbers as text
 
-ROUNDINGS = {"nearest": ROUND_HALF_EVEN, "up": ROUND_CEILING, "down": ROUND_FLOOR}
 NOISE = Decimal("1e-9")
-"""How far a number may pass a rounded one and still count as it, as a share of itself if it exceeds
-1: rounding errors of the datasets are smaller."""
+"""Rounding errors of the datasets: a bound that is passed by less is true."""
 
 
-def fixed(value: float, digits: int, to: str = "nearest", shift: int = 0) -> str:
-    """A number with a number of decimals, rounded to the nearest, or as a bound up or down.
+def fixed(value: float, digits: int, bound: str = "", shift: int = 0) -> str:
+    """Print a number with a number of decimals, with the decimal point moved by `shift`.
 
-    Its sign is a minus and no hyphen. `shift` moves the decimal point before it is rounded.
+    As an "upper" or "lower" `bound` it gets more decimals until it is true.
 
     >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
     ('82.18', '−0.2', '0.00', '–')
-    >>> fixed(0.00031460, 5, "up"), fixed(1.5462, 2, "down"), fixed(0.5000000000001, 1, "up")
-    ('0.00032', '1.54', '0.5')
+    >>> fixed(5.9794, 2, "upper"), fixed(5.9714, 2, "upper"), fixed(5.9714, 2, "lower")
+    ('5.98', '5.9714', '5.97')
     """
     if not np.isfinite(value):
         return "–"
     # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
     number = Decimal(repr(float(value))).scaleb(shift)
-    last = Decimal(1).scaleb(-digits)
-    nearest = number.quantize(last, rounding=ROUND_HALF_EVEN)
-    if abs(number - nearest) > NOISE * max(abs(number), Decimal(1)):
-        nearest = number.quantize(last, rounding=ROUNDINGS[to])
+    noise = NOISE * max(abs(number), Decimal(1))
+    rounded = number.quantize(Decimal(1).scaleb(-digits), rounding=ROUND_HALF_EVEN)
+    is_false = {"upper": rounded < number - noise, "lower": rounded > number + noise}
+    if is_false.get(bound):
+        return fixed(value, digits + 1, bound, shift)
     # Zero has no sign.
-    return str(nearest + 0).replace("-", "−")
+    return str(rounded + 0).replace("-", "−")
 
 
-def percent(value: float, digits: int = 0, to: str = "nearest") -> str:
-    """A share in per cent.
+def percent(value: float, digits: int = 0, bound: str = "") -> str:
+    """Print a share in per cent.
 
-    >>> percent(0.01), percent(0.02673, 1), percent(0.00861, 2, "up"), percent(0.00861, 1, "down")
-    ('1 %', '2.7 %', '0.87 %', '0.8 %')
+    >>> percent(0.01), percent(0.02673, 1), percent(0.00866, 2, "upper")
+    ('1 %', '2.7 %', '0.87 %')
     """
-    text = fixed(value, digits, to, shift=2)
+    text = fixed(value, digits, bound, shift=2)
     return text if text == "–" else f"{text} %"
 
 
@@ -169,18 +169,23 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
         if up_to == r[-1]:
             parts.append(f"n = {up_to.n.item()} at every r")
         elif np.isfinite(up_to):
-            parts.append(f"n = {up_to.n.item()} up to r = {fixed(up_to, 2, 'up')}")
+            parts.append(f"n = {up_to.n.item()} up to r = {fixed(up_to, 2)}")
     return listed(parts) if parts else "no n"
 
 
+def other_contacts(hypotheses: xr.Dataset) -> list[str]:
+    """The contacts of hypotheses that differ from the contact of the restored equations."""
+    return sorted({*hypotheses.contact_of.values.tolist()} - {"", "equations as they stand"})
+
+
 def stiff_errors(datasets: Datasets) -> xr.DataArray:
-    """`claims.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
+    """`measures.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
     sweeps = {name: datasets[name] for name in STIFF_CURVES}
     stiff = {
         name: each
         for name, each in sweeps.items()
-        if each.frequency_ratio.sel(frequency_ratio=claims.STIFF_CONTACTS).size
+        if each.frequency_ratio.sel(frequency_ratio=measures.STIFF_CONTACTS).size
     }
     if stiff:
-        return claims.stiff_errors(**stiff)
+        return measures.stiff_errors(**stiff)
     return xr.DataArray([[np.nan]], {"orbit": ["–"], "measure": ["–"]}, ("orbit", "measure"))

@@ -7,195 +7,38 @@ algebra has the reason in place of a function. The formulas themselves were *res
 damaged text by deriving them again, and are listed and not counted.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from bouncing_ball import restitution
 from bouncing_ball.datasets import Datasets, parameters
-from bouncing_ball.paper import LIMIT, PARAMETERS, PRINTED, STIFF
-from bouncing_ball.spring_damper import Contact, damping_ratio
-from bouncing_ball.verdicts import (
+from bouncing_ball.measures import (
+    QUANTITIES,
     ROUNDING,
-    Claim,
-    above,
-    answer,
-    argued,
-    at_least,
-    at_most,
+    STIFF_CONTACTS,
+    between,
+    branches,
     complete,
+    crossing,
+    departure,
+    error_of_eq_8,
+    from_the_stiffest,
+    last_special,
+    residual,
+    restitution_at_rest,
+    spread,
+    stable_ranges,
+    steps,
+    stiff_errors,
 )
+from bouncing_ball.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, STIFF, TABLE_1
+from bouncing_ball.verdicts import Claim, above, answer, argued, at_least, at_most
 
-STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
-"""Frequency ratios from there on."""
 LINE = 0.01
 """The width of a line as a share of the axis of a figure, some 0.5 mm of 5 cm: what is smaller
 cannot be seen in it."""
-
-
-QUANTITIES = {
-    "max_height": "greatest height",
-    "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of impact",
-    "apparent_restitution": "apparent restitution coefficient",
-    "saddle_node": "Λ of the saddle-node",
-    "period_doubling": "Λ of the period doubling",
-    "permanent_contact": "Λ of permanent contact",
-}
-"""Names of the quantities whose error is scanned."""
-
-
-# What claims read in datasets
-
-
-def steps(data: xr.DataArray) -> NDArray:
-    """Changes from each contact to the next stiffer one."""
-    return data.sortby("frequency_ratio").diff("frequency_ratio").values
-
-
-def between(curve: xr.DataArray) -> PchipInterpolator:
-    """A curve along ϖ as a function of ln ϖ, by the piecewise cubic that is monotone with it."""
-    return PchipInterpolator(np.log(curve["frequency_ratio"].values), complete(curve))
-
-
-def crossing(curve: xr.DataArray, level: float) -> float:
-    """The largest ϖ at which a curve takes a value; NaN if it does not."""
-    places = between(curve).solve(level, extrapolate=False)
-    return float(np.exp(places.max())) if places.size else np.nan
-
-
-def from_the_stiffest(ends: xr.DataArray) -> xr.DataArray:
-    """Table 1 from the stiffest row to the most compliant one."""
-    return ends.sortby("frequency_ratio", ascending=False)
-
-
-def last_special(branch: xr.Dataset, kind: str) -> float:
-    """Λ at the last special point of a kind along a branch.
-
-    A branch ends on the stable side of the saddle-node with which Table 1 begins.
-    """
-    found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
-    if not found.size:
-        raise ValueError(f"the branch has no {kind}")
-    return float(found[-1])
-
-
-def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
-    """The branches of figures, one for each frequency ratio, from the most compliant contact on."""
-    return [
-        figure.sel(frequency_ratio=ratio)
-        for figure in figures
-        for ratio in np.sort(figure["frequency_ratio"])
-    ]
-
-
-def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
-    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
-
-    They lie between special points, or between one and an end of the branch.
-    """
-    special = branch.isel(special=branch["special_kind"].values != "")
-    places = complete([0.0, *special["special_arclength"].values, 1.0])
-    amplitude = branch["amplitude"].values
-    ends = np.array([amplitude[0], *special["special_amplitude"].values, amplitude[-1]])
-    middles = (places[:-1] + places[1:]) / 2
-    stable = branch["stable"].values[np.rint(middles * (amplitude.size - 1)).astype(int)]
-    ranges = np.sort(np.stack([ends[:-1], ends[1:]], axis=1), axis=1)
-    return [(low, high) for low, high in ranges[stable].tolist()]
-
-
-def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
-    """The largest errors of the restitution model at ϖ ≥ 100, over orbit and measure.
-
-    `sweeps` are the datasets of Figs. 5, 6 and 10 by name; an orbit that two of them have is given
-    once. Errors are relative, but that of the phase is a share of a period of the table.
-    """
-    found = {}
-    for sweep in sweeps.values():
-        n = parameters(sweep)["n"]
-        for _, curve in sweep.sel(frequency_ratio=STIFF_CONTACTS).groupby("case"):
-            r = curve["restitution"].item()
-            amplitude = curve["amplitude"].item()
-            limits = {
-                "max_height": restitution.max_height(n, r, amplitude),
-                "bounce_velocity": restitution.bounce_velocity(n),
-                "apparent_restitution": r,
-            }
-            errors = {name: curve[name].values / limit - 1 for name, limit in limits.items()}
-            turn = curve["phase"].values - restitution.impact_phase(n, r, amplitude)
-            errors["phase"] = turn / (2 * np.pi)
-            orbit = f"n = {n}, r = {r:g}, Λ = {amplitude:g}"
-            found[orbit] = [np.abs(error).max() for error in errors.values()]
-    coordinates = {"orbit": list(found), "measure": list(errors)}
-    return xr.DataArray(list(found.values()), coordinates, ("orbit", "measure"))
-
-
-def departure(fig10: xr.Dataset) -> xr.DataArray:
-    """Relative departure of the bouncing-off velocity from nπ."""
-    return abs(fig10["bounce_velocity"] / fig10["restitution_bounce_velocity"] - 1)
-
-
-def spread(fig10: xr.Dataset) -> xr.DataArray:
-    """How far the bouncing-off velocities at different amplitudes are apart, as a share of nπ."""
-    velocity = fig10["bounce_velocity"]
-    apart = velocity.max("case", skipna=False) - velocity.min("case", skipna=False)
-    return apart / fig10["restitution_bounce_velocity"]
-
-
-def error_of_eq_8(thresholds: xr.Dataset) -> float:
-    """Relative distance of the period doubling of Eq. 8 from that of the map of Eq. 5, to which
-    the spring-damper model tends.
-    """
-    given = parameters(thresholds)
-    limit = restitution.period_doubling(given["n"], given["restitution"])
-    printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
-    return abs(limit / printed - 1)
-
-
-def residual(figure: xr.Dataset) -> NDArray:
-    """What Eqs. 23, 24, 25 and 26 leave on the orbits of a figure, of which 23 is in contact times
-    ϖ and the others in the units of the model.
-    """
-    n = parameters(figure)["n"]
-    ratio = figure["frequency_ratio"].values[:, np.newaxis]
-    amplitude, phase, end, duration, before, after = (
-        complete(figure[name])
-        for name in (
-            "amplitude",
-            "phase",
-            "release_phase",
-            "contact_duration",
-            "impact_velocity",
-            "bounce_velocity",
-        )
-    )
-    x = amplitude * np.cos(phase)
-    impact_height = amplitude * np.sin(phase)
-    contact = Contact(ratio, figure["damping_ratio"].item())
-    motion = contact.motion(duration, before - x, x, impact_height)
-    flight = 2 * np.pi * n - duration
-    landing = motion.displacement + amplitude * np.sin(end) + after * flight - flight**2 / 2
-    return np.stack(
-        [
-            ratio * motion.displacement,
-            motion.velocity + amplitude * np.cos(end) - after,
-            landing - impact_height,
-            after - flight - before,
-        ]
-    )
-
-
-def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
-    """Restitution of a ball that falls with the velocity π of the 1-T orbit on a table at rest."""
-    contact = Contact(ratio, damping_ratio(r), weight=weight)
-    time = np.pi / (ratio * np.sqrt(1 - contact.damping_ratio**2))
-    for _ in range(20):  # Newton's method for the end of the contact, δ = 0
-        motion = contact.motion(time, -np.pi, 0.0, 0.0)
-        time = time - motion.displacement / motion.velocity
-    return float(contact.motion(time, -np.pi, 0.0, 0.0).velocity / np.pi)
 
 
 # Claims
@@ -204,25 +47,29 @@ CLAIMS: list[Claim] = []
 """The claims in the order of the paper, without the ends of Table 1."""
 
 
-def claim(name: str, place: str, text: str, datasets: str = "", **more) -> Callable:
-    """Makes a claim of the function that decides it, and adds it to `CLAIMS`.
+def claim(
+    name: str, place: str, text: str, datasets: str = "", beside: str | None = None, **more
+) -> Callable:
+    """Make a claim of the function that decides it, and add it to `CLAIMS`.
 
-    `datasets` are the names of the datasets that the function takes, in its order. Of a claim with
-    a printed number, the function returns the computed one.
+    `datasets` are the names of the datasets that the function takes, in its order. For a claim with
+    a printed number, the function returns the computed one. The claim is shown `beside` a figure or
+    table, by default that of the first dataset.
     """
 
     def add(decide: Callable) -> Callable:
         needed = {each: PARAMETERS.get(each, {}) for each in datasets.split()}
         printed = PRINTED.get(name, "")
-        CLAIMS.append(Claim(name, place, text, needed, decide, printed, **more))
+        shown = next(iter(needed), "") if beside is None else beside
+        CLAIMS.append(Claim(name, place, text, needed, decide, printed, beside=shown, **more))
         return decide
 
     return add
 
 
-def by_construction(name: str, place: str, text: str, because: str) -> None:
-    """Adds a claim that follows from the restored formulas, with the reason, to `CLAIMS`."""
-    CLAIMS.append(Claim(name, place, text, {}, list, because=because))
+def by_construction(name: str, place: str, text: str, because: str, beside: str = "") -> None:
+    """Add a claim that follows from the restored formulas, with the reason, to `CLAIMS`."""
+    CLAIMS.append(Claim(name, place, text, {}, list, because=because, beside=beside))
 
 
 # Abstract and introduction
@@ -380,7 +227,7 @@ def no_analytical_solution():
 
 
 @claim(
-    "contact shortens",
+    "contact lengthens",
     "Abstract and Introduction",
     "the contact gets longer as its stiffness decreases",
     "fig05 fig06 fig10 fig13",
@@ -398,7 +245,8 @@ def contact_gets_longer(*sweeps):
     "table1",
 )
 def existence_changes(table1):
-    node = from_the_stiffest(table1["computed"]).isel(frequency_ratio=-1).sel(bound="saddle-node")
+    compliant = from_the_stiffest(table1).isel(frequency_ratio=-1)
+    node = compliant["computed"].sel(bound="saddle-node")
     rigid = table1["restitution_range"].sel(impact_map="exact", bound="saddle-node")
     moved = abs(node.values / rigid.values - 1)
     return [at_least("the smallest relative change of a saddle-node at ϖ = 2", moved, LIMIT)]
@@ -411,6 +259,7 @@ by_construction(
     "after Eq. 7, Fig. 3",
     "the n-T orbits appear in a saddle-node at the Λ of Eq. 7",
     "it is the smallest Λ at which Eq. 6 has a phase, and a multiplier of Eq. 5 is 1 there",
+    beside="fig03",
 )
 
 
@@ -442,6 +291,7 @@ def period_doubling(fig03):
     "fig08 fig09",
     remark="in the restitution model it is algebra of Eq. 5; at ϖ = 2 the branch of n = 1 is "
     "stable twice more, at its long contacts, once up to its end in permanent contact",
+    beside="table1",
 )
 def stability_range(*figures):
     absent = 0
@@ -624,6 +474,7 @@ def negligible_above_100(*sweeps):
     "fig03 fig05 fig06 fig08 fig09 fig10 fig13 fig14 fig15",
     remark="no earlier impact or release may occur on the orbits in our versions of the figures; "
     "on longer axes of Figs. 3 and 8, whose ends are our choice, some orbits are not admissible",
+    beside="several",
 )
 def one_impact_per_period(*figures):
     wrong = 0
@@ -709,7 +560,7 @@ def apart_when_compliant(*figures):
     "Eq. 8; the moves are called slight",
 )
 def bifurcations_move(table1, lowest):
-    move = from_the_stiffest(table1["computed"]).diff("frequency_ratio")
+    move = from_the_stiffest(table1)["computed"].diff("frequency_ratio")
     outwards = xr.concat(
         [-move.sel(bound="saddle-node"), move.sel(bound="period doubling")], "bound"
     )
@@ -729,7 +580,7 @@ def bifurcations_move(table1, lowest):
     remark="the range of Table 1; *stable between* has further ones at ϖ = 2",
 )
 def range_widens(table1):
-    width = from_the_stiffest(table1["computed"]).diff("bound")
+    width = from_the_stiffest(table1)["computed"].diff("bound")
     return [
         above("the smallest growth from a row to the next, in Λ", width.diff("frequency_ratio"))
     ]
@@ -743,7 +594,7 @@ def range_widens(table1):
     remark="half a unit of the printed digits is allowed; the printed row is that of Eqs. 7 and 8",
 )
 def stiff_row(table1):
-    stiffest = table1.sel(frequency_ratio=table1["frequency_ratio"].max())
+    stiffest = from_the_stiffest(table1).isel(frequency_ratio=0)
     exact = table1["restitution_range"].sel(impact_map="exact")
     holmes = table1["restitution_range"].sel(impact_map="holmes")
     half = 0.0005
@@ -808,18 +659,21 @@ by_construction(
     "after Fig. 11",
     "the threshold of permanent contact tends to 1 for an infinite frequency ratio",
     "a limit of Eq. 33",
+    beside="fig11",
 )
 by_construction(
     "compliant threshold",
     "after Fig. 11",
     "the threshold of permanent contact grows beyond all bounds for a vanishing frequency ratio",
     "a limit of Eq. 33",
+    beside="fig11",
 )
 by_construction(
     "resonant threshold",
     "after Fig. 11",
     "the threshold of permanent contact is 2ζ at ϖ = 1",
     "Eq. 33 at ϖ = 1",
+    beside="fig11",
 )
 by_construction(
     "lowest threshold",
@@ -827,6 +681,7 @@ by_construction(
     "permanent contact remains stable at every frequency ratio up to Λ = 2ζ√(1 - ζ²)",
     "it is the minimum of Eq. 33, a condition of existence; small disturbances decay with the "
     "damping, and that large ones do is not shown",
+    beside="fig11",
 )
 
 
@@ -925,7 +780,7 @@ def representative(fig15, table1):
     eq_5 = abs(upper / fig15["period_doubling_amplitude"] - 1)
     given = parameters(fig15)
     printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
-    rows = from_the_stiffest(table1["printed"])
+    rows = from_the_stiffest(table1)["printed"]
     slight = float(complete(abs(rows / rows.isel(frequency_ratio=0) - 1)).max())
     return [
         at_most("both ends, as the moves of Table 1 that are called slight", [node, eq_5], slight),
@@ -986,25 +841,28 @@ def other_problems():
 # Table 1
 
 
-def table1_ends(printed: xr.DataArray) -> list[Claim]:
-    """A claim for each printed end of Table 1."""
+def table1_ends(
+    table: Mapping[tuple[float, int], tuple[str, str]] = TABLE_1,
+) -> list[Claim]:
+    """A claim for each end that Table 1 prints."""
     ends = []
-    stiffest = printed["frequency_ratio"].max()
-    for place, text in printed.to_series().items():
-        where = dict(zip(printed.dims, place, strict=True))
-        ratio, n, bound = place
-        of_eq_8 = ratio == stiffest and bound == "period doubling"
-        ends.append(
-            Claim(
-                f"Table 1: {ratio:g}, {n}, {bound}",
-                "Table 1",
-                f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
-                {"table1": PARAMETERS["table1"]},
-                lambda table1, where=where: table1["computed"].sel(where),
-                printed=text,
-                remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
+    stiffest = max(ratio for ratio, _ in table)
+    for (ratio, n), texts in table.items():
+        for bound, text in zip(BOUNDS, texts, strict=True):
+            where = {"frequency_ratio": ratio, "n": n, "bound": bound}
+            of_eq_8 = ratio == stiffest and bound == "period doubling"
+            ends.append(
+                Claim(
+                    f"Table 1: {ratio:g}, {n}, {bound}",
+                    "Table 1",
+                    f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
+                    {"table1": PARAMETERS["table1"]},
+                    lambda table1, where=where: table1["computed"].sel(where),
+                    printed=text,
+                    remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
+                    beside="table1",
+                )
             )
-        )
     return ends
 
 
@@ -1066,11 +924,13 @@ NOTHING = {
     "item": "",
     "statement": "",
     "decided_by": "",
+    "beside": "",
     "printed_text": "",
     "found": np.nan,
     "deviation_units": np.nan,
     "deviation": np.nan,
     "verdict": "",
+    "asked": True,
     "own_sense": "",
     "condition": "",
     "reason": "",
@@ -1079,7 +939,7 @@ NOTHING = {
 """The variables of the dataset, for what a claim does not have."""
 
 
-def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
+def judge(datasets: Datasets) -> xr.Dataset:
     """The verdict on each claim, and the restored formulas, over the dimension `claim`.
 
     Parameters
@@ -1087,8 +947,6 @@ def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
     datasets : mapping
         The datasets of the figures and tables by name. A claim whose datasets are missing is not
         computed.
-    printed : xarray.DataArray
-        The printed Table 1 as texts, from `datasets.printed_table`.
     """
     rows = [
         NOTHING
@@ -1098,11 +956,12 @@ def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
             "item": claim.place,
             "statement": claim.text,
             "decided_by": ", ".join(claim.datasets),
+            "beside": claim.beside,
             "printed_text": claim.printed,
             "remark": claim.remark,
         }
         | answer(claim, datasets)
-        for claim in [*CLAIMS, *table1_ends(printed)]
+        for claim in [*CLAIMS, *table1_ends()]
     ]
     rows += [
         NOTHING
@@ -1113,7 +972,6 @@ def judge(datasets: Datasets, printed: xr.DataArray) -> xr.Dataset:
             "statement": text,
             "decided_by": members,
             "condition": "tests/test_formulas.py",
-            "verdict": "restored",
         }
         for equations, text, members in FORMULAS
     ]

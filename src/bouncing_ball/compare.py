@@ -1,385 +1,501 @@
-"""The comparison of results with the reference.
+"""Compare results with the reference in git, and make results the reference.
 
-The reference is kept in git: the folder `figures` with datasets, pictures and tables, and the texts
-`paper.md` and `supplement.md`. A run writes the same files into a folder of its own, `results`.
-Three comparisons are made, of which `differences` says what is different:
+The reference is a folder `figures` and some texts beside it; a run writes the same files into a
+folder of its own. Numbers of datasets agree within the tolerances that the reference declares. All
+other files are functions of datasets, and are compared byte for byte. If one of their datasets
+differs, this is what is reported, and they are only listed as not compared. Another processor
+rounds numbers differently: then a picture, a table or a page of one dataset agrees if today's code
+makes the files of both sides from the datasets of both sides.
 
-1. Each dataset of the results with that of the reference. A result that records other parameters
-   than those of the configuration, or other code than today's, is stale, whatever else it says.
-2. Pictures, tables, claims and texts are functions of datasets. Today's code makes them again from
-   the datasets of the *reference*, and they must equal the files of the reference. The datasets
-   being the same, there is no rounding to forgive.
-3. Made from the datasets of the *results*, they must equal the files of the results in the same
-   way. Otherwise a picture is older than its dataset, or was edited.
-
-The cause of a difference is what the file is made from and what has changed. A dataset records its
-parameters, versions, and files of code with their contents, so that those of both sides can be
-compared without git, which then only says when a file changed. Claims change by other code, which
-the second comparison shows, or by datasets: those that alone change them in the reference, too.
+A difference has a cause: parameters, files of code, or versions of libraries. A dataset records its
+own. `figures/accepted.json` has the code and the versions that gave the reference last. A file is a
+cause only if the results have it neither as accepted nor as on the main branch.
 """
 
-import io
-import os
-import sys
-import tempfile
-from collections.abc import Collection, Iterator, Mapping
-from contextlib import suppress
-from dataclasses import replace
-from functools import cache
+import base64
+import json
+import shutil
+import subprocess
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass, field
+from itertools import zip_longest
 from pathlib import Path
-from typing import Any
+from tempfile import TemporaryDirectory
 
 import jinja2
+import numpy as np
 import xarray as xr
 import yaml
+from PIL import Image
 
-from bouncing_ball import datasets
-from bouncing_ball.artifacts import Product, Side, needed, read_side, staleness
-from bouncing_ball.datasets import Datasets
-from bouncing_ball.differences import (
-    KINDS,
-    PICTURES,
-    Finding,
-    changes,
-    dataset_differences,
-    file_differences,
-    record,
-    same_bits,
-)
-from bouncing_ball.history import CHECKOUT, History
+from bouncing_ball.datasets import plain, read, whole
+from bouncing_ball.provenance import CHECKOUT, PACKAGES, contents, versions
+
+ACCEPTED = "figures/accepted.json"
+PROVENANCE = {"parameters", "code", "versions", "computed_on"}
+"""Attributes of a dataset that are compared elsewhere, or not at all."""
+PICTURES = (".png", ".svg")
+TEMPLATE = CHECKOUT / "workflow/templates/diff.html.j2"
 
 
-class Comparison:
-    """Results beside the reference: all, or those with the names given.
+@dataclass(frozen=True)
+class Project:
+    """A workflow whose results are compared.
 
-    `products` are all files that follow from datasets; these and their datasets are compared.
-    `config` is the configuration of the results, and `top` the checkout of today's code. Raises
-    ValueError if the results are no results or the reference itself, or for a name that is not
-    compared.
-
-    `findings` are the differences, the most telling first. `consequences` are files of the results
-    that differ from those of the reference because their datasets do; the page shows them.
-    `skipped` are pictures that were not compared, because another matplotlib drew them.
+    Attributes
+    ----------
+    top
+        The folder with the reference and the configuration.
+    texts
+        Files of the reference beside its folder `figures`.
+    make
+        Writes the files that follow from one dataset into a folder: pictures, tables and pages. It
+        takes their name, the dataset, or none for a picture without data, and the folder.
+    code
+        Folders and files of code, from the top of the repository.
     """
 
-    def __init__(
-        self,
-        results: str | Path,
-        reference: str | Path,
-        products: Collection[Product],
-        config: Mapping,
-        names: Collection[str] = (),
-        top: Path = CHECKOUT,
-    ):
-        self.config = config
-        self.history = History(top)
-        self.names, self.made = chosen(products, names)
-        self.whole = len(self.made) == len(products)
-        files = [f"figures/{name}.nc" for name in self.names]
-        self.files = list(dict.fromkeys([*files, *(f for each in self.made for f in each.files)]))
-        refuse(Path(results), Path(reference), self.files)
-        self.new = read_side("results", Path(results), needed(products))
-        self.old = read_side("reference", Path(reference), needed(products))
-        self.derived = {product.artifact for product in products if product.is_dataset}
-        both = self.new.data.keys() & self.old.data.keys()
-        self.differences = {
-            name: compared(self.new.data[name], self.old.data[name]) for name in both
-        }
-        self.same = {name for name in both if same_bits(self.new.data[name], self.old.data[name])}
-        # A picture without a dataset may have been drawn by the versions of any.
-        known = {*self.names, *needed(self.made)} or {*needed(products)}
-        self.others = {side.name: side.other_versions(known) for side in (self.old, self.new)}
-        drawn = any(each.startswith("matplotlib") for side in self.others.values() for each in side)
-        self.skipped = [each for each in self.files if drawn and each.endswith(PICTURES)]
-        self.why = cache(self.cause_of_dataset)
-        self.why_made = cache(self.cause_of_product)
-        self.findings = sorted(self.found(), key=lambda each: each.rank)
-        red = {finding.artifact for finding in self.findings}
-        self.consequences = [each for made in self.made for each in self.seen(made, red)]
+    top: Path
+    texts: tuple[str, ...]
+    make: Callable[[str, xr.Dataset | None, Path], None]
+    code: tuple[str, ...]
+
+    def files(self, *sides: Path) -> list[str]:
+        """All files that one of the folders has, datasets first, the claims after the others."""
+        found = {text for text in self.texts if any((side / text).exists() for side in sides)}
+        for side in sides:
+            found.update(f"figures/{path.name}" for path in side.glob("figures/[!.]*"))
+        found.discard(ACCEPTED)
+        return sorted(found, key=lambda file: (file[-3:] != ".nc", "claims" in file, file))
+
+    def today(self) -> dict[str, str]:
+        """The files of code, each with the hash of its content."""
+        kinds = (".py", ".j2", ".csv", ".yaml", ".js", ".css", ".json")
+        paths = [CHECKOUT / name for name in self.code]
+        paths += [each for path in paths for each in path.rglob("*.*")]
+        return contents(sorted(path for path in paths if path.suffix in kinds))
+
+    def configuration(self) -> dict:
+        """The configuration of the checkout."""
+        return yaml.safe_load((self.top / "config/config.yaml").read_text("utf-8"))
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a comparison found.
+
+    Attributes
+    ----------
+    lines
+        A line for each file that differs, is stale, missing or unexpected.
+    skipped
+        Files that were not compared, because one of their datasets differs.
+    drawn_elsewhere
+        Pictures that were not compared, because another matplotlib drew them.
+    count
+        How many files were compared.
+    """
+
+    lines: list[str] = field(default_factory=list)
+    skipped: list[str] = field(default_factory=list)
+    drawn_elsewhere: list[str] = field(default_factory=list)
+    count: int = 0
 
     @property
-    def lines(self) -> list[str]:
-        """The report on a terminal: the most telling finding of each artifact with each cause, and
-        the verdict.
-        """
-        told: dict[tuple[str, str], str] = {}
-        for finding in self.findings:
-            told.setdefault((finding.artifact, finding.cause), finding.line)
-        red = sorted({artifact for artifact, _ in told})
-        number = len(self.files)
-        count = f"{number - len(self.skipped)} of {number}" if self.skipped else f"All {number}"
-        verdict = f"{count} files agree with the reference."
-        if red:
-            verdict = f"Differences: {len(self.findings)}, in {', '.join(red)}."
-        notes = []
+    def names(self) -> list[str]:
+        """The figures, tables and texts that differ."""
+        return sorted({line.partition(":")[0] for line in self.lines})
+
+    def text(self) -> str:
+        """The report on a terminal; the verdict is its last line."""
+        told = [*self.lines]
         if self.skipped:
-            number = len(self.skipped)
-            notes.append(
-                f"{number} pictures were not compared, because another matplotlib drew them."
+            told.append(
+                f"Not compared, because a dataset differs: {', '.join(sorted(self.skipped))}."
             )
-        for side, others in self.others.items():
-            if others:
-                notes.append(f"Other versions in the {side}: {', '.join(others)}.")
-        return [*told.values(), " ".join([verdict, *notes])]
+        verdict = f"All {self.count} files agree with the reference."
+        if self.lines:
+            verdict = f"Differences in {', '.join(self.names)}."
+        if self.drawn_elsewhere:
+            number = len(self.drawn_elsewhere)
+            verdict += f" {number} pictures of another matplotlib were not compared."
+        return "\n".join([*told, verdict])
 
-    # What differs
 
-    def found(self) -> Iterator[Finding]:
-        """All findings with their causes."""
-        yield from self.file_findings(self.new)
-        yield from self.file_findings(self.old)
-        for name in self.names:
-            yield from self.dataset_findings(name)
-        with tempfile.TemporaryDirectory() as scratch:
-            for product in self.made:
-                yield from self.product_findings(product, scratch)
+# Datasets
 
-    def file_findings(self, side: Side) -> Iterator[Finding]:
-        """Files of one side that are missing, unreadable or, in a whole comparison, unexpected."""
-        present = [path.name for path in (side.folder / "figures").iterdir()]
-        figures = [f"figures/{name}" for name in present if not name.startswith(".")]
-        for file in sorted({*self.files, *(figures if self.whole else ())}):
-            path = side.folder / file
-            words = ""
-            if file not in self.files:
-                words = "is made by no rule"
-            elif not path.is_file():
-                words = "is no regular file" if path.exists() else "is missing"
-                words += "; if it is new, commit, then accept it" if side is self.old else ""
-            elif path.suffix == ".nc" and path.stem in side.unread:
-                words = f"cannot be read: {side.unread[path.stem]}"
-            if words:
-                text = f"{file} in the {side.name} {words}"
-                yield Finding("file", text, artifact=path.stem, of_results=side is self.new)
 
-    def dataset_findings(self, name: str) -> Iterator[Finding]:
-        """Whether a dataset is stale, and where one of the models differs from the reference."""
-        if name in self.new.data:
-            for words in staleness(self.new.data[name], name, self.config, self.history.top):
-                yield Finding("stale", words, artifact=name, of_results=True)
-        if name not in self.derived:
-            for each in self.differences.get(name, []):
-                yield replace(each, artifact=name, cause=self.why(name))
+def record(data: xr.Dataset, key: str) -> dict:
+    """The parameters, versions or files of code that a dataset records."""
+    return json.loads(data.attrs.get(key, "{}"))
 
-    def product_findings(self, product: Product, scratch: str) -> Iterator[Finding]:
-        """Files of both sides that are not what today's code makes of the datasets of that side.
 
-        The datasets being the same to the last bit, a product is made once.
-        """
-        needs = {*product.needs}
-        sides = [side for side in (self.old, self.new) if side.data.keys() >= needs]
-        made = None
-        for side in sides if product.files[0] not in self.skipped else ():
-            if made is None or not needs <= self.same:
-                try:
-                    made = remade(product, side.data, scratch)
-                except Exception as error:  # Whatever a drawing does not find in a dataset.
-                    words = f"today's code cannot make it of the dataset in the {side.name}"
-                    yield self.attributed(Finding("file", f"{words}: {error!r}"), product, side)
-                    # The other side would fail in the same way.
-                    return
-            for file in product.files:
-                path = side.folder / file
-                what = f"{file} in the {side.name} is not what today's code makes of its data"
-                for each in file_differences(made / file, path) if path.is_file() else ():
-                    told = replace(each, text=f"{what}: {each.text}")
-                    yield self.attributed(told, product, side)
-            if side is self.old and self.differences.get(product.artifact) and product.is_dataset:
-                yield from self.derived_findings(product, made, scratch)
+def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
+    """What differs between two mappings.
 
-    def attributed(self, finding: Finding, product: Product, side: Side) -> Finding:
-        """A finding on a product; what is wrong in the results alone has no cause in the code."""
-        wrong = side is self.new
-        cause = "" if wrong else self.why_made(product)
-        return replace(finding, artifact=product.artifact, cause=cause, of_results=wrong)
+    >>> changes({"grid": {"max": 10.0}, "n": 1}, {"grid": {"max": 20.0}, "n": 1})
+    ['grid.max 10.0 → 20.0']
+    """
+    found = []
+    for key in sorted({*old, *new}):
+        before = old.get(key, "absent")
+        after = new.get(key, "absent")
+        if isinstance(before, Mapping) and isinstance(after, Mapping):
+            found += changes(before, after, f"{above}{key}.")
+        elif isinstance(before, Mapping):
+            found.append(f"{above}{key} is missing")
+        elif isinstance(after, Mapping):
+            found.append(f"{above}{key} is new")
+        elif before != after:
+            found.append(f"{above}{key} {before} → {after}")
+    return found
 
-    def derived_findings(self, product: Product, made: Path, scratch: str) -> Iterator[Finding]:
-        """How a dataset that follows from others differs from what is `made` of those in the
-        reference. The causes are the datasets that alone change the same variable.
-        """
-        (file,) = product.files
-        others = {*product.needs} - self.derived
-        changed = sorted(name for name in others if self.differences.get(name))
-        alone: dict[str, set[str]] = {}
-        for name in changed:
-            with suppress(Exception):  # A mixture of old and new datasets may make no sense.
-                mixture = {**self.old.data, name: self.new.data[name]}
-                one = remade(product, mixture, scratch) / file
-                alone[name] = {each.variable for each in file_differences(one, made / file)}
-        for each in file_differences(self.new.folder / file, made / file):
-            deciding = [name for name in changed if each.variable in alone.get(name, ())]
-            deciding = deciding or changed
-            causes = {self.why(name) for name in deciding}
-            # Each of several causes stands with its dataset.
-            words = [f"follows from {', '.join(deciding)}", *(causes if len(causes) == 1 else ())]
-            cause = ": ".join(words) if deciding else ""
-            yield replace(each, artifact=product.artifact, cause=cause)
 
-    def seen(self, product: Product, red: Collection[str]) -> Iterator[Finding]:
-        """Texts and PNG files in the results that differ from those in the reference because one of
-        their datasets does.
-        """
-        for file in product.files if not {*product.needs}.isdisjoint(red) else ():
-            paths = self.new.folder / file, self.old.folder / file
-            if not file.endswith((".svg", ".nc")) and all(path.is_file() for path in paths):
-                for difference in file_differences(*paths):
-                    yield replace(difference, artifact=product.artifact)
-
-    # Why it differs
-
-    def cause_of_dataset(self, name: str) -> str:
-        """Why a dataset differs: by what both sides record."""
-        old = self.old.data[name]
-        new = self.new.data[name]
-        before = record(old, "code")
-        after = record(new, "code")
-        # A file that was only moved has the same content.
-        same = {*before.values()} & {*after.values()}
-        changed = [file for file, content in (before | after).items() if content not in same]
-        parameters = changes(record(old, "parameters"), record(new, "parameters"))
-        versions = changes(record(old, "versions"), record(new, "versions"))
-        libraries = [each for each in versions if not each.startswith("python")]
-        return self.cause([self.old.dataset(name)], changed, parameters, libraries)
-
-    def cause_of_product(self, product: Product) -> str:
-        """Why today's code makes other files of the reference: by what has changed since they were
-        made.
-        """
-        made = [self.old.folder / file for file in product.files]
-        made += [self.old.dataset(name) for name in product.needs]
-        commits = [str(self.old.data[name].attrs.get("commit")) for name in product.needs]
-        code = [self.history.top / file for file in product.code]
-        edited = self.history.uncommitted(code)
-        later = self.history.since(self.history.newest(commits, made), code)
-        if later is None and not edited:
-            return "changes of the code are unknown without the history of git"
-        return self.cause(made, {*edited, *(later or ())})
-
-    def cause(
-        self,
-        reference: Collection[Path],
-        changed: Collection[str],
-        parameters: Collection[str] = (),
-        libraries: Collection[str] = (),
-    ) -> str:
-        """The cause in words: what surely changes the result, changed files, among them those of
-        the reference that were edited, and what perhaps changes it.
-        """
-        files = self.history.told({*changed} | self.history.uncommitted(reference))
-        causes = {
-            "changed parameter": "; ".join(parameters),
-            "changed": ", ".join(files),
-            "other versions": ", ".join(libraries),
+def described(data: xr.Dataset) -> dict:
+    """What a dataset has apart from numbers: attributes, and types and dimensions of variables."""
+    found = {key: value for key, value in data.attrs.items() if key not in PROVENANCE}
+    for name, variable in data.variables.items():
+        found[str(name)] = variable.attrs | {
+            "role": "coordinate" if name in data.coords else "variable",
+            "type": "text" if variable.dtype.kind in "UO" else str(variable.dtype),
+            "sizes": str(dict(variable.sizes)),
         }
-        words = [f"{what}: {which}" for what, which in causes.items() if which]
-        if words:
-            return "; ".join(words)
-        last = self.history.told(self.history.names(reference))[:1]
-        return " since ".join(["no file that it is made from has changed", *last])
+    return plain(found)
 
 
-def compared(new: xr.Dataset, old: xr.Dataset) -> list[Finding]:
-    """Differences of two datasets, whatever they have in them."""
-    try:
-        return dataset_differences(new, old)
-    except (KeyError, TypeError, ValueError) as error:
-        return [Finding("file", f"the datasets cannot be compared: {error!r}")]
+def differences(old: xr.Dataset, new: xr.Dataset) -> list[str]:
+    """Where numbers and texts of a dataset differ: a line for each variable, the furthest first.
 
-
-def remade(product: Product, data: Datasets, scratch: str) -> Path:
-    """A new folder below another one, with the files that follow from some datasets."""
-    folder = Path(tempfile.mkdtemp(dir=scratch))
-    (folder / "figures").mkdir()
-    product.make(data, folder)
-    return folder
-
-
-def chosen(
-    products: Collection[Product], names: Collection[str]
-) -> tuple[list[str], list[Product]]:
-    """The datasets and products to compare: all, or those named and those that need no other
-    datasets.
-
-    Raises ValueError for a name that is not compared, so that nothing is not taken for agreement.
+    Both datasets have the same variables.
     """
-    known = {*needed(products), *(product.artifact for product in products)}
-    wanted = {*names} or known
-    unknown = sorted(wanted - known)
-    if unknown:
-        allowed = f"allowed are {', '.join(sorted(known))}"
-        raise ValueError(f"{', '.join(unknown)}: no file of that name is compared; {allowed}")
-    made = [
-        product
-        for product in products
-        if product.artifact in wanted or (product.needs and {*product.needs} <= wanted)
+    far = []
+    for name in map(str, old.variables):
+        distance = distances(name, old, new)
+        count = np.count_nonzero(distance > 1)
+        if count:
+            worst = np.unravel_index(np.argmax(distance), distance.shape)
+            text = f"{name} {excerpt(old[name].values[worst], new[name].values[worst])}"
+            at = [
+                f"{dim} = {shown(old[dim].values[index])}"
+                for dim, index in zip(old[name].dims, worst, strict=True)
+            ]
+            text += f" at {', '.join(at)}" if at else ""
+            text += f", and {count - 1} more of {distance.size} values" if count > 1 else ""
+            far.append((distance[worst], text))
+    return [text for _, text in sorted(far, key=lambda each: -each[0])]
+
+
+def distances(name: str, old: xr.Dataset, new: xr.Dataset) -> np.ndarray:
+    """How far a variable is from the reference, in multiples of the tolerance declared there.
+
+    A text, NaN or infinity is infinitely far from another.
+    """
+    x = new[name].values
+    y = old[name].values
+    missing = new[name].isnull().values & old[name].isnull().values
+    unequal = np.where((x != y) & ~missing, np.inf, 0.0)
+    if y.dtype.kind != "f":
+        return unequal
+    given = old[name].attrs
+    scale = abs(old[given.get("tolerance_scale", name)].values)
+    if "tolerance_scale" not in given:
+        scale = np.maximum(scale, given["floor"])
+    with np.errstate(all="ignore"):
+        ratio = abs(x - y) / (given["tolerance"] * scale)
+    return np.where(np.isnan(ratio), unequal, ratio)
+
+
+def excerpt(old: object, new: object) -> str:
+    """Two values as "old → new"; long texts from shortly before they part.
+
+    >>> excerpt(82.177, 83.0), excerpt(1.0, 1.000000001)
+    ('82.177 → 83', '1.0 → 1.000000001')
+    """
+    texts = [shown(old), shown(new)]
+    if texts[0] == texts[1]:
+        texts = [str(old), str(new)]
+    if max(map(len, texts)) > 80:
+        pairs = enumerate(zip_longest(*texts))
+        start = next(index for index, (one, other) in pairs if one != other)
+        start = max(0, start - 30)
+        texts = [text[start : start + 80] for text in texts]
+    return " → ".join(texts)
+
+
+def shown(value: object) -> str:
+    """A value with six digits if it is a number."""
+    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def stale(new: xr.Dataset, name: str, config: Mapping) -> str:
+    """Why a result is not that of the configuration and of today's code; empty if it is."""
+    recorded = record(new, "parameters")
+    wanted = {key: value for key, value in config.items() if key in recorded}
+    for stage in config.values():
+        if isinstance(stage, Mapping):
+            wanted |= stage.get(name, {})
+    for word in ("title", "caption", "table"):
+        wanted.pop(word, None)
+    found = changes(recorded, plain(wanted))
+    code = record(new, "code")
+    paths = [CHECKOUT / file for file in code if (CHECKOUT / file).is_file()]
+    now = contents(paths)
+    found += [file for file, content in code.items() if now.get(file) != content]
+    return f"stale, remove it and run again; changed since: {', '.join(found)}" if found else ""
+
+
+# Causes
+
+
+def git(*arguments: str) -> str:
+    """What git answers about the repository; empty without git."""
+    command = ["git", "-C", str(CHECKOUT), *arguments]
+    try:
+        answer = subprocess.run(command, capture_output=True, check=True, text=True)
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+    return answer.stdout.strip()
+
+
+def code_of_main() -> dict[str, str]:
+    """The hashes of the files on the main branch where this one left it; empty without git."""
+    fork = git("merge-base", "HEAD", "origin/main") or git("merge-base", "HEAD", "main")
+    tree = git("ls-tree", "-r", fork or "HEAD").splitlines()
+    return {line.partition("\t")[2]: line.split()[2] for line in tree}
+
+
+@dataclass(frozen=True)
+class Causes:
+    """What can have changed a result: the code and the versions that are known to give the
+    reference, as accepted, and the code on the main branch.
+    """
+
+    accepted: Mapping
+    main: Mapping
+
+    def of(self, parameters: list[str], code: Mapping, made_with: Mapping) -> str:
+        """The cause of a difference, from changed parameters, and the code and versions of a
+        result.
+        """
+        new = [file for file, content in code.items() if self.accepted["code"].get(file) != content]
+        libraries = {name: made_with.get(name) for name in PACKAGES}
+        before = {name: self.accepted["versions"].get(name) for name in PACKAGES}
+        causes = {
+            "changed parameter": parameters,
+            "changed": [file for file in new if self.main.get(file) != code[file]],
+            "other versions": changes(before, libraries),
+        }
+        if not any(causes.values()):
+            # The main branch itself differs from its reference.
+            causes = {"changed since the last acceptance": new}
+        found = [f"{what}: {', '.join(which)}" for what, which in causes.items() if which]
+        return "; ".join(found) or "no parameter, code or version has changed: edited by hand?"
+
+
+def causes(project: Project) -> Causes:
+    """The causes that are known today."""
+    path = project.top / ACCEPTED
+    accepted = json.loads(path.read_text("utf-8")) if path.is_file() else {}
+    return Causes({"code": {}, "versions": {}} | accepted, code_of_main())
+
+
+# All files
+
+
+def compare(
+    project: Project, results: Path, config: Mapping, names: Collection[str] = ()
+) -> Report:
+    """Compare all files of results with the reference, or those of the figures and tables named.
+
+    `config` is the configuration of the results.
+    """
+    files = [
+        file
+        for file in project.files(project.top, results)
+        if not names or Path(file).stem in names
     ]
-    return [name for name in needed(products) if name in wanted], made
+    if not files or not (results / "figures").is_dir():
+        return Report([f"{results}: there is nothing to compare"])
+    why = causes(project)
+    code = project.today()
+    report = Report(count=len(files))
+    differ: list[str] = []
+    for file in files:
+        name = Path(file).stem
+        if line := absent(project, results, file):
+            report.lines.append(f"{name}: {line}")
+            differ += [name] if file.endswith(".nc") else []
+        elif file.endswith(".nc"):
+            found = dataset_lines(project, results, file, config, why, differ)
+            report.lines.extend(f"{name}: {line}" for line in found)
+            differ += [name] if found else []
+        elif same_bytes(project.top / file, results / file):
+            continue
+        elif follows(project, file, differ):
+            report.skipped.append(file)
+        elif file.endswith(PICTURES) and another_matplotlib(project, results, name):
+            report.drawn_elsewhere.append(file)
+        elif not made_again(project, results, file):
+            found = "the picture differs"
+            if not file.endswith(PICTURES):
+                found = first_change(project.top / file, results / file)
+            line = f"{name}: {found}; {why.of([], code, versions())}"
+            # Both pictures of a figure have the same line.
+            report.lines.extend({line} - {*report.lines})
+    return report
 
 
-def refuse(results: Path, reference: Path, files: Collection[str]) -> None:
-    """Refuse folders that have no results, and results that are the reference, also by links."""
-    for folder in (results, reference):
-        if not (folder / "figures").is_dir():
-            raise ValueError(f"{folder} is no folder of results: there is no {folder / 'figures'}")
-    for file in ["figures", *files]:
-        pair = results / file, reference / file
-        if all(path.exists() for path in pair) and pair[0].samefile(pair[1]):
-            raise ValueError(
-                f"{pair[0]} is a part of the reference: results must be files of their own"
-            )
+def absent(project: Project, results: Path, file: str) -> str:
+    """What to say of a file that one side does not have; empty if both have it."""
+    if not (results / file).is_file():
+        return f"{file} is missing in the results"
+    if not (project.top / file).is_file():
+        return f"{file} is not in the reference; if it is new, accept it"
+    return ""
 
 
-# The page, the log and the terminal
+def dataset_lines(
+    project: Project, results: Path, file: str, config: Mapping, why: Causes, differ: list[str]
+) -> list[str]:
+    """Whether a dataset is stale, and where it differs most from the reference, with the cause.
 
-TEMPLATE = CHECKOUT / "workflow" / "templates" / "diff.html.j2"
-
-
-def page(report: Comparison) -> str:
-    """The report as a page of HTML that needs no other file."""
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    return environment.from_string(TEMPLATE.read_text("utf-8")).render(report=report, kinds=KINDS)
-
-
-def main(
-    products: Collection[Product], folder: Path, job: Any = None, top: Path = CHECKOUT
-) -> int | str:
-    """Compare, print the report, and write it as a page into the folder of the results.
-
-    A `job` of Snakemake has the parameters; the command line has a folder of results and perhaps
-    one of a reference, which is otherwise `folder`, as is the configuration. Returns the exit
-    status, or why nothing was compared. Until the end there is no page, and the log says so. Where
-    nothing can be written the report is printed all the same.
+    The claims follow from the datasets that `differ`.
     """
-    # A terminal may not know all letters.
-    if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="replace")
-    if job:
-        given = dict(job.params)
-    elif len(sys.argv) in (2, 3):
-        configuration = yaml.safe_load((folder / "config" / "config.yaml").read_text("utf-8"))
-        results, reference = (*sys.argv[1:], folder)[:2]
-        given = {"results": results, "reference": reference, "config": configuration}
-    else:
-        return "usage: python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]"
-    path = Path(given["results"]) / "diff" / "index.html"
-    with suppress(OSError):
-        path.unlink(missing_ok=True)
-    log = Path(job.log[0] if job else os.devnull)
-    log.write_text("The comparison has not ended.\n", encoding="utf-8")
+    name = Path(file).stem
     try:
-        report = Comparison(**given, products=products, top=top)
-    except ValueError as error:
-        log.write_text(f"{error}\n", encoding="utf-8")
-        return str(error)
-    *told, verdict = report.lines
-    # Snakemake shows the log of a failed job last.
-    log.write_text("\n".join([verdict, *told, ""]), encoding="utf-8")
-    place = f"See {path}."
-    try:
-        path.parent.mkdir(exist_ok=True)
-        with datasets.whole(path) as unfinished:
-            unfinished.write_text(page(report), encoding="utf-8", newline="\n")
-    except OSError as error:
-        place = f"There is no page: {error}"
-    print("\n".join([*told, verdict, place]))
-    return 1 if report.findings else 0
+        old = read(project.top / file)
+        new = read(results / file)
+        about = changes(described(old), described(new))
+        found = about or differences(old, new)
+        old_code = stale(new, name, config)
+    except Exception as error:  # Whatever readers raise for a damaged file.
+        return [f"{file} cannot be compared: {error!r}"]
+    parameters = changes(record(old, "parameters"), record(new, "parameters"))
+    lines = [old_code] if old_code else []
+    if found or parameters:
+        code = record(new, "code")
+        if about:
+            # Titles and descriptions are not among the code that a dataset records.
+            about_data = ("config/config.yaml", "variables.py")
+            now = project.today().items()
+            code |= {file: content for file, content in now if file.endswith(about_data)}
+        reason = why.of(parameters, code, record(new, "versions"))
+        if name == "claims" and differ:
+            reason = f"follows from {', '.join(differ)}"
+        lines.append("; ".join([*found[:1], reason]))
+    return lines
+
+
+def same_bytes(first: Path, second: Path) -> bool:
+    """Whether two files are equal; line ends of Windows do not count in texts."""
+    one, other = first.read_bytes(), second.read_bytes()
+    if first.suffix == ".png":
+        return one == other
+    return one.replace(b"\r\n", b"\n") == other.replace(b"\r\n", b"\n")
+
+
+def follows(project: Project, file: str, differ: Collection[str]) -> bool:
+    """Whether a file follows from datasets that differ: its own, or for a text all of them."""
+    name = Path(file).stem
+    if (project.top / f"figures/{name}.nc").exists():
+        return name in differ
+    return bool(differ) and not file.endswith(PICTURES)
+
+
+def another_matplotlib(project: Project, results: Path, name: str) -> bool:
+    """Whether the pictures of both sides were drawn by different versions of matplotlib."""
+    drawn_by = []
+    for side in (project.top, results):
+        with Image.open(side / f"figures/{name}.png") as picture:
+            drawn_by.append(picture.info.get("Software"))
+    return drawn_by[0] != drawn_by[1]
+
+
+def made_again(project: Project, results: Path, file: str) -> bool:
+    """Whether today's code makes a file of both sides from the datasets of both sides."""
+    name = Path(file).stem
+    with TemporaryDirectory() as folder:
+        for side in (project.top, results):
+            path = side / f"figures/{name}.nc"
+            try:
+                project.make(name, read(path) if path.exists() else None, Path(folder))
+                agrees = same_bytes(Path(folder, Path(file).name), side / file)
+            except Exception:  # Whatever a drawing does not find in a dataset.
+                agrees = False
+            if not agrees:
+                return False
+    return True
+
+
+def first_change(old: Path, new: Path) -> str:
+    """The first line of a text that differs."""
+    texts = [path.read_text("utf-8", errors="replace").splitlines() for path in (old, new)]
+    lines = enumerate(zip_longest(*texts, fillvalue=""), 1)
+    number, pair = next((number, pair) for number, pair in lines if pair[0] != pair[1])
+    return f"{new.name}, line {number}: {excerpt(*pair)}"
+
+
+def write_page(project: Project, results: Path, report: Report) -> Path:
+    """Write the page of a comparison, with the pictures of both sides that differ."""
+    page = results / "diff/index.html"
+    page.unlink(missing_ok=True)
+    pictures = {}
+    for path in sorted((results / "figures").glob("*.png")):
+        sides = [project.top / "figures" / path.name, path]
+        contents_of = [side.read_bytes() for side in sides if side.is_file()]
+        if len(contents_of) == 2 and contents_of[0] != contents_of[1]:
+            pictures[path.stem] = [base64.b64encode(each).decode() for each in contents_of]
+    template = jinja2.Template(TEMPLATE.read_text("utf-8"), autoescape=True)
+    text = template.render(lines=report.text().splitlines(), pictures=pictures)
+    with whole(page) as unfinished:
+        unfinished.write_text(text, "utf-8")
+    return page.resolve()
+
+
+def accept(project: Project, results: Path) -> list[str]:
+    """Make results the reference, and return the files that were written or removed.
+
+    Datasets that agree, and their pictures, stay as they are: only the code that gave them again is
+    noted. Raises ValueError if a result is stale or cannot be read, or if its code is not
+    committed.
+    """
+    if not git("rev-parse", "HEAD"):
+        raise ValueError("nothing is accepted, because there is no git")
+    edited = git("status", "--porcelain", "--", *project.code)
+    if edited:
+        raise ValueError(f"nothing is accepted, commit first: {edited}")
+    report = compare(project, results, project.configuration())
+    for line in report.lines:
+        if ": stale" in line or "cannot be compared" in line:
+            raise ValueError(f"nothing is accepted, make it again first: {line}")
+    written = []
+    for file in project.files(project.top, results):
+        source = results / file
+        target = project.top / file
+        if not source.is_file():
+            target.unlink()
+        elif target.is_file() and same_bytes(source, target):
+            continue
+        elif file.endswith((".nc", *PICTURES)) and not (
+            source.stem in report.names or file in report.drawn_elsewhere
+        ):
+            continue
+        else:
+            with whole(target) as unfinished:
+                shutil.copyfile(source, unfinished)
+        written.append(file)
+    accepted = {"code": project.today(), "versions": versions()}
+    (project.top / ACCEPTED).write_text(f"{json.dumps(accepted, indent=0)}\n", "utf-8")
+    return written
+
+
+def main(project: Project, arguments: list[str]) -> int:
+    """Compare a folder of results, and print the report: the command `compare.py FOLDER`."""
+    if len(arguments) != 1:
+        print("usage: python workflow/scripts/compare.py FOLDER")
+        return 2
+    report = compare(project, Path(arguments[0]), project.configuration())
+    print(report.text())
+    if (Path(arguments[0]) / "figures").is_dir():
+        print(write_page(project, Path(arguments[0]), report))
+    return 1 if report.lines else 0

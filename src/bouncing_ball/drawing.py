@@ -471,19 +471,15 @@ def move(note: Annotation, place: tuple[float, float]) -> None:
 # Files
 
 
-def save_picture(figure: Figure, png: str | Path, svg: str | Path, commit: str) -> None:
-    """Save a figure as PNG and SVG, whose description names the commit that drew it.
+def save_picture(figure: Figure, png: str | Path, svg: str | Path) -> None:
+    """Save a figure as PNG and SVG, which name the version of matplotlib.
 
     The SVG of a figure with a label has this as its title, which a browser shows and reads aloud,
     and its texts as texts, which can be searched and depend on the fonts of the reader. The same
     figure gives the same bytes, and the file appears whole or not at all. Raises OSError if a file
     cannot be written.
     """
-    named = {"Description": f"drawn at commit {commit}"}
-    metadata = {
-        "png": named | {"Software": None},
-        "svg": named | {"Date": None, "Creator": None},
-    }
+    metadata: dict[str, dict[str, str | None]] = {"png": {}, "svg": {"Date": None}}
     words = str(figure.get_label())
     with style():
         if words:

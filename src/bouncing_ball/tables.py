@@ -1,4 +1,4 @@
-"""Table 1, the thresholds, readings of the printed numbers and the claims, as Markdown and CSV.
+"""Table 1, the thresholds, hypotheses on the printed numbers and the claims, as Markdown and CSV.
 
 Each table is a function of its dataset that returns rows of texts, the header first.
 """
@@ -11,7 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.claims import QUANTITIES
+from bouncing_ball.measures import QUANTITIES, ROUNDING
 from bouncing_ball.paper import PARAMETERS, other_parameters
 from bouncing_ball.verdicts import VERDICTS, against_print
 
@@ -39,12 +39,15 @@ def number(value: xr.DataArray | float, form: str, none: str = "–") -> str:
 
 
 def distance_text(units: float, share: float) -> str:
-    """A distance from a printed number in words; empty if there is none.
+    """A distance from a printed number as text; empty if there is none.
 
-    >>> distance_text(6.3, 0.0061)
-    '+6.3 units, +0.61 %'
+    >>> distance_text(6.3, 0.0061), distance_text(0.8, 0.0008)
+    ('+6.3 units, +0.61 %', '+0.8 units, +0.08 %, within one unit of the last digit')
     """
-    return "" if np.isnan(units) else f"{units:+.1f} units, {100 * share:+.2f} %"
+    if np.isnan(units):
+        return ""
+    near = ", within one unit of the last digit" if 0.5 + ROUNDING < abs(units) <= 1 else ""
+    return f"{units:+.1f} units, {100 * share:+.2f} %{near}"
 
 
 # Numbers
@@ -53,9 +56,10 @@ def distance_text(units: float, share: float) -> str:
 def table1(data: xr.Dataset) -> list[list[str]]:
     """Table 1: each end of a range of stable orbits, computed and printed, with the verdict.
 
-    A range goes from the saddle-node to the period doubling next to it; other stable orbits of the
-    same family are not in it. The paper prints Λ to three decimals. The last rows are the ranges
-    of the restitution model, for which it prints none.
+    A range goes from the saddle-node to the next period doubling. The table omits further stable
+    ranges of the same family. The paper prints Λ to three decimals. An end that rounds to the
+    printed Λ has no distance. The last rows are the ranges of the restitution model, which the
+    paper does not print.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
     not_asked = other_parameters("table1", data, PARAMETERS["table1"])
@@ -64,10 +68,11 @@ def table1(data: xr.Dataset) -> list[list[str]]:
         printed = number(end["printed"], ".3f", "")
         judged = ["", ""]
         if printed and not_asked:
-            judged = ["", "not asked"]
+            judged = ["", "not testable"]
         elif printed:
-            comparison = against_print(float(end["computed"]), printed)
-            judged = [distance_text(comparison.units, comparison.share), comparison.verdict]
+            verdict, units, share = against_print(float(end["computed"]), printed)
+            rounds = verdict == "reproduced"
+            judged = [f"rounds to {printed}" if rounds else distance_text(units, share), verdict]
         rows.append([*place, number(end["computed"], ".5f"), printed, *judged])
     for end in each(data, "impact_map", "n", "bound"):
         place = [MAPS[end["impact_map"].item()], str(end["n"].item()), end["bound"].item()]
@@ -94,23 +99,22 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     return rows
 
 
-def readings(data: xr.Dataset) -> list[list[str]]:
-    """All printed numbers under each reading of what the authors computed.
+def hypotheses(data: xr.Dataset) -> list[list[str]]:
+    """All printed numbers under each hypothesis on what the authors computed.
 
     Each row of Table 1 has the number of its ends that are reproduced, and the rows of the
     compliant contacts together the root mean square (rms) of their distances in units of the last
     printed digit. Each other number is followed by its distance in these units.
     """
-    # The ends of Table 1 are named by its row, n and the end.
-    row_of = [name.partition(",")[0] for name in data["number"].values.tolist()]
-    rows = [row for row in dict.fromkeys(row_of) if row.startswith("Table 1")]
-    single = data["number"].values[~np.isin(row_of, rows)]
+    row = data["row"].values
+    rows = list(dict.fromkeys(row[np.isfinite(row)]))
+    single = data["number"].values[np.isnan(row)]
     printed = data["printed_text"].sel(number=single).values.tolist()
-    heads = [row.replace(": ", ", ϖ = ") for row in rows]
-    found = [["reading", *heads, "rms, compliant rows", *printed, "reproduced"]]
-    for line in each(data, "reading"):
+    heads = [f"Table 1, ϖ = {ratio:g}" for ratio in rows]
+    found = [["hypothesis", *heads, "rms, compliant rows", *printed, "reproduced"]]
+    for line in each(data, "hypothesis"):
         agrees = line["agrees"].values
-        ends = [agrees[np.equal(row_of, row)] for row in rows]
+        ends = [agrees[row == ratio] for ratio in rows]
         others = line[["found", "deviation_units"]].sel(number=single)
         numbers = []
         for text, one in zip(printed, each(others, "number"), strict=True):
@@ -119,7 +123,7 @@ def readings(data: xr.Dataset) -> list[list[str]]:
             numbers.append(value if value == units else f"{value} ({units})")
         cells = [f"{hits.sum()} of {hits.size}" for hits in ends]
         cells += [number(line["rms_difference"], ".2f"), *numbers]
-        found.append([line["reading"].item(), *cells, f"{agrees.sum()} of {agrees.size}"])
+        found.append([line["hypothesis"].item(), *cells, f"{agrees.sum()} of {agrees.size}"])
     return found
 
 
@@ -131,7 +135,7 @@ def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
     return parts
 
 
-TABLES = {"table1": table1, "thresholds": thresholds, "readings": readings}
+TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses}
 """The tables by name."""
 
 
@@ -199,7 +203,7 @@ SECTIONS = {
         "where": "item",
         "what the paper says": "statement",
         "verdict": "verdict",
-        "own sense": "own_sense",
+        "literal sense": "own_sense",
         "found": "condition",
         "decided by": "decided_by",
         "remark": "notes",
@@ -209,7 +213,6 @@ SECTIONS = {
         "what they give": "statement",
         "computed by": "decided_by",
         "checked by": "condition",
-        "verdict": "verdict",
     },
 }
 """The tables of claims, one for each group, with their columns."""
@@ -222,7 +225,7 @@ EVERYTHING = {
     "computed": "computed",
     "distance": "distance",
     "verdict": "verdict",
-    "own sense": "own_sense",
+    "literal sense": "own_sense",
     "found, or checked by": "condition",
     "remark": "notes",
     "decided by, or computed by": "decided_by",
@@ -262,23 +265,12 @@ def summary(data: xr.Dataset) -> list[list[str]]:
 INTRODUCTION = """\
 # The claims of the paper and the verdict on each
 
-A row is one claim of the paper, in our words, with its place in the paper.
-
-- A printed number is *reproduced* if the computed one rounds to it, *near* if it is off by at most
-  one unit of the last printed digit, as a number is whose last digit was cut off or rounded twice,
-  and *not reproduced* beyond. The distance is in units of the last printed digit and in per cent of
-  the printed number.
-- A statement is turned into a condition for each way in which its words can be read; the first is
-  the sense of the paper's own sentence. It is *reproduced* or *contradicted* if all these readings
-  agree. It is right *by reading* if they do not; then the readings are named for which it is right
-  and for which it is not, and the column *own sense* says whether the first is among those that
-  hold. It is *by construction* if it follows from restored formulas by algebra or could not have
-  failed, and *undecidable* if the text lacks what would decide it.
-- A claim is *not asked* if this run has other parameters than the claim needs, and *not computed*
-  if a dataset or a number is missing.
-- A formula was *restored* from the damaged text by deriving it again. That the tests confirm it
-  shows that the restored form is right, and not that it was printed. Restored formulas are not
-  counted.
+A row is one claim of the paper, in our words.
+[Section 3 of the article](../paper.md) defines the four verdicts.
+A distance is in units of the last printed digit, and in per cent of the printed number.
+A statement is judged by a condition for each sense of its words: "yes" if it holds, "no" if not.
+The column *literal sense* says whether the first one holds, if they differ.
+Formulas were *restored* from the damaged text by deriving them again, and are not counted.
 """
 
 

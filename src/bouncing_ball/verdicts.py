@@ -1,18 +1,21 @@
 """How a claim of the paper is judged.
 
-A claim is a printed number or a statement. A printed number is *reproduced* if the computed number
-rounds to it, *near* if it is off by at most one unit of the last printed digit, as a number is
-whose last digit was cut off or rounded twice, and *not reproduced* beyond.
+A claim is a printed number or a statement. There are four verdicts:
 
-A statement is turned into one condition for each way in which its words can be read. The first is
-the sense of the paper's own sentence; the others are stricter, weaker, or about another quantity. A
-statement is *reproduced* or *contradicted* if all of its readings agree, and *by reading* if they
-do not. It is *by construction* if it follows from restored formulas by algebra or could not have
-failed, so that computing it would test the restoration and not the paper, and *undecidable* if the
-text lacks what would decide it.
+reproduced
+    The computed number rounds to the printed one. Or: the statement holds in every sense of its
+    words.
+partly
+    The statement holds in some senses of its words, but not in others.
+not reproduced
+    The computed number does not round to the printed one, even if it is within one unit of the last
+    digit. Or: the statement holds in no sense.
+not testable
+    The claim follows by algebra from the restored formulas, and a computation would test only our
+    restoration. Or: the text does not say what decides the claim. Or: this run has other parameters
+    than the claim needs, or lacks a dataset; only then `asked` is false.
 
-A claim is *not asked* if a dataset was computed with other parameters than the claim needs, and
-*not computed* if a dataset or a number is missing.
+Each sense of a statement is a condition on the datasets, a `Reading`. The first is the literal one.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,33 +23,29 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets import Datasets
-from bouncing_ball.paper import other_parameters
+from bouncing_ball.measures import ROUNDING, complete
+from bouncing_ball.paper import LIMIT, other_parameters
 
-ROUNDING = 1e-9
-"""Numbers that differ by less are equal: rounding errors of the datasets are some 1e-12."""
-
-VERDICTS = (
-    "reproduced",
-    "near",
-    "by reading",
-    "by construction",
-    "undecidable",
-    "not reproduced",
-    "contradicted",
-    "not asked",
-    "not computed",
-)
+VERDICTS = ("reproduced", "partly", "not reproduced", "not testable")
 
 
 # Printed numbers
 
 
 class Comparison(NamedTuple):
-    """A computed number beside a printed one: the verdict, and the distance in units of the last
-    printed digit and as a share of the printed number.
+    """A computed number compared with a printed one.
+
+    Attributes
+    ----------
+    verdict
+        "reproduced" or "not reproduced".
+    units
+        Distance from the printed number, in units of its last digit.
+    share
+        Distance divided by the printed number.
     """
 
     verdict: str
@@ -55,24 +54,17 @@ class Comparison(NamedTuple):
 
 
 def against_print(found: float, printed: str) -> Comparison:
-    """The verdict on a printed number, of which the text has the digits.
+    """Compare a number with the digits of a printed one.
 
     A number halfway between two roundings counts as rounding to either.
 
-    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2560, 0.2561)]
-    ['reproduced', 'near', 'not reproduced']
+    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2556)]
+    ['reproduced', 'not reproduced']
     """
     decimals = len(printed.partition(".")[2])
     distance = found - float(printed)
     units = distance * 10.0**decimals
-    if np.isnan(found):
-        verdict = "not computed"
-    elif abs(units) <= 0.5 + ROUNDING:
-        verdict = "reproduced"
-    elif abs(units) <= 1 + ROUNDING:
-        verdict = "near"
-    else:
-        verdict = "not reproduced"
+    verdict = "reproduced" if abs(units) <= 0.5 + ROUNDING else "not reproduced"
     return Comparison(verdict, units, distance / abs(float(printed)))
 
 
@@ -80,46 +72,54 @@ def against_print(found: float, printed: str) -> Comparison:
 
 
 class Reading(NamedTuple):
-    """One way to read a statement: what is meant, whether it holds, the number that decides, NaN
-    if none does, and what is required of it, or the reason without a number.
+    """One sense of a statement.
+
+    Attributes
+    ----------
+    name
+        What must hold.
+    holds
+        Whether it holds.
+    found
+        The number that decides; NaN if none does.
+    required
+        The bound of this number, as text; without a number, the reason.
+    is_share
+        Whether the number is printed in per cent.
     """
 
     name: str
     holds: bool
     found: float
     required: str
-
-
-def complete(values: ArrayLike) -> NDArray:
-    """Numbers as an array; ValueError if there are none, or one of them is NaN."""
-    numbers = np.asarray(values, dtype=float)
-    missing = int(np.isnan(numbers).sum())
-    if missing or not numbers.size:
-        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
-    return numbers
+    is_share: bool = False
 
 
 def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
-    """The reading that no number is larger than a bound."""
+    """Require that no number is larger than a bound."""
     largest = float(complete(values).max())
-    required = "≤ 0 but for rounding" if bound == ROUNDING else f"≤ {bound:.3g}"
+    if bound == LIMIT:
+        return Reading(name, largest <= bound, largest, f"at most {100 * LIMIT:g} %", True)
+    required = "0 within rounding" if bound == ROUNDING else f"at most {bound:.3g}"
     return Reading(name, largest <= bound, largest, required)
 
 
 def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
-    """The reading that no number is smaller than a bound."""
+    """Require that no number is smaller than a bound."""
     smallest = float(complete(values).min())
-    return Reading(name, smallest >= bound, smallest, f"≥ {bound:.3g}")
+    if bound == LIMIT:
+        return Reading(name, smallest >= bound, smallest, f"at least {100 * LIMIT:g} %", True)
+    return Reading(name, smallest >= bound, smallest, f"at least {bound:.3g}")
 
 
 def above(name: str, values: ArrayLike) -> Reading:
-    """The reading that every number is positive."""
+    """Require that every number is positive."""
     smallest = float(complete(values).min())
-    return Reading(name, smallest > 0, smallest, "> 0")
+    return Reading(name, smallest > 0, smallest, "positive")
 
 
 def argued(name: str, holds: bool, reason: str) -> Reading:
-    """A reading that no number decides, with the reason."""
+    """State a sense that no number decides, with the reason."""
     return Reading(name, holds, np.nan, reason)
 
 
@@ -128,13 +128,31 @@ def argued(name: str, holds: bool, reason: str) -> Reading:
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim: its name, its place in the paper, what it says in our words, and how it is decided.
+    """A claim of the paper.
 
-    `datasets` are the names of the datasets that decide it, with the parameters that it needs of
-    each. `decide` takes these datasets in their order, and returns the computed number if a number
-    is `printed`, and otherwise the readings, that of the paper's own sentence first. `missing` is
-    what the text lacks to choose among them. `because` is the reason why a claim is so by
-    construction; nothing decides such a claim.
+    Attributes
+    ----------
+    name
+        Its name in our datasets and texts.
+    place
+        Where the paper says it.
+    text
+        What it says, in our words.
+    datasets
+        The datasets that decide it, each with the parameters that the claim needs.
+    decide
+        Takes these datasets in their order. Returns the computed number if a number is printed,
+        and otherwise the readings, first the literal one.
+    printed
+        The printed number with its digits.
+    missing
+        What the text does not say, if that decides among the readings.
+    because
+        Why the claim follows by algebra; then nothing decides it.
+    remark
+        How we read the claim.
+    beside
+        The figure or table beside which the claim is shown.
     """
 
     name: str
@@ -146,71 +164,87 @@ class Claim:
     missing: str = ""
     because: str = ""
     remark: str = ""
+    beside: str = ""
 
 
 def answer(claim: Claim, datasets: Datasets) -> dict:
-    """The verdict on a claim, with what belongs to it: the number found and its distance from the
-    printed one, the conditions in words, and the reason for having no other verdict.
+    """Judge a claim: its verdict, the number found, and the conditions or the reason as text.
 
     What is missing for one claim changes no other.
     """
     absent = [name for name in claim.datasets if name not in datasets]
     if absent:
-        return {"verdict": "not computed", "reason": f"there is no dataset {', '.join(absent)}"}
+        return not_asked(f"there is no dataset {', '.join(absent)}")
     others = [
         other_parameters(name, datasets[name], needed) for name, needed in claim.datasets.items()
     ]
     if any(others):
-        return {"verdict": "not asked", "reason": "; ".join(filter(None, others))}
+        return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
     if claim.because:
-        return {"verdict": "by construction", "condition": claim.because}
+        reason = f"it follows by algebra: {claim.because}"
+        return {"verdict": "not testable", "asked": True, "reason": reason}
     try:
         decided = claim.decide(*(datasets[name] for name in claim.datasets))
         if claim.printed:
             return of_number(claim, decided)
         return of_readings(claim, decided)
     except (KeyError, ValueError, IndexError) as error:
-        return {"verdict": "not computed", "reason": f"{type(error).__name__}: {error}"}
+        return not_asked(f"{type(error).__name__}: {error}")
+
+
+def not_asked(reason: str) -> dict:
+    """The verdict on a claim that this run cannot judge."""
+    return {"verdict": "not testable", "asked": False, "reason": reason}
 
 
 def of_number(claim: Claim, computed: ArrayLike) -> dict:
     """The verdict on a printed number."""
     found = float(complete(computed))
     verdict, units, share = against_print(found, claim.printed)
-    return {"verdict": verdict, "found": found, "deviation_units": units, "deviation": share}
+    numbers = {"found": found, "deviation_units": units, "deviation": share}
+    return {"verdict": verdict, "asked": True} | numbers
 
 
 def of_readings(claim: Claim, readings: list[Reading]) -> dict:
-    """The verdict on a statement from its readings; the number found is that of the first.
+    """The verdict on a statement; the number found is that of the literal reading.
 
-    If they differ, `own_sense` says whether the first holds, that of the paper's own sentence.
+    If the readings differ, `own_sense` says whether the literal one holds.
     """
-    right = [reading for reading in readings if reading.holds]
-    wrong = [reading for reading in readings if not reading.holds]
     found = {
         "found": readings[0].found if readings else np.nan,
         "condition": listed(readings),
-        "verdict": "reproduced" if right else "contradicted",
+        "asked": True,
     }
-    if right and wrong:
-        found["condition"] = f"right for {listed(right)}; not for {listed(wrong)}"
-        found["verdict"] = "by reading"
-    if claim.missing and (found["verdict"] == "by reading" or not readings):
-        return found | {"verdict": "undecidable", "reason": f"the text lacks {claim.missing}"}
-    if found["verdict"] == "by reading":
-        found["own_sense"] = "holds" if readings[0].holds else "does not hold"
-    return found
+    right = [reading.holds for reading in readings]
+    if claim.missing and (any(right) != all(right) or not readings):
+        reason = f"the text does not say {claim.missing}"
+        return found | {"verdict": "not testable", "reason": reason}
+    if all(right):
+        return found | {"verdict": "reproduced"}
+    if not any(right):
+        return found | {"verdict": "not reproduced"}
+    literal = "holds" if readings[0].holds else "does not hold"
+    return found | {"verdict": "partly", "own_sense": literal}
 
 
 def listed(readings: list[Reading]) -> str:
-    """Readings in words, each with its number and what is required of it."""
+    """Readings as text: those that hold first, each with its number and the bound.
+
+    >>> listed([at_most("Eq. 8", 0.0297, 0.01), at_most("Eq. 5", 0.000132, 0.01)])
+    'yes: Eq. 5 (0.0132 %, at most 1 %); no: Eq. 8 (2.97 %, at most 1 %)'
+    """
     texts = []
-    for reading in readings:
-        number = "" if np.isnan(reading.found) else f"{rounded(reading.found)}, required "
-        texts.append(f"{reading.name} ({number}{reading.required})")
-    return ", ".join(texts)
+    for reading in sorted(readings, key=lambda reading: not reading.holds):
+        number = f"{rounded(reading)}, " if np.isfinite(reading.found) else ""
+        word = "yes" if reading.holds else "no"
+        texts.append(f"{word}: {reading.name} ({number}{reading.required})")
+    return "; ".join(texts)
 
 
-def rounded(number: float) -> str:
-    """Three digits of a number; zero if it is zero but for rounding."""
-    return f"{number:.3g}" if abs(number) > ROUNDING else "0"
+def rounded(reading: Reading) -> str:
+    """The number of a reading with three digits; zero if it is zero within rounding."""
+    if abs(reading.found) <= ROUNDING:
+        return "0"
+    if reading.is_share:
+        return f"{100 * reading.found:.3g} %"
+    return f"{reading.found:.3g}"

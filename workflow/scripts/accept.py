@@ -1,8 +1,16 @@
-"""Make results the reference: those of the figures and tables named, or all."""
+"""Make the results the new reference, and print the files that changed."""
 
 import sys
+from pathlib import Path
 
-from bouncing_ball.accept import main
-from bouncing_ball.products import PRODUCTS
+from compare import PROJECT
 
-sys.exit(main(PRODUCTS, snakemake))
+from bouncing_ball.compare import accept
+
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+try:
+    written = accept(PROJECT, Path("results"))
+except ValueError as error:
+    print(error)
+    sys.exit(1)
+print(*written, f"{len(written)} files of the reference changed.", sep="\n")

@@ -78,11 +78,5 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
 STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake)

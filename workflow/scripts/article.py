@@ -14,7 +14,7 @@ LINKS = [
     ("the same (Markdown)", "figures/claims.md"),
 ]
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 entries = snakemake.params.entries
 texts = {

@@ -1,23 +1,50 @@
-"""Compare results with the reference, print what differs, and write a page about it.
+"""Compare results with the reference, print what differs, and write a page with both pictures.
 
-Snakemake runs this for the target `diff`. Results from elsewhere, for example those that continuous
-integration uploaded, are compared in the same way by
+Snakemake runs this script for the target `diff`. Results from elsewhere, such as those of
+continuous integration, are compared with
 
-    python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]
+    python workflow/scripts/compare.py FOLDER
 
-with the parameters of config/config.yaml; the reference is by default that of this checkout. The
-page is diff/index.html in the folder of the results. The exit status is 0 if all agrees, and 1 if
-something differs or could not be compared.
+The exit status is 1 if something differs.
 """
 
 import sys
 from pathlib import Path
 
-CHECKOUT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(CHECKOUT / "src"))
+import xarray as xr
 
-from bouncing_ball.compare import main  # noqa: E402
-from bouncing_ball.products import PRODUCTS  # noqa: E402
+from bouncing_ball.compare import Project, compare, main, write_page
+from bouncing_ball.drawing import save_picture
+from bouncing_ball.figures import FIGURES, draw
+from bouncing_ball.tables import TABLES, comma_separated, markdown
+
+
+def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
+    """Write the pictures and the tables of a dataset into a folder."""
+    if name in FIGURES:
+        shown = [] if data is None else [data]
+        save_picture(draw(name, *shown), folder / f"{name}.png", folder / f"{name}.svg")
+    if name in TABLES:
+        rows = TABLES[name](data)
+        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
+        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+
+
+PROJECT = Project(
+    top=Path(__file__).resolve().parents[2],
+    texts=("paper.md", "supplement.md"),
+    make=make,
+    code=("Snakefile", "config", "src", "workflow"),
+)
+
+if __name__ == "__main__" and "snakemake" not in globals():
+    sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":
-    sys.exit(main(PRODUCTS, CHECKOUT, globals().get("snakemake")))
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    results = Path("results")
+    report = compare(PROJECT, results, snakemake.params.config, snakemake.params.names)
+    text = f"{report.text()}\n{write_page(PROJECT, results, report)}\n"
+    (results / "diff/report.txt").write_text(text, "utf-8")
+    print(text, end="")
+    sys.exit(1 if report.lines else 0)

@@ -7,9 +7,10 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import Branch, NoOrbit, bifurcations, branch
-from bouncing_ball.datasets import grid, printed_table, save
+from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
+from bouncing_ball.paper import printed_table
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
 
@@ -99,13 +100,16 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     )
 
 
-def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
-    """Ranges of Λ in which the orbits are stable, computed and printed, and those of both maps of
-    the restitution model. An end beyond the largest amplitude is NaN.
+def table1(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+    """Ranges of Λ with stable orbits: computed, printed, and of both maps of the restitution model.
+
+    An end beyond the largest amplitude is NaN, and so is a printed end of a row that the paper does
+    not have.
     """
     n = parameters["n"]
     r = parameters["restitution"]
     ratios = parameters["frequency_ratio"]
+    printed = printed_table().astype(float)
     bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
@@ -136,7 +140,7 @@ def table1(parameters: dict, release: str, printed: xr.DataArray) -> xr.Dataset:
     )
 
 
-def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
+def lowest_doubling(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     """The ϖ at which the period doubling of each family is lowest, and its Λ there."""
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"])
@@ -147,21 +151,14 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
+STAGE = {
+    "fig08": branches,
+    "fig09": branches,
+    "fig15": fig15,
+    "table1": table1,
+    "lowest_doubling": lowest_doubling,
+}
+
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    entries = snakemake.params.entries
-    settings = snakemake.params.settings
-    given = {name: entry["parameters"] for name, entry in entries.items()}
-    release = settings["release"]
-    step = settings["largest_step"]
-    printed = printed_table(snakemake.input.printed).astype(float)
-    computed = {
-        "fig08": branches(given["fig08"], release, step),
-        "fig09": branches(given["fig09"], release, step),
-        "fig15": fig15(given["fig15"], release, step),
-        "table1": table1(given["table1"], release, printed),
-        "lowest_doubling": lowest_doubling(given["lowest_doubling"], release),
-    }
-    for name, dataset in computed.items():
-        title = entries[name]["title"]
-        save(dataset, snakemake.output[name], title, given[name] | settings, snakemake.input.code)
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake)

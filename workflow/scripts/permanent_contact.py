@@ -43,11 +43,5 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
 STAGE = {"fig11": fig11, "fig16": fig16}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake)

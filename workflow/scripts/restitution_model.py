@@ -100,11 +100,5 @@ def three_balls(parameters: dict) -> xr.Dataset:
 STAGE = {"fig02": fig02, "fig03": fig03, "three_balls": three_balls}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake)

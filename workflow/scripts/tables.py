@@ -1,4 +1,4 @@
-"""The tables as texts, each as Markdown and as CSV."""
+"""Write a table as Markdown and as CSV, from its dataset."""
 
 import sys
 from pathlib import Path
@@ -6,9 +6,7 @@ from pathlib import Path
 from bouncing_ball.datasets import read
 from bouncing_ball.tables import TABLES, comma_separated, markdown
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-files = zip(snakemake.input.data, snakemake.output.md, snakemake.output.csv, strict=True)
-for path, *outputs in files:
-    rows = TABLES[Path(path).stem](read(path))
-    for output, text in zip(outputs, (markdown(rows), comma_separated(rows)), strict=True):
-        Path(output).write_text(text, encoding="utf-8", newline="\n")
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+rows = TABLES[Path(snakemake.output.md).stem](read(snakemake.input.data))
+Path(snakemake.output.md).write_text(markdown(rows), encoding="utf-8", newline="\n")
+Path(snakemake.output.csv).write_text(comma_separated(rows), encoding="utf-8", newline="\n")

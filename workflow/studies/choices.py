@@ -3,8 +3,8 @@
 Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12, and the exponent
 of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
 with the other datasets of the reference. Datasets of other choices have fewer points than those of
-the figures. The study changes no figure, so that it is no stage of the workflow: `make choices`
-writes its result, choices.csv, which the supplement shows, and a test does it again.
+the figures. The study changes no figure, and is no stage of the workflow: `make choices` writes its
+result, choices.csv, which the supplement shows.
 """
 
 import csv
@@ -24,11 +24,11 @@ import time_histories
 import xarray as xr
 
 from bouncing_ball import claims
-from bouncing_ball.datasets import Datasets, parameters, printed_table, read, whole
+from bouncing_ball.datasets import Datasets, parameters, read, whole
+from bouncing_ball.paper import TABLE_1, printed_table
 from bouncing_ball.verdicts import answer
 
 ROOT = Path(__file__).parents[2]
-PRINTED = ROOT / "config" / "table1_printed.csv"
 RESULT = Path(__file__).with_suffix(".csv")
 
 ALONG_RATIO = {
@@ -51,24 +51,27 @@ POINTS = 201
 
 
 class Choice(NamedTuple):
-    """Another choice: what is chosen, what it is instead, and the datasets and the printed table
-    that it changes.
+    """Another choice: what is chosen, what it is instead, and the datasets that it changes.
+
+    `table` is the printed Table 1 with other frequency ratios.
     """
 
     item: str
     instead: str
     datasets: Datasets
-    printed: xr.DataArray | None = None
+    table: Mapping = TABLE_1
 
 
-def verdicts(datasets: Datasets, printed: xr.DataArray, names: Set[str]) -> list[tuple[str, str]]:
+def verdicts(
+    datasets: Datasets, names: Set[str], table: Mapping = TABLE_1
+) -> list[tuple[str, str]]:
     """Each claim that some named datasets decide, with its verdict, whatever their parameters.
 
     If an axis does not reach what the claim is about, it is "beyond the axis".
     """
     decided = [claim for claim in claims.CLAIMS if names & claim.datasets.keys()]
     if "table1" in names:
-        decided += claims.table1_ends(printed)
+        decided += claims.table1_ends(table)
     asked = [replace(claim, datasets={name: {} for name in claim.datasets}) for claim in decided]
     found = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
     return [(name, verdict.replace("not computed", "beyond the axis")) for name, verdict in found]
@@ -105,8 +108,9 @@ def other_axes(
         yield f"ϖ from {low:g} to {high:g}", part.dropna("frequency_ratio")
 
 
-def choices(data: Datasets, printed: xr.DataArray) -> Iterator[Choice]:
+def choices(data: Datasets) -> Iterator[Choice]:
     """All other choices."""
+    printed = printed_table()
     for name, compute in ALONG_RATIO.items():
         for axis, other in other_axes(data[name], compute, [0.5, 2, 5], [100, 200, 1e4]):
             yield Choice(axis_of(name), axis, {name: other})
@@ -136,25 +140,29 @@ def choices(data: Datasets, printed: xr.DataArray) -> Iterator[Choice]:
         if name in ("fig08", "fig09")
     }
     given = {**parameters(data["table1"]), **every}
-    ends = continuation.table1(given, given["release"], printed.astype(float))
+    ends = continuation.table1(given, given["release"], given["largest_step"])
     wide["table1"] = ends.assign_attrs(parameters=json.dumps(given))
     for exponent in EXPONENTS:
         ratios = [10.0**exponent, *compliant]
         other_table = printed.assign_coords(frequency_ratio=ratios)
         others = {name: each.sel(frequency_ratio=ratios) for name, each in wide.items()}
         others["table1"]["printed"] = other_table.astype(float)
-        yield Choice("exponent of the largest ϖ", str(exponent), others, other_table)
+        table = {
+            (10.0**exponent if ratio == max(TABLE_1)[0] else ratio, n): texts
+            for (ratio, n), texts in TABLE_1.items()
+        }
+        yield Choice("exponent of the largest ϖ", str(exponent), others, table)
 
 
-def changed_verdicts(data: Datasets, printed: xr.DataArray) -> list[dict[str, str]]:
+def changed_verdicts(data: Datasets) -> list[dict[str, str]]:
     """Each other choice with the verdicts that it changes, as texts."""
     rows = []
     here: dict[frozenset[str], list[tuple[str, str]]] = {}
-    for item, instead, datasets, table in choices(data, printed):
+    for item, instead, datasets, table in choices(data):
         names = frozenset(datasets)
         if names not in here:
-            here[names] = verdicts(data, printed, names)
-        there = verdicts({**data, **datasets}, printed if table is None else table, names)
+            here[names] = verdicts(data, names)
+        there = verdicts({**data, **datasets}, names, table)
         changes = [
             f"{name}: {before} → {after}"
             for (name, before), (_, after) in zip(here[names], there, strict=True)
@@ -166,7 +174,7 @@ def changed_verdicts(data: Datasets, printed: xr.DataArray) -> list[dict[str, st
 
 if __name__ == "__main__":
     reference = {path.stem: read(path) for path in (ROOT / "figures").glob("*.nc")}
-    found = changed_verdicts(reference, printed_table(PRINTED))
+    found = changed_verdicts(reference)
     with whole(RESULT) as unfinished, open(unfinished, "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, found[0], lineterminator="\n")
         writer.writeheader()

@@ -20,7 +20,7 @@ from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.error_law import free_impact, law_coefficients, law_errors
 from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.tables import Table
-from studies.variables import VARIABLES
+from studies.variables import described
 
 # Points of the drawn branches on each side of the saddle-node.
 POINTS = 101
@@ -201,12 +201,5 @@ def ext_answers(parameters: dict) -> xr.Dataset:
 STAGE = {"ext_answers": ext_answers}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

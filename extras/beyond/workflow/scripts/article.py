@@ -6,7 +6,7 @@ from pathlib import Path
 from bouncing_ball.datasets import read
 from studies.article import filled_in
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 for name, path in snakemake.output.items():
     Path(path).write_text(filled_in(name, datasets), encoding="utf-8", newline="\n")

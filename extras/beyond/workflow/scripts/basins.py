@@ -10,7 +10,7 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.simulation import Balls, follow
-from studies.variables import VARIABLES
+from studies.variables import described
 
 NEAR = 1e-3
 """Sum of the distances in phase and in relative speed below which a touch is that of the orbit."""
@@ -87,12 +87,5 @@ def ext_basin(parameters: dict) -> xr.Dataset:
 STAGE = {"ext_basin": ext_basin}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

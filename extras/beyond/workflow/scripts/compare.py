@@ -1,18 +1,56 @@
-"""Compare results with the reference, print what differs, and write a page about it.
+"""Compare results with the reference, print what differs, and write a page with both pictures.
 
-Snakemake runs this for the target `diff`; results from elsewhere are compared by
+Snakemake runs this script for the target `diff`; results from elsewhere are compared with
 
-    python workflow/scripts/compare.py RESULTS_FOLDER [REFERENCE_FOLDER]
+    python workflow/scripts/compare.py FOLDER
 """
 
 import sys
 from pathlib import Path
 
-PACKAGE = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(PACKAGE / folder) for folder in ("src", "workflow", "../../src")]
+TOP = Path(__file__).resolve().parents[2]
+sys.path[:0] = [str(TOP / folder) for folder in ("src", "workflow", "../../src")]
 
-from bouncing_ball.compare import main  # noqa: E402
-from studies.products import PRODUCTS  # noqa: E402
+import xarray as xr  # noqa: E402
+
+from bouncing_ball.compare import Project, compare, main, write_page  # noqa: E402
+from bouncing_ball.drawing import save_picture  # noqa: E402
+from bouncing_ball.tables import comma_separated, markdown  # noqa: E402
+from studies.explorer import page  # noqa: E402
+from studies.figures import FIGURES, draw  # noqa: E402
+from studies.tables import TABLES  # noqa: E402
+
+
+def make(name: str, data: xr.Dataset, folder: Path) -> None:
+    """Write the pictures, the tables and the page of a dataset into a folder."""
+    if name in FIGURES:
+        save_picture(draw(name, data), folder / f"{name}.png", folder / f"{name}.svg")
+    if name in TABLES:
+        rows = TABLES[name](data)
+        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
+        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+    if name == "explorer":
+        (folder / "explorer.html").write_text(page(data), encoding="utf-8")
+
+
+PROJECT = Project(
+    top=TOP,
+    texts=("article.md", "appendix.md", "phase.md"),
+    make=make,
+    code=(
+        *(f"extras/beyond/{name}" for name in ("Snakefile", "config", "src", "workflow")),
+        "src",
+    ),
+)
+
+if __name__ == "__main__" and "snakemake" not in globals():
+    sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":
-    sys.exit(main(PRODUCTS, PACKAGE, globals().get("snakemake")))
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    results = Path("results")
+    report = compare(PROJECT, results, snakemake.params.config, snakemake.params.names)
+    text = f"{report.text()}\n{write_page(PROJECT, results, report)}\n"
+    (results / "diff/report.txt").write_text(text, "utf-8")
+    print(text, end="")
+    sys.exit(1 if report.lines else 0)

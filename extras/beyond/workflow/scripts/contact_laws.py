@@ -33,7 +33,7 @@ from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.search import guess_of_instants
 from bouncing_ball_beyond.tables import SINE
 from studies.orbits import damping, flight_height, last_zero, solved
-from studies.variables import VARIABLES
+from studies.variables import described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -276,12 +276,5 @@ def ext_laws(parameters: dict) -> xr.Dataset:
 STAGE = {"ext_laws": ext_laws}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

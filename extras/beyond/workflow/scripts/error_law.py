@@ -21,7 +21,7 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 from studies.orbits import exact_values, half_next_to_saddle_node, last_zero, random_orbits
-from studies.variables import VARIABLES
+from studies.variables import described
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
 MODELS = {"restitution": None, "corrected": Corrected}
@@ -199,12 +199,5 @@ def ext_orders(parameters: dict, release: str) -> xr.Dataset:
 STAGE = {"ext_orders": ext_orders}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

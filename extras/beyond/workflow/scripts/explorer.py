@@ -16,7 +16,7 @@ from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
 from bouncing_ball_beyond.tables import Table
 from studies.orbits import follow_compliant, random_orbits
-from studies.variables import VARIABLES
+from studies.variables import described
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
@@ -224,12 +224,5 @@ def explorer(parameters: dict) -> xr.Dataset:
 STAGE = {"explorer": explorer}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

@@ -6,6 +6,6 @@ from pathlib import Path
 from bouncing_ball.datasets import read
 from studies.explorer import page
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-(data,) = snakemake.input.data
-Path(snakemake.output.html).write_text(page(read(data)), encoding="utf-8", newline="\n")
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+data = read(snakemake.input.data)
+Path(snakemake.output.html).write_text(page(data), encoding="utf-8", newline="\n")

@@ -8,7 +8,7 @@ import xarray as xr
 from bouncing_ball.datasets import save_stage
 from bouncing_ball_beyond.balls import Impact, SpringDamper, damping_of
 from bouncing_ball_beyond.periodic import orbit
-from studies.variables import VARIABLES
+from studies.variables import described
 
 RELEASES = ["displacement", "force"]
 
@@ -89,12 +89,5 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
 STAGE = {"ext_impact": ext_impact, "ext_instant": ext_instant}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

@@ -25,7 +25,7 @@ from bouncing_ball_beyond.error_law import (
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.simulation import Balls, step
 from bouncing_ball_beyond.tables import Table
-from studies.variables import VARIABLES
+from studies.variables import described
 from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -357,12 +357,5 @@ def ext_phase(parameters: dict) -> xr.Dataset:
 STAGE = {"ext_phase": ext_phase}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

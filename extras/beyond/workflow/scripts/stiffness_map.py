@@ -18,7 +18,7 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.error_law import free_impact, law_errors, law_thresholds
-from studies.variables import VARIABLES
+from studies.variables import described
 
 LEVELS = (10.0, 20.0, 50.0, 100.0, 200.0, 1000.0)
 """The ϖ of the lines of the figure; that of the paper is added."""
@@ -85,12 +85,5 @@ def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
 STAGE = {"ext_map": ext_map}
 
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save_stage(
-        STAGE,
-        snakemake.params.entries,
-        snakemake.params.settings,
-        snakemake.output,
-        snakemake.input.code,
-        VARIABLES,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake, described)

@@ -7,7 +7,7 @@ from bouncing_ball.datasets import read
 from bouncing_ball.tables import comma_separated, markdown
 from studies.tables import TABLES
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = snakemake.input.data
 rows = TABLES[Path(data).stem](read(data))
 texts = {snakemake.output.md: markdown(rows), snakemake.output.csv: comma_separated(rows)}

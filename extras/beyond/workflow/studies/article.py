@@ -4,12 +4,11 @@ As in the replication, a template has text and names of numbers, and no numbers.
 """
 
 from decimal import ROUND_CEILING, ROUND_HALF_EVEN, Decimal
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from bouncing_ball.article import environment, fixed, percent
+from bouncing_ball.article import environment
 from bouncing_ball.datasets import Datasets, parameters
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
@@ -18,9 +17,7 @@ TEMPLATES = Path(__file__).parents[1] / "templates"
 def filled_in(name: str, datasets: Datasets) -> str:
     """The text of a template, Markdown: "article", "appendix", or "figures", the list of all."""
     templates = environment(TEMPLATES)
-    # Upper bounds, as numbers and in per cent, are rounded up.
-    up = {"bound": partial(fixed, to="up"), "at_most": partial(percent, to="up")}
-    templates.filters.update(digits=digits, bound_digits=bound_digits, **up)
+    templates.filters.update(digits=digits, bound_digits=bound_digits, bound=bound, at_most=at_most)
     return templates.get_template(f"{name}.md.j2").render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
@@ -53,3 +50,26 @@ def bound_digits(value: float, count: int) -> str:
     ('5700', '26', '5600')
     """
     return digits(value, count, ROUND_CEILING)
+
+
+def bound(value: float, decimals: int, shift: int = 0) -> str:
+    """An upper bound with a number of decimals, rounded up, with the point moved by `shift`.
+
+    >>> bound(0.00031460, 5), bound(0.5, 1)
+    ('0.00032', '0.5')
+    """
+    if not np.isfinite(value):
+        return "–"
+    number = Decimal(repr(float(value))).scaleb(shift)
+    rounded = number.quantize(Decimal(1).scaleb(-decimals), rounding=ROUND_CEILING)
+    return str(rounded + 0).replace("-", "−")
+
+
+def at_most(value: float, decimals: int = 0) -> str:
+    """An upper bound in per cent.
+
+    >>> at_most(0.00861, 2)
+    '0.87 %'
+    """
+    text = bound(value, decimals, shift=2)
+    return text if text == "–" else f"{text} %"

@@ -4,11 +4,13 @@ These are the variables of the replication, whose module `datasets` says what a 
 those of the studies here.
 """
 
-from bouncing_ball import datasets
-from bouncing_ball.datasets import Variable
+from bouncing_ball.variables import SYMBOLS, Variable
 
-VARIABLES = datasets.VARIABLES | {
+VARIABLES = SYMBOLS | {
     # Coordinates
+    "quantity": Variable("quantity compared between the models"),
+    "impacts": Variable("impacts until the motion repeats, 0 if it does not"),
+    "periods": Variable("periods of the table after which the motion repeats, 0 if it does not"),
     "release": Variable("what ends a contact"),
     "model": Variable("model of the impact"),
     "place": Variable("the orbit, or the saddle-node of the restitution model"),
@@ -249,3 +251,8 @@ LAW_NAMES = {
     "kuwabara-kono": "Kuwabara and Kono",
 }
 """The contact laws in words."""
+
+
+def described(dataset: str) -> dict[str, Variable]:
+    """Return the descriptions of variables; all datasets share them."""
+    return VARIABLES

@@ -1,6 +1,6 @@
-"""Stage: all printed numbers under readings of what the authors may have computed.
+"""Stage: all printed numbers under hypotheses on what the authors computed.
 
-A reading is a hypothesis: another damping ratio, another release, no gravity in contact, another
+A hypothesis is another damping ratio, another release, no gravity in contact, another
 stability, digits that were cut off, or the formulas of the restitution model. Each is judged by all
 23 printed numbers, in units of their last digits. Most of Table 1 fits none of them, so that two
 questions are asked about its compliant rows: whether the distances have a pattern, and whether a
@@ -21,7 +21,7 @@ from scipy.stats import permutation_test
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import at_amplitude, at_bifurcation, bifurcations, correct, walk
-from bouncing_ball.datasets import printed_table, save
+from bouncing_ball.datasets import save_stage
 from bouncing_ball.errors import (
     enough_from,
     orbits_along,
@@ -29,17 +29,16 @@ from bouncing_ball.errors import (
     relative_error,
     threshold,
 )
+from bouncing_ball.measures import ROUNDING
 from bouncing_ball.orbits import Family
-from bouncing_ball.paper import LIMIT, PARAMETERS, PRINTED
+from bouncing_ball.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, printed_table
 from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
     damping_ratio,
     force_release_restitution,
 )
-from bouncing_ball.verdicts import ROUNDING
 
-BOUNDS = ("saddle-node", "period doubling")
 DIGIT = 0.001
 """The last digit of Table 1."""
 R_OF_TABLE_1 = PARAMETERS["table1"]["restitution"]
@@ -50,6 +49,7 @@ SCAN = np.geomspace(2.0, 500.0, 25)
 EXPONENTS = (1, 2, 3, 4, 5, 6)
 """Exponents that the largest frequency ratio may have."""
 AS_THEY_STAND = "equations as they stand"
+CUT_OFF = "digits cut off"
 
 
 def reproduced(units: NDArray) -> NDArray[np.bool_]:
@@ -83,7 +83,7 @@ IMPACTS = {
     "force release, equal r": Impact(equal_damping, "force"),
     "no gravity in contact": Impact(weight=0.0),
 }
-"""The readings that differ in the contact. With "equal r" it has the damping with which a free
+"""The hypotheses that differ in the contact. With "equal r" it has the damping with which a free
 impact has the restitution r.
 """
 
@@ -191,8 +191,9 @@ def damping_of_82() -> NDArray:
 # All of them
 
 
-def readings(printed: xr.DataArray) -> xr.Dataset:
-    """All printed numbers under each reading, the readings that reproduce most of them first."""
+def hypotheses(parameters: dict) -> xr.Dataset:
+    """All printed numbers under each hypothesis, in order of decreasing agreement."""
+    printed = printed_table()
     n = printed.n.values
     ratios = printed.frequency_ratio.values
     table = ends_of_ranges(n, ratios)
@@ -213,30 +214,37 @@ def readings(printed: xr.DataArray) -> xr.Dataset:
     }
     found = {name: np.append(table[name], others[name]) for name in IMPACTS}
     found |= {name: np.append(*both) for name, both in further.items()}
+    contact_of = dict.fromkeys([*further, CUT_OFF], AS_THEY_STAND) | {
+        name: name for name in IMPACTS
+    }
+    contact_of["Eqs. 7 and 8 in all rows"] = ""
 
     places = printed.stack(number=printed.dims).number.values
     names = [f"Table 1: {ratio:g}, {family}, {bound}" for ratio, family, bound in places]
+    row = [*(ratio for ratio, _, _ in places), *[np.nan] * len(PRINTED)]
     texts = [*printed.values.ravel().tolist(), *PRINTED.values()]
     digits = np.array([10.0 ** -len(text.partition(".")[2]) for text in texts])
-    found["digits cut off"] = np.floor(found[AS_THEY_STAND] / digits) * digits
+    found[CUT_OFF] = np.floor(found[AS_THEY_STAND] / digits) * digits
     computed = np.stack(list(found.values()))
     units = (computed - np.array(texts, dtype=float)) / digits
-    # The rows of the compliant contacts, in which most readings differ.
+    # The rows of the compliant contacts, in which most hypotheses differ.
     compliant = units[:, plain[0].size : plain.size]
-    over = ("reading", "number")
+    over = ("hypothesis", "number")
     data = xr.Dataset(
         {
             "found": (over, computed),
             "deviation_units": (over, units),
             "agrees": (over, reproduced(units)),
-            "reproduced": ("reading", reproduced(units).sum(axis=1)),
-            "compliant_reproduced": ("reading", reproduced(compliant).sum(axis=1)),
-            "rms_difference": ("reading", np.sqrt((compliant**2).mean(axis=1))),
-            "largest_difference": ("reading", abs(compliant).max(axis=1)),
+            "reproduced": ("hypothesis", reproduced(units).sum(axis=1)),
+            "compliant_reproduced": ("hypothesis", reproduced(compliant).sum(axis=1)),
+            "rms_difference": ("hypothesis", np.sqrt((compliant**2).mean(axis=1))),
+            "largest_difference": ("hypothesis", abs(compliant).max(axis=1)),
             "printed_text": ("number", texts),
+            "row": ("number", row),
+            "contact_of": ("hypothesis", [contact_of[name] for name in found]),
             "damping_of_82": ("end", damping_of_82()),
         },
-        {"reading": list(found), "number": [*names, *PRINTED]},
+        {"hypothesis": list(found), "number": [*names, *PRINTED]},
     )
     data["stiff_reproduced"] = "exponent", stiff_reproduced(n, printed.values[0].astype(float))
     data["exponent"] = list(EXPONENTS)
@@ -313,12 +321,8 @@ def most_reproduced(units: NDArray, slope: NDArray) -> NDArray:
     return np.where(near, counts, 0).max(axis=(1, 2))
 
 
+STAGE = {"hypotheses": hypotheses}
+
 if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")  # what goes wrong is in the log
-    save(
-        readings(printed_table(snakemake.input.printed)),
-        snakemake.output.readings,
-        snakemake.params.entries["readings"]["title"],
-        {},
-        snakemake.input.code,
-    )
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    save_stage(STAGE, snakemake)

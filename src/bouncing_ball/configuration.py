@@ -1,0 +1,55 @@
+"""Judge a configuration by its JSON schema, in one line for each mistake.
+
+The sections of a configuration are stages, and their entries are figures, tables and datasets. All
+that an entry may have besides its parameters is `described` among the definitions of the schema.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+from difflib import get_close_matches
+
+from jsonschema import Draft202012Validator
+from jsonschema.exceptions import ValidationError
+
+
+def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
+    """Yield a line for each mistake: the key, its value, and what is allowed.
+
+    >>> schema = {"properties": {"release": {"enum": ["displacement", "force"]}}}
+    >>> schema |= {"additionalProperties": False}
+    >>> list(mistakes({"release": "sticky"}, schema))
+    ["release: 'sticky' is not one of ['displacement', 'force']"]
+    >>> list(mistakes({"relese": "force"}, schema))
+    ['relese: unknown key, did you mean release?']
+    """
+    described = schema.get("$defs", {}).get("described", {}).get("properties", {})
+    for error in Draft202012Validator(schema).iter_errors(config):
+        where = ".".join(str(key) for key in error.absolute_path)
+        if error.validator in ("additionalProperties", "unevaluatedProperties"):
+            known = [*error.schema["properties"], *described]
+            for key in error.instance.keys() - {*known}:
+                path = ".".join(filter(None, (where, str(key))))
+                yield f"{path}: unknown key{meant(str(key), known)}"
+        elif error.validator == "required" and error.validator_value == ["title"]:
+            stage, name = error.absolute_path
+            known = schema["properties"][stage]["properties"]
+            yield f"{where}: unknown key{meant(name, known)} ({error.schema['description']})"
+        else:
+            yield f"{where}: {error.message}{reason(error)}"
+
+
+def meant(key: str, known: Collection[str]) -> str:
+    """The known key that is nearest to an unknown one; all of them if none is near."""
+    near = get_close_matches(key, known, n=1)
+    return f", did you mean {near[0]}?" if near else f", allowed: {', '.join(known)}"
+
+
+def reason(error: ValidationError) -> str:
+    """Why a value is not allowed, and the remedy for a number that was read as a text."""
+    described = error.schema.get("description")
+    found = f" ({described})" if described else ""
+    if error.validator == "type" and isinstance(error.instance, str):
+        found += (
+            "; YAML reads 1e4 as a text: write 1.0e+4; nested values of --config are texts: write "
+            "them into a file for --configfile"
+        )
+    return found

@@ -1,0 +1,185 @@
+"""Numbers that follow from the datasets: the claims judge them, and the article prints them."""
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+from bouncing_ball import restitution
+from bouncing_ball.datasets import parameters
+from bouncing_ball.paper import STIFF
+from bouncing_ball.spring_damper import Contact, damping_ratio
+
+ROUNDING = 1e-9
+"""Relative difference below which numbers are equal: rounding errors of the datasets are 1e-12."""
+
+STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
+"""Frequency ratios of at least `STIFF`."""
+
+QUANTITIES = {
+    "max_height": "maximum height",
+    "bounce_velocity": "bouncing-off velocity",
+    "phase": "phase of impact",
+    "apparent_restitution": "apparent restitution coefficient",
+    "saddle_node": "Λ of the saddle-node",
+    "period_doubling": "Λ of the period doubling",
+    "permanent_contact": "Λ of permanent contact",
+}
+"""Names of the quantities whose error is scanned."""
+
+
+def complete(values: ArrayLike) -> NDArray:
+    """Return numbers as an array; raise ValueError if there are none, or if one is NaN."""
+    numbers = np.asarray(values, dtype=float)
+    missing = int(np.isnan(numbers).sum())
+    if missing or not numbers.size:
+        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
+    return numbers
+
+
+def steps(data: xr.DataArray) -> NDArray:
+    """Changes from each contact to the next stiffer one."""
+    return data.sortby("frequency_ratio").diff("frequency_ratio").values
+
+
+def between(curve: xr.DataArray) -> PchipInterpolator:
+    """A curve along ϖ as a function of ln ϖ, by the piecewise cubic that is monotone with it."""
+    return PchipInterpolator(np.log(curve["frequency_ratio"].values), complete(curve))
+
+
+def crossing(curve: xr.DataArray, level: float) -> float:
+    """The largest ϖ at which a curve takes a value; NaN if it does not."""
+    places = between(curve).solve(level, extrapolate=False)
+    return float(np.exp(places.max())) if places.size else np.nan
+
+
+def from_the_stiffest(table1: xr.Dataset) -> xr.Dataset:
+    """The rows that the paper prints of Table 1, from the stiffest to the most compliant one."""
+    printed = table1.dropna("frequency_ratio", subset=["printed"])
+    return printed.sortby("frequency_ratio", ascending=False)
+
+
+def last_special(branch: xr.Dataset, kind: str) -> float:
+    """Λ at the last special point of a kind along a branch.
+
+    A branch ends on the stable side of the saddle-node with which Table 1 begins.
+    """
+    found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
+    if not found.size:
+        raise ValueError(f"the branch has no {kind}")
+    return float(found[-1])
+
+
+def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
+    """The branches of figures, one for each frequency ratio, from the most compliant contact on."""
+    return [
+        figure.sel(frequency_ratio=ratio)
+        for figure in figures
+        for ratio in np.sort(figure["frequency_ratio"])
+    ]
+
+
+def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
+    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
+
+    They lie between special points, or between one and an end of the branch.
+    """
+    special = branch.isel(special=branch["special_kind"].values != "")
+    places = complete([0.0, *special["special_arclength"].values, 1.0])
+    amplitude = branch["amplitude"].values
+    ends = np.array([amplitude[0], *special["special_amplitude"].values, amplitude[-1]])
+    middles = (places[:-1] + places[1:]) / 2
+    stable = branch["stable"].values[np.rint(middles * (amplitude.size - 1)).astype(int)]
+    ranges = np.sort(np.stack([ends[:-1], ends[1:]], axis=1), axis=1)
+    return [(low, high) for low, high in ranges[stable].tolist()]
+
+
+def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
+    """The largest errors of the restitution model at ϖ ≥ 100, over orbit and measure.
+
+    `sweeps` are the datasets of Figs. 5, 6 and 10 by name; an orbit that two of them have is given
+    once. Errors are relative, but that of the phase is a share of a period of the table.
+    """
+    found = {}
+    for sweep in sweeps.values():
+        n = parameters(sweep)["n"]
+        for _, curve in sweep.sel(frequency_ratio=STIFF_CONTACTS).groupby("case"):
+            r = curve["restitution"].item()
+            amplitude = curve["amplitude"].item()
+            limits = {
+                "max_height": restitution.max_height(n, r, amplitude),
+                "bounce_velocity": restitution.bounce_velocity(n),
+                "apparent_restitution": r,
+            }
+            errors = {name: curve[name].values / limit - 1 for name, limit in limits.items()}
+            turn = curve["phase"].values - restitution.impact_phase(n, r, amplitude)
+            errors["phase"] = turn / (2 * np.pi)
+            orbit = f"n = {n}, r = {r:g}, Λ = {amplitude:g}"
+            found[orbit] = [np.abs(error).max() for error in errors.values()]
+    coordinates = {"orbit": list(found), "measure": list(errors)}
+    return xr.DataArray(list(found.values()), coordinates, ("orbit", "measure"))
+
+
+def departure(fig10: xr.Dataset) -> xr.DataArray:
+    """Relative departure of the bouncing-off velocity from nπ."""
+    return abs(fig10["bounce_velocity"] / fig10["restitution_bounce_velocity"] - 1)
+
+
+def spread(fig10: xr.Dataset) -> xr.DataArray:
+    """How far the bouncing-off velocities at different amplitudes are apart, as a share of nπ."""
+    velocity = fig10["bounce_velocity"]
+    apart = velocity.max("case", skipna=False) - velocity.min("case", skipna=False)
+    return apart / fig10["restitution_bounce_velocity"]
+
+
+def error_of_eq_8(thresholds: xr.Dataset) -> float:
+    """Relative distance of the period doubling of Eq. 8 from that of the map of Eq. 5, to which
+    the spring-damper model tends.
+    """
+    given = parameters(thresholds)
+    limit = restitution.period_doubling(given["n"], given["restitution"])
+    printed = restitution.holmes_period_doubling(given["n"], given["restitution"])
+    return abs(limit / printed - 1)
+
+
+def residual(figure: xr.Dataset) -> NDArray:
+    """What Eqs. 23, 24, 25 and 26 leave on the orbits of a figure, of which 23 is in contact times
+    ϖ and the others in the units of the model.
+    """
+    n = parameters(figure)["n"]
+    ratio = figure["frequency_ratio"].values[:, np.newaxis]
+    amplitude, phase, end, duration, before, after = (
+        complete(figure[name])
+        for name in (
+            "amplitude",
+            "phase",
+            "release_phase",
+            "contact_duration",
+            "impact_velocity",
+            "bounce_velocity",
+        )
+    )
+    x = amplitude * np.cos(phase)
+    impact_height = amplitude * np.sin(phase)
+    contact = Contact(ratio, figure["damping_ratio"].item())
+    motion = contact.motion(duration, before - x, x, impact_height)
+    flight = 2 * np.pi * n - duration
+    landing = motion.displacement + amplitude * np.sin(end) + after * flight - flight**2 / 2
+    return np.stack(
+        [
+            ratio * motion.displacement,
+            motion.velocity + amplitude * np.cos(end) - after,
+            landing - impact_height,
+            after - flight - before,
+        ]
+    )
+
+
+def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
+    """Restitution of a ball that falls with the velocity π of the 1-T orbit on a table at rest."""
+    contact = Contact(ratio, damping_ratio(r), weight=weight)
+    time = np.pi / (ratio * np.sqrt(1 - contact.damping_ratio**2))
+    for _ in range(20):  # Newton's method for the end of the contact, δ = 0
+        motion = contact.motion(time, -np.pi, 0.0, 0.0)
+        time = time - motion.displacement / motion.velocity
+    return float(contact.motion(time, -np.pi, 0.0, 0.0).velocity / np.pi)

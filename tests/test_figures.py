@@ -16,7 +16,7 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
 from PIL import Image
 
-from bouncing_ball import datasets, drawing, figures, restitution
+from bouncing_ball import datasets, drawing, figures, paper, restitution
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
@@ -117,7 +117,7 @@ LABELS = {
     "fig11": ["$r=0.65$, $\\zeta=0.1359$", r"minimum, $2\zeta\sqrt{1-\zeta^2}$"],
     "fig12": ["$n=1$, $r=0.65$, $\\Lambda=1$", "$\\varpi=100$", "table $w$"],
     "fig13": ["$n=1$, $r=0.65$, $\\Lambda=1$", "$\\varpi=1$", "$\\varpi=5$", "restitution model"],
-    "fig14": [r"$\varpi_{h,1\%}=82.18$", "tolerance 1 %"],
+    "fig14": [r"$\varpi_{h,1\%}=82.18$", "tolerance 1 %", "printed: 82", "advised: 100"],
     "fig15": ["$n=2$, $r=0.65$", "restitution", "$\\varpi=10$"],
     "fig16": [r"$\varpi_{PC,1\%}=9.812$", "printed: 6", r"restitution, $\Lambda_{CR}$"],
     "validity_map": [
@@ -464,6 +464,26 @@ def test_no_threshold(name, threshold):
     figure = laid_out(name, data.assign(error_threshold=threshold))
     assert not any(r"\varpi_{" in text for text in words(figure))
     assert_readable(figure)
+
+
+@pytest.mark.parametrize(("name", "claim"), [("fig14", "height"), ("fig16", "permanent contact")])
+def test_the_printed_threshold_is_a_diamond_at_the_error_that_the_paper_allows(name, claim):
+    printed = paper.PRINTED[f"{claim} threshold"]
+    (diamond,) = [line for line in of_reference(name).axes[1].lines if line.get_marker() == "D"]
+    assert diamond.get_xydata().tolist() == [[float(printed), paper.LIMIT]]
+    assert diamond.get_label() == f"printed: {printed}"
+
+
+def test_the_advised_frequency_ratio_is_a_line_in_both_panels():
+    for axes in of_reference("fig14").axes:
+        (line,) = [each for each in axes.lines if each.get_label() == f"advised: {paper.STIFF:g}"]
+        assert line.get_xdata() == [paper.STIFF, paper.STIFF]
+
+
+def test_other_parameters_have_neither_a_printed_nor_an_advised_frequency_ratio():
+    (data,) = data_of("fig14")
+    found = words(figures.draw("fig14", with_parameters(data, amplitude=0.9)))
+    assert not any("printed" in text or "advised" in text for text in found)
 
 
 def test_another_tolerance_and_release_have_no_printed_value():

@@ -53,6 +53,12 @@ CONTACT = COLOURS[1]
 LIMIT: Look = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 2))}
 """The value of the restitution model, to which that of the spring-damper model tends."""
 
+PRINTED: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
+"""Mark of a threshold of ϖ that the paper prints."""
+
+ADVISED: Look = {"color": COLOURS[2], "linewidth": 1.0, "linestyle": DASHES[1]}
+"""Line at the ϖ that the paper advises."""
+
 ARROW: Look = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "color": "black"}
 PERIOD = 2 * np.pi
 """Period of the table in τ."""
@@ -278,9 +284,7 @@ def fig16(data: xr.Dataset) -> Figure:
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
     if not paper.other_parameters("fig16", data, paper.PARAMETERS["fig16"]):
-        look: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
-        printed = paper.PRINTED["permanent contact threshold"]
-        below.plot(float(printed), paper.LIMIT, label=f"printed: {printed}", **look)
+        mark_printed(below, "permanent contact threshold")
     legend_below(figure)
     return figure
 
@@ -475,6 +479,10 @@ def fig14(data: xr.Dataset) -> Figure:
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     along_ratio(axes, data.frequency_ratio)
     draw_error(below, data, data.max_height - limit, "h")
+    if not paper.other_parameters("fig14", data, paper.PARAMETERS["fig14"]):
+        mark_printed(below, "height threshold")
+        for part in (axes, below):
+            part.axvline(paper.STIFF, label=f"advised: {paper.STIFF:g}", **ADVISED)
     legend_below(figure)
     return figure
 
@@ -503,6 +511,12 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     axes.set(yscale="log", ylabel="relative error")
     axes.set_ylim(bottom=bottom)
     along_ratio(axes, data.frequency_ratio)
+
+
+def mark_printed(axes: Axes, claim: str) -> None:
+    """Mark the printed threshold of ϖ at the error that the paper allows."""
+    printed = paper.PRINTED[claim]
+    axes.plot(float(printed), paper.LIMIT, label=f"printed: {printed}", **PRINTED)
 
 
 # Where the frequency ratio of the paper is enough

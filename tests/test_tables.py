@@ -41,7 +41,7 @@ def ends():
 def test_each_printed_end_has_its_verdict(ends):
     header, *rows = tables.table1(ends)
     assert header == ["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]
-    assert rows[0][3:] == ["0.25471", "0.255", "-0.3 units, -0.11 %", "reproduced"]
+    assert rows[0][3:] == ["0.25471", "0.255", "rounds to 0.255", "reproduced"]
     assert rows[1][3:] == ["1.03830", "1.032", "+6.3 units, +0.61 %", "not reproduced"]
     assert [row[0] for row in rows[2:]] == [
         "restitution model, Eq. 5",
@@ -54,7 +54,7 @@ def test_each_printed_end_has_its_verdict(ends):
 
 def test_an_end_within_a_unit_is_near(ends):
     ends["computed"][0, 0, 1] = 1.0328
-    assert tables.table1(ends)[2][-1] == "near"
+    assert tables.table1(ends)[2][-2:] == ["+0.8 units, +0.08 %", "near"]
 
 
 def test_an_end_that_does_not_exist_has_no_number(ends):

@@ -137,31 +137,57 @@ def test_labels(name, expected):
 
 @pytest.mark.parametrize("name", figures.PLOTS)
 def test_every_axis_has_a_name(name):
-    for axes in of_reference(name).axes:
+    figure = of_reference(name)
+    for axes in figure.axes:
         # Panels with the same axis name it once, below or on the left.
         for axis in (axes.xaxis, axes.yaxis):
-            assert axis.get_label_text() or not drawn_tick_labels(axis)[0].get_visible()
+            named = axis.get_label_text() or not drawn_tick_labels(axis)[0].get_visible()
+            assert named or (name == "fig08" and axis is not figure.axes[-1].xaxis)
+    if name == "fig08":
+        # The middle panel names the phase for all panels.
+        (named,) = [axes for axes in figure.axes if axes.get_ylabel()]
+        assert named is figure.axes[1]
+
+
+def test_each_contact_of_figure_8_has_a_panel_at_one_scale_of_the_phase():
+    data = reference("fig08")
+    axes = of_reference("fig08").axes
+    assert len(axes) == data.sizes["frequency_ratio"]
+    for panel, ratio in zip(axes, data.frequency_ratio, strict=True):
+        names = {text.get_text() for text in panel.texts}
+        assert names == {drawing.label(frequency_ratio=ratio)}
+        branch = data.sel(frequency_ratio=ratio)
+        drawn = {tuple(point) for line in panel.lines for point in line.get_xydata()}
+        for phase in PHASES:
+            points = zip(branch.amplitude.values, branch[phase].values / np.pi, strict=True)
+            assert drawn.issuperset(points)
+    scales = [panel.get_window_extent().height / np.ptp(panel.get_ylim()) for panel in axes]
+    # A pixel of layout.
+    assert scales == pytest.approx(scales[:1] * len(scales), rel=0.01)
+    lefts = [panel.get_window_extent().x0 for panel in axes]
+    assert lefts == pytest.approx(lefts[:1] * len(lefts))
 
 
 @pytest.mark.parametrize("name", DOMAINS)
 def test_names_at_the_right_are_level_with_their_branches_or_next_to_each_other(name):
     figure = of_reference(name)
-    axes = figure.axes[0]
     points = drawing.POINTS / figure.dpi
-    names = [text for text in axes.texts if text.get_text().startswith(("$\\varpi", "rest"))]
-    centres = []
-    moved = []
-    for text in names:
-        end = axes.transData.transform((0.0, text.xy[1]))[1] * points
-        moved.append(text.xyann[1])
-        centres.append(end + text.xyann[1])
-    order = np.argsort(centres)
-    gaps = np.diff(np.array(centres)[order])
-    # Numbers of the size of a panel in points, with rounding errors.
-    assert gaps.min() > drawing.LINE_HEIGHT - 1e-6
-    touching = np.abs(gaps - drawing.LINE_HEIGHT) < 1e-6
-    beside = np.concatenate([[False], touching]) | np.concatenate([touching, [False]])
-    assert (beside | (np.abs(np.array(moved)[order]) < 1e-6)).all()
+    for axes in figure.axes:
+        names = [text for text in axes.texts if text.get_text().startswith(("$\\varpi", "rest"))]
+        assert names
+        centres = []
+        moved = []
+        for text in names:
+            end = axes.transData.transform((0.0, text.xy[1]))[1] * points
+            moved.append(text.xyann[1])
+            centres.append(end + text.xyann[1])
+        order = np.argsort(centres)
+        gaps = np.diff(np.array(centres)[order])
+        # Numbers of the size of a panel in points, with rounding errors.
+        assert gaps.min(initial=np.inf) > drawing.LINE_HEIGHT - 1e-6
+        touching = np.abs(gaps - drawing.LINE_HEIGHT) < 1e-6
+        beside = np.concatenate([[False], touching]) | np.concatenate([touching, [False]])
+        assert (beside | (np.abs(np.array(moved)[order]) < 1e-6)).all()
 
 
 def branches(name, data):
@@ -180,7 +206,7 @@ def branches(name, data):
 
 
 def lines_of(figure, label):
-    return [line for line in figure.axes[0].lines if line.get_label() == label]
+    return [line for axes in figure.axes for line in axes.lines if line.get_label() == label]
 
 
 def at(line, x, y):
@@ -250,7 +276,7 @@ def test_the_period_doublings_of_eq_8_are_marked(name):
 
 
 def test_a_short_stable_range_is_seen_between_its_marks():
-    axes = of_reference("fig08").axes[0]
+    axes = of_reference("fig08").axes[-1]
     branch = drawing.spring_damper_branch(reference("fig08").sel(frequency_ratio=2.0))
     special = branch.isel(special=np.flatnonzero(branch.special_kind != ""))
     special = special.sortby("special_along")

@@ -409,52 +409,88 @@ def show_summit(axes: Axes, data: xr.Dataset) -> None:
 # Branches of the spring-damper model
 
 
+Branch = tuple[str, xr.Dataset, str]
+"""Name, dataset and colour of a branch of orbits."""
+
+
 def fig08(data: xr.Dataset) -> Figure:
-    """Branches along Λ for each ϖ: the phases of the table as contact starts and as it ends."""
-    shades = colours(data.sizes["frequency_ratio"])
-    shown = []
-    for ratio, colour in zip(data.frequency_ratio, shades, strict=True):
-        branch = spring_damper_branch(data.sel(frequency_ratio=ratio))
-        shown.append((label(frequency_ratio=ratio), branch, colour))
-    return domains(data, shown, height=4.8)
+    """Branches along Λ, one panel for each ϖ: phases of the table at the start and end of contact.
+
+    All panels have the same scale of the phase.
+    """
+    contacts = contact_branches(data)
+    return domains(data, [[branch] for branch in contacts], height=2.5 * len(contacts))
+
+
+def fig09(data: xr.Dataset) -> Figure:
+    """Branches along Λ for several ϖ: phases of the table at the start and end of contact."""
+    return domains(data, [contact_branches(data)], height=4.8)
 
 
 def fig15(data: xr.Dataset) -> Figure:
-    """Branches of both models along Λ: the phases of the table as contact starts and as it ends."""
+    """Branches of both models along Λ: phases of the table at the start and end of contact."""
     names = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in names})
     shown = [("restitution", restitution_branch(rigid, data), COLOURS[0])]
     contact = spring_damper_branch(data.squeeze("frequency_ratio"))
     shown.append((label(frequency_ratio=contact.frequency_ratio), contact, CONTACT))
-    return domains(data, shown, height=4.2)
+    return domains(data, [shown], height=4.2)
 
 
-def domains(data: xr.Dataset, shown: list[tuple[str, xr.Dataset, str]], height: float) -> Figure:
-    """Both phases of some branches in one panel: name, branch and colour of each."""
-    figure, axes = panels(height)
-    absent = [name for name, branch, _ in shown if branch.amplitude.isnull().all()]
-    present = [each for each in shown if each[0] not in absent]
-    for _, branch, colour in present:
+def contact_branches(data: xr.Dataset) -> list[Branch]:
+    """The branch of the spring-damper model for each ϖ."""
+    shades = colours(data.sizes["frequency_ratio"])
+    shown = []
+    for ratio, colour in zip(data.frequency_ratio, shades, strict=True):
+        branch = spring_damper_branch(data.sel(frequency_ratio=ratio))
+        shown.append((label(frequency_ratio=ratio), branch, colour))
+    return shown
+
+
+def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figure:
+    """Both phases of branches over Λ, in a column of panels: `shown` has the branches of each."""
+    absent = [name for panel in shown for name, branch, _ in panel if not has_orbits(branch)]
+    present = [[each for each in panel if has_orbits(each[1])] for panel in shown]
+    # Without any branch, one empty panel remains.
+    present = [panel for panel in present if panel] or [[]]
+    figure, grid = panels(height, rows=len(present), sharex=True, squeeze=False)
+    column = grid[:, 0]
+    for axes, panel in zip(column, present, strict=True):
+        draw_phases(axes, panel)
+    spans = np.array([np.ptp(axes.get_ylim()) for axes in column])
+    # A branch with a short range of phases still needs room for its numbers and its name.
+    column[0].get_gridspec().set_height_ratios(np.maximum(spans, 0.25 * spans.max()))
+    amplitude_max = parameters(data)["amplitude_max"]
+    starts = [float(branch.amplitude.min()) for panel in present for _, branch, _ in panel]
+    least = min(starts, default=0.0)
+    # The space left of branches that begin far to the right would be empty.
+    left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
+    note = f"\nno branch for {', '.join(absent)}" if absent else ""
+    column[0].set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
+    column[-1].set_xlabel(r"amplitude $\Lambda$")
+    column[len(column) // 2].set_ylabel(r"phase of the table over $\pi$")
+    branch_legend(figure, both_phases=True)
+    figure.draw_without_rendering()
+    for axes, panel in zip(column, present, strict=True):
+        name_at_right(axes, branch_names(panel, 0.01 * np.ptp(axes.get_ylim())))
+    return figure
+
+
+def has_orbits(branch: xr.Dataset) -> bool:
+    """Whether a branch has any orbit."""
+    return bool(branch.amplitude.notnull().any())
+
+
+def draw_phases(axes: Axes, panel: list[Branch]) -> None:
+    """Both phases of some branches, with their special points."""
+    for _, branch, colour in panel:
         draw_branch(axes, branch, "phase", pale(colour), WIDE)
         draw_branch(axes, branch, "release_phase", colour, NARROW)
         for phase in ("phase", "release_phase"):
             mark_special(axes, branch, phase, colour)
-    amplitude_max = parameters(data)["amplitude_max"]
-    least = min((float(branch.amplitude.min()) for _, branch, _ in present), default=0.0)
-    # The space left of branches that begin far to the right would be empty.
-    left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
-    note = f"\nno branch for {', '.join(absent)}" if absent else ""
-    axes.set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
-    axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the table over $\pi$")
-    branch_legend(figure, both_phases=True)
-    figure.draw_without_rendering()
-    name_at_right(axes, branch_names(present, 0.01 * np.ptp(axes.get_ylim())))
-    return figure
 
 
-def branch_names(
-    present: list[tuple[str, xr.Dataset, str]], close: float
-) -> list[tuple[str, float, str]]:
+def branch_names(present: list[Branch], close: float) -> list[tuple[str, float, str]]:
     """Labels of branches at the right ends of both phases; one where these are close."""
     names = []
     for name, branch, colour in present:
@@ -594,7 +630,7 @@ PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig06": fig05,
     "fig07": fig07,
     "fig08": fig08,
-    "fig09": fig08,
+    "fig09": fig09,
     "fig10": fig10,
     "fig11": fig11,
     "fig12": fig12,

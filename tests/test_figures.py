@@ -295,6 +295,20 @@ def test_the_end_of_a_branch_at_permanent_contact_is_marked():
     assert places == {(float(end.amplitude), float(end[phase]) / np.pi) for phase in PHASES}
 
 
+def test_a_branch_that_ends_early_at_its_last_point_is_marked_there():
+    """The branch of the most compliant contact, followed backwards, with unknown points at last."""
+    (data,) = data_of("fig08")
+    along = [name for name in data.data_vars if "point" in data[name].dims]
+    for name in (*along, "end_reason"):
+        data[name][-1] = data[name].values[-1, ::-1]
+    data.special_arclength[-1] = 1 - data.special_arclength[-1]
+    data.amplitude[-1, -3:] = data.phase[-1, -3:] = data.release_phase[-1, -3:] = np.nan
+    marks = lines_of(figures.draw("fig08", data), "joins permanent contact")
+    end = data.isel(frequency_ratio=-1, point=-4)
+    expected = {(float(end.amplitude), float(end[phase]) / np.pi) for phase in PHASES}
+    assert {tuple(line.get_xydata()[0]) for line in marks} == expected
+
+
 def test_phases_of_a_stiff_contact_have_one_label_and_those_of_a_compliant_one_two():
     found = words(of_reference("fig08"))
     counts = [found.count(f"$\\varpi={ratio}$") for ratio in ("10^{4}", "10", "2")]

@@ -34,14 +34,12 @@ Look = dict[str, Any]
 """Keywords of a line, a mark or a text."""
 
 WIDTH = 3.5
-"""Width of a figure of one column in inches."""
-
-WHOLE_WIDTH = 7.0
-"""Width of a figure of the whole page in inches."""
+"""Width of all figures in inches: one column of a journal."""
 
 SETTINGS: Look = {
     "font.size": 8,
     "axes.titlesize": "medium",
+    "figure.labelsize": "medium",
     "axes.linewidth": 0.6,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -173,10 +171,8 @@ def pale(colour: str) -> str:
 
 
 def panels(height: float, rows: int = 1, columns: int = 1, **options: Any) -> tuple[Figure, Any]:
-    """A figure, and its panel or array of panels. With several columns of panels it is as wide as
-    the page, and else as one column of it.
-    """
-    figure = Figure(figsize=(WIDTH if columns == 1 else WHOLE_WIDTH, height))
+    """A figure of the width `WIDTH` and a height in inches, and its panel or array of panels."""
+    figure = Figure(figsize=(WIDTH, height))
     # It keeps its renderer, which every measurement of a text would make anew otherwise.
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, **options)

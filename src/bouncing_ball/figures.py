@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
+from matplotlib.ticker import MultipleLocator
 
 from bouncing_ball import paper
 from bouncing_ball.datasets import parameters
@@ -557,68 +558,85 @@ def mark_printed(axes: Axes, claim: str) -> None:
 
 # Where the frequency ratio of the paper is enough
 
-FAILURES: Mapping[str, tuple[str, Look]] = {
-    "max_height": ("greatest height", {"facecolor": "0.65"}),
-    "bounce_velocity": ("bouncing-off velocity", {"hatch": "////"}),
-    "apparent_restitution": ("apparent restitution", {"hatch": "\\\\\\\\"}),
-    "phase_in_periods": ("phase", {"hatch": "-----"}),
+COMPARED: Mapping[str, str] = {
+    "max_height": "greatest\nheight",
+    "bounce_velocity": "bouncing-off\nvelocity",
+    "apparent_restitution": "apparent\nrestitution",
+    "phase_in_periods": "phase",
 }
-"""Name of each quantity of `validity_map`, and the look of the region where it fails."""
-TENFOLD: Look = {"facecolor": "0.4"}
-DOUBLED = "0.88"
-CURVES: Look = {"marker": "o", "linestyle": "none", "color": "black", "markerfacecolor": "white"}
+"""Name of each quantity of `validity_map`."""
+
+DOUBLED: Look = {"facecolor": pale(COLOURS[2]), "edgecolor": COLOURS[2], "linewidth": 0.8}
+CURVES: Look = {
+    "marker": "o",
+    "markersize": 3.4,
+    "linestyle": "none",
+    "color": "black",
+    "markerfacecolor": "white",
+}
 
 
 def validity_map(data: xr.Dataset) -> Figure:
-    """Where the advised ϖ is not enough: regions of r and of the place of Λ, for each n."""
+    """Orbits for which the advised ϖ is not enough: a panel for each quantity and each n.
+
+    The vertical axis is linear in Λ. The dark share of a panel is the share of these orbits.
+    """
     given = parameters(data)
-    figure, panel = panels(3.6, columns=data.sizes["n"], sharey=True, squeeze=False)
-    for axes, n in zip(panel[0], data.n.values, strict=True):
-        draw_failures(axes, data.sel(n=n), given)
-        curves = data.where(data.curve_n == n)
-        axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
-        axes.set(title=label(n=n), xlabel="restitution coefficient $r$")
-        axes.set(xlim=(data.restitution[0], data.restitution[-1]), ylim=(0, 1))
-        # The places near the saddle-node, where the errors change fastest, get more room.
-        axes.set_yscale("function", functions=(np.sqrt, np.square))
-        ticks = [0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1]
-        axes.set_yticks(ticks, [f"{100 * tick:g} %" for tick in ticks])
-    panel[0, 0].set_ylabel("place of $\\Lambda$ between\nsaddle-node and period doubling")
-    body: Look = {"edgecolor": "black", "facecolor": "white", "linewidth": 0.6}
-    advised = number(given["advised"])
+    shape: Look = {"rows": data.sizes["quantity"], "columns": data.sizes["n"], "squeeze": False}
+    figure, grid = panels(5.6, **shape, sharex=True, sharey=True)
+    for row, quantity in zip(grid, data.quantity.values, strict=True):
+        for axes, n in zip(row, data.n.values, strict=True):
+            draw_failures(axes, data.sel(quantity=quantity, n=n), given["tolerance"])
+            curves = data.where(data.curve_n == n)
+            axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
+        row[0].set_ylabel(COMPARED[quantity])
+    for axes, n in zip(grid[0], data.n.values, strict=True):
+        axes.set(title=label(n=n), xlim=data.restitution[[0, -1]], ylim=(0, 1))
+        axes.set_yticks([0, 0.5, 1], ["0 %", "50 %", "100 %"])
+        axes.xaxis.set_major_locator(MultipleLocator(0.4))
+    for axes in grid[-1]:
+        axes.set_xlabel("restitution $r$")
+    # Above the legend, the middle of the panels is higher than that of the figure.
+    figure.supylabel(r"$\Lambda$ from saddle-node (0 %) to period doubling (100 %)", y=0.56)
+    advised = rf"$\varpi={number(given['advised'])}$"
     entries: dict[str, Patch | Line2D] = {
-        rf"$\varpi={advised}$ is not enough: {name}": Patch(**body | look)
-        for name, look in FAILURES.values()
+        f"{advised} is not enough: share of the panel in %": Patch(facecolor=CONTACT),
+        f"the period has doubled at {advised}": Patch(**DOUBLED),
+        "curves of the paper": sample(**CURVES),
     }
-    tenfold = rf"$\varpi={number(10 * given['advised'])}$ is not enough: greatest height"
-    entries[tenfold] = Patch(**body | TENFOLD)
-    entries[rf"doubled at $\varpi={advised}$"] = Patch(facecolor=DOUBLED)
-    entries["curves of the paper"] = sample(**CURVES)
-    legend_below(figure, entries, columns=2)
+    legend_below(figure, entries, columns=1)
     return figure
 
 
-def draw_failures(axes: Axes, data: xr.Dataset, given: Mapping) -> None:
-    """The regions of one n, and the orbits for which no answer is known, as crosses."""
-    axes.fill_between(data.restitution, 1 - data.doubled_share, 1, color=DOUBLED, linewidth=0)
-    for quantity, (_, look) in FAILURES.items():
-        of_one = data.sel(quantity=quantity)
-        fill_positive(axes, of_one.stiff_error - given["tolerance"], look)
-        if quantity == "max_height":
-            fill_positive(axes, of_one.enough_from - 10 * given["advised"], TENFOLD)
-        row, column = np.nonzero(of_one.enough_from.isnull().values)
-        axes.plot(data.restitution[row], data.place[column], "x", color="black")
+def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
+    """The failing orbits of one quantity and n with their share; orbits without an answer as x."""
+    axes.fill_between(data.restitution, 1 - data.doubled_share, 1, **DOUBLED)
+    excess = (data.stiff_error - tolerance).transpose("place", "restitution")
+    over = data.restitution, data.place, excess
+    if (excess > 0).any():
+        axes.contourf(*over, levels=[0, float(excess.max()) + 1], colors=CONTACT)
+        # The border shows regions that are thinner than a line.
+        axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
+    row, column = np.nonzero(data.enough_from.isnull().values)
+    axes.plot(data.restitution[row], data.place[column], "x", color="black")
+    share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
+    axes.text(0.5, 0.3, share_text(float(data.failing_mean)), **share)
+    axes.spines[["top", "right"]].set_visible(True)
 
 
-def fill_positive(axes: Axes, values: xr.DataArray, look: Look) -> None:
-    """The region of positive values over r and place, with its border."""
-    if not (values > 0).any():
-        return
-    over = values.restitution, values.place, values.transpose("place", "restitution")
-    colour = look.get("facecolor", "none")
-    top = float(values.max()) + 1
-    axes.contourf(*over, levels=[0, top], colors=colour, hatches=[look.get("hatch")])
-    axes.contour(*over, levels=[0], colors="black", linewidths=0.8)
+def share_text(share: float) -> str:
+    """A share in percent with one decimal; a smaller share as a bound.
+
+    Examples
+    --------
+    >>> share_text(0.1222), share_text(0.0004), share_text(0.0), share_text(float("nan"))
+    ('12.2 %', '< 0.1 %', 'none', 'unknown')
+    """
+    if np.isnan(share):
+        return "unknown"
+    if share == 0:
+        return "none"
+    return f"{100 * share:.1f} %" if share >= 0.001 else "< 0.1 %"
 
 
 SCHEMATICS: Mapping[str, Callable[[], Figure]] = {"fig01": fig01, "fig04": fig04}

@@ -1,14 +1,18 @@
-"""What the figures share: style, labels, branches of orbits with their stability, picture files.
+"""Draw what the figures share: style, labels, branches of orbits, legends and picture files.
 
-A figure is one or two columns of a journal wide, with texts of 8 points. Colours differ in
-lightness too, and curves also differ in dashes, width or marks, so that nothing depends on colour
-vision or on a printer of colours. Line styles tell the kind of an orbit: solid for stable, dashed
-for unstable, dotted for inadmissible. In pictures with both phases of a contact, a wide pale line
-is the phase φ at its start and a narrow line the phase φ + τ_b at its end: where the two coincide
-one sees the narrow line within the wide one.
+All figures have the width `WIDTH` and texts of 8 points. Colours differ in lightness, and curves
+also differ in dashes, width or marks. Readers need neither colour vision nor a colour printer.
 
-Nothing here is drawn by pyplot, and nothing depends on the settings of the user: `style` starts
-from matplotlib's defaults.
+Three line styles show the kind of an orbit:
+
+- solid: stable
+- dashed: unstable
+- dotted: inadmissible
+
+Some pictures show both phases of a contact. A wide pale line is the phase φ at its start. A narrow
+line is the phase φ + τ_b at its end. Where both coincide, the narrow line is within the wide line.
+
+The pictures are independent of the user's settings: `style` starts from matplotlib's defaults.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -31,7 +35,7 @@ from matplotlib.ticker import FuncFormatter
 from bouncing_ball.datasets import parameters, whole
 
 Look = dict[str, Any]
-"""Keywords of a line, a mark or a text."""
+"""Keyword arguments of a line, a mark or a text."""
 
 WIDTH = 3.5
 """Width of all figures in inches: one column of a journal."""
@@ -48,18 +52,18 @@ SETTINGS: Look = {
     "legend.columnspacing": 1.2,
     "legend.handletextpad": 0.6,
     "lines.linewidth": 1.2,
-    # The dashes of wide and narrow lines are equally long, so that they coincide too.
+    # Dashes of wide and narrow lines coincide only if their lengths are equal.
     "lines.scale_dashes": False,
     "hatch.linewidth": 0.6,
     "figure.constrained_layout.use": True,
     "figure.dpi": 300,
-    # Identifiers do not depend on the run. Letters are paths, with their text in comments: their
-    # places are computed for one font, which the reader of an SVG need not have.
+    # A fixed salt gives each run the same identifiers. Letters are paths, because the layout is
+    # computed for one font, which the reader of an SVG may not have.
     "svg.hashsalt": "bouncing-ball",
     "svg.fonttype": "path",
 }
 
-# Neighbours differ in grey too; each has a contrast of at least 3:1 with white.
+# Neighbours also differ in grey. Each colour has a contrast of at least 3:1 with white.
 COLOURS = ("#000000", "#0072b2", "#c77c00", "#8a2f62", "#3f96cc")
 TABLE = "#8c8c8c"
 DASHES = ("-", (0, (7, 2)), (0, (7, 1.5, 1.2, 1.5)), (0, (2, 1.2)), (0, (7, 1.2, 1.2, 1.2) * 2))
@@ -79,14 +83,14 @@ MARKS: Mapping[str, Look] = {
     "joins permanent contact": {"marker": "D", "markersize": 3.4, "fillstyle": "full"},
     "end of the branch": {"marker": "h", "markersize": 3.4, "fillstyle": "full"},
 }
-"""Mark of each special orbit, so small that short stable ranges are seen between two of them."""
+"""Mark of each special orbit. Larger marks would hide short stable ranges between two marks."""
 
 WIDE, NARROW = 3.4, 1.1
 """Line widths of the phases at the start and at the end of a contact."""
 
 
 def style() -> AbstractContextManager:
-    """Context in which figures are drawn and saved: matplotlib's defaults and `SETTINGS`."""
+    """Context for drawing and saving figures: matplotlib's defaults, updated by `SETTINGS`."""
     settings: Any = matplotlib.rcParamsDefault | SETTINGS
     return matplotlib.rc_context(settings)
 
@@ -103,7 +107,7 @@ SYMBOLS = {
 
 
 def number(value: float) -> str:
-    r"""A number for a label in LaTeX, with four digits, and as a power of ten from 10⁴ on.
+    r"""Return a number in LaTeX with four digits, and as a power of ten if it is at least 10⁴.
 
     Examples
     --------
@@ -118,7 +122,7 @@ def number(value: float) -> str:
 
 
 def label(**values: float) -> str:
-    r"""Parameters with their symbols and values.
+    r"""Return the symbols and values of parameters in LaTeX.
 
     Examples
     --------
@@ -129,15 +133,16 @@ def label(**values: float) -> str:
 
 
 def title(data: xr.Dataset, *names: str) -> str:
-    """Some of the parameters of a dataset with their symbols."""
+    """Return the symbols and values of the named parameters of a dataset in LaTeX."""
     given = parameters(data)
     return label(**{name: given[name] for name in names})
 
 
 def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
-    r"""Label of the parameters that are equal in all curves, and label of the others for each.
+    r"""Separate the parameters that all curves share from those that differ.
 
-    A single curve has no label of its own.
+    Returns a label of the shared parameters, and for each curve a label of its other parameters.
+    The label of a single curve is empty.
 
     Examples
     --------
@@ -153,16 +158,16 @@ def parted(values: Mapping[str, Iterable[float]]) -> tuple[str, list[str]]:
 
 
 def colours(count: int) -> Sequence[str]:
-    """Colours for curves; more than `COLOURS` has are steps from dark to light."""
+    """Colours of curves: the first `COLOURS`, or a scale from dark to light for more curves."""
     if count <= len(COLOURS):
         return COLOURS[:count]
-    # The upper part of the map has too little contrast with white.
+    # The upper part of the colour map has too little contrast with white.
     shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.6, count))
     return [to_hex(shade) for shade in shades]
 
 
 def pale(colour: str) -> str:
-    """A colour mixed with white, for the wide lines."""
+    """Mix a colour with white, for wide lines and for areas."""
     red, green, blue = (0.45 * part + 0.55 for part in to_rgb(colour))
     return to_hex((red, green, blue))
 
@@ -171,17 +176,18 @@ def pale(colour: str) -> str:
 
 
 def panels(height: float, rows: int = 1, columns: int = 1, **options: Any) -> tuple[Figure, Any]:
-    """A figure of the width `WIDTH` and a height in inches, and its panel or array of panels."""
+    """Create a figure of the width `WIDTH` and a height in inches, and its panel or panels."""
     figure = Figure(figsize=(WIDTH, height))
-    # It keeps its renderer, which every measurement of a text would make anew otherwise.
+    # This canvas keeps its renderer. Otherwise each measurement of a text would create one.
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, **options)
 
 
 def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
-    """A logarithmic axis of ϖ from the least to the greatest, with plain numbers.
+    """Format the horizontal axis as a logarithmic axis of ϖ with plain numbers.
 
-    Powers of ten have numbers, and so has each end that is far enough from them.
+    The axis has numbers at powers of ten. It also has a number at each end that is far enough from
+    a power of ten.
     """
     ends = np.array([ratio.min(), ratio.max()], dtype=float)
     low, high = np.log10(ends)
@@ -192,22 +198,23 @@ def along_ratio(axes: Axes, ratio: xr.DataArray) -> None:
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: ""))
     axes.set_xlabel(r"frequency ratio $\varpi$")
-    # Of panels one above the other the lowest has the words.
+    # In a column of panels, only the lowest panel has the label.
     axes.label_outer()
 
 
 def legend_below(
     figure: Figure, entries: Mapping[str, Any] | None = None, columns: int = 2
 ) -> None:
-    """A legend below the panels: label and handle of each entry, or all that the panels have.
+    """Add a legend below the panels.
 
-    It has fewer columns if so many are wider than the figure.
+    `entries` are the handles by label; the default is all labelled artists of the panels. A legend
+    that is wider than the figure gets fewer columns.
     """
     if entries is None:
         entries = {}
         for axes in figure.axes:
             handles, labels = axes.get_legend_handles_labels()
-            # The upper panel comes first, also where both have an entry.
+            # If two panels have the same entry, the handle of the upper panel remains.
             entries |= dict(zip(labels, handles, strict=True)) | entries
     shown = list(entries.values())
     legend = figure.legend(shown, list(entries), loc="outside lower center", ncols=columns)
@@ -217,12 +224,12 @@ def legend_below(
 
 
 def sample(**look: Any) -> Line2D:
-    """A line or a mark for a legend, black unless it has a colour."""
+    """Return a line or a mark for a legend, black by default."""
     return Line2D([], [], **{"color": "black"} | look)
 
 
 def mark_look(kind: str) -> Look:
-    """The look of a mark of `MARKS`, without a line."""
+    """Return the look of a mark of `MARKS` without a line."""
     return {"fillstyle": "none", "linestyle": "none", "markeredgewidth": 1.0} | MARKS[kind]
 
 
@@ -230,7 +237,7 @@ def mark_look(kind: str) -> Look:
 
 
 def pieces(kinds: np.ndarray) -> list[slice]:
-    """Parts of a line of one kind each; a part ends at the first point of the next one.
+    """Split a line into parts of one kind; a part ends at the first point of the next part.
 
     Examples
     --------
@@ -244,7 +251,7 @@ def pieces(kinds: np.ndarray) -> list[slice]:
 def curve(
     axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
 ) -> None:
-    """A line whose inadmissible parts are dotted; only its first part has a label."""
+    """Draw a line with dotted inadmissible parts. Only the first part has the label."""
     inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
     for part in pieces(admissible.values):
         chosen = look if admissible.values[part.start] else inadmissible
@@ -253,13 +260,14 @@ def curve(
         inadmissible.pop("label", None)
 
 
-# Branches of orbits. A branch is a dataset over `point` with amplitude, phase, release_phase,
-# stable, admissible and along, which increases along it, and over `special` with special_kind,
-# special_along, special_amplitude, special_phase and special_release_phase.
+# Branches of orbits. A branch is a dataset with two dimensions:
+# - `point`: amplitude, phase, release_phase, stable, admissible, and `along`, which increases.
+# - `special`: special_kind, special_along, special_amplitude, special_phase and
+#   special_release_phase.
 
 
 def spring_damper_branch(data: xr.Dataset) -> xr.Dataset:
-    """The branch of one ϖ, whose points are at equal steps of arclength."""
+    """Branch of the spring-damper model at one ϖ. Its points have equal steps of arclength."""
     return data.assign(
         along=("point", np.linspace(0.0, 1.0, data.sizes["point"])),
         special_along=data.special_arclength,
@@ -268,10 +276,11 @@ def spring_damper_branch(data: xr.Dataset) -> xr.Dataset:
 
 
 def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Dataset:
-    """The branch of the restitution model, along which φ increases; its contact ends as it starts.
+    """Branch of the restitution model. The phase φ increases along it.
 
-    `bifurcations` has Λ and φ of the saddle-node and the period doubling, and may have those of
-    the grazing orbit. The branch has those of the period doubling of Eq. 8, too.
+    The impact is instantaneous, so the release phase equals the phase φ. `bifurcations` contains Λ
+    and φ of the saddle-node, of the period doubling, and optionally of the grazing orbit. The
+    result also contains Λ and φ of the period doubling of Eq. 8.
     """
     kinds = {
         "saddle-node": "saddle_node",
@@ -281,7 +290,7 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
     known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
     phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
     amplitudes = [float(bifurcations[f"{name}_amplitude"]) for name in known.values()]
-    # The orbits have Λ cos φ = Λ_SN (Eqs. 6, 7), and that of Eq. 8 has Λ² = 1 + Λ_SN².
+    # All orbits satisfy Λ cos φ = Λ_SN (Eqs. 6, 7). Eq. 8 gives Λ² = 1 + Λ_SN².
     saddle_node = bifurcations.saddle_node_amplitude
     return curve.assign(
         release_phase=curve.phase,
@@ -297,7 +306,7 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
 
 
 def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: float) -> None:
-    """One phase of a branch over Λ, in parts of one kind of orbit that meet in special points.
+    """Draw one phase of a branch against Λ. The line style changes at special points.
 
     `phase` is "phase" or "release_phase".
     """
@@ -306,26 +315,26 @@ def draw_branch(axes: Axes, branch: xr.Dataset, phase: str, colour: str, width: 
     place = np.searchsorted(branch.along, special.special_along)
     stability = np.where(branch.stable, "stable", "unstable")
     kinds = np.where(branch.admissible, stability, "inadmissible")
-    # A special point has the kind of the orbits beyond it, where there are any.
+    # A special point gets the kind of the next orbit, or of the last orbit at the end.
     kinds = np.insert(kinds, place, kinds[np.minimum(place, kinds.size - 1)])
     amplitude = np.insert(branch.amplitude.values, place, special.special_amplitude)
     angle = np.insert(branch[phase].values, place, special[f"special_{phase}"]) / np.pi
     for part in pieces(kinds):
         kind = kinds[part.start]
         look: Look = {"linestyle": KINDS[kind], "linewidth": width, "color": colour}
-        # Narrow lines are above the wide ones of all branches.
+        # Narrow lines must be above the wide lines of all branches.
         axes.plot(amplitude[part], angle[part], label=kind, zorder=3 - width / 10, **look)
 
 
 def mark(axes: Axes, kind: str, amplitude: xr.DataArray, phase: xr.DataArray, colour: str) -> None:
-    """The marks of special orbits of one kind; nothing where there are none."""
+    """Mark the special orbits of one kind, if there are any."""
     if phase.notnull().any():
         look = mark_look(kind)
         axes.plot(amplitude, phase / np.pi, color=colour, zorder=4, label=kind, **look)
 
 
 def mark_special(axes: Axes, branch: xr.Dataset, phase: str, colour: str) -> None:
-    """The special points of a branch, and its ends inside the range of Λ."""
+    """Mark the special points of a branch, and its ends inside the range of Λ."""
     for kind in MARKS:
         there = branch[f"special_{phase}"].where(branch.special_kind == kind)
         mark(axes, kind, branch.special_amplitude, there, colour)
@@ -349,16 +358,16 @@ def inner_ends(branch: xr.Dataset) -> list[tuple[str, int]]:
 
 
 def right_end(branch: xr.Dataset, phase: str) -> float:
-    """A phase over π where a branch has its greatest Λ; of two such ends, the later one.
+    """Return a phase divided by π at the largest Λ of a branch.
 
-    Both ends of a branch are often at the same Λ, but for rounding.
+    Both ends of a branch often have the largest Λ, within rounding. Then the last end counts.
     """
     far = branch.amplitude >= branch.amplitude.max() * (1 - 1e-9)
     return float(branch[phase][np.flatnonzero(far)[-1]]) / np.pi
 
 
 def branch_legend(figure: Figure, both_phases: bool) -> None:
-    """What the line styles, widths and marks mean that occur in a figure."""
+    """Add a legend of the line styles, widths and marks that occur in a figure."""
     drawn = {line.get_label() for axes in figure.axes for line in axes.lines}
     kinds = {kind: look for kind, look in KINDS.items() if kind in drawn}
     marks = {kind: sample(**mark_look(kind)) for kind in MARKS if kind in drawn}
@@ -370,7 +379,7 @@ def branch_legend(figure: Figure, both_phases: bool) -> None:
         r"start of contact, $\varphi$": sample(**wide),
         r"end of contact, $\varphi+\tau_b$": sample(linewidth=NARROW),
     }
-    # The styles hold for lines of both widths.
+    # Each line style occurs with both widths.
     lines: dict[str, Any] = {
         kind: (sample(linestyle=look, **wide), sample(linestyle=look, linewidth=NARROW))
         for kind, look in kinds.items()
@@ -378,20 +387,22 @@ def branch_legend(figure: Figure, both_phases: bool) -> None:
     legend_below(figure, phases | lines | marks)
 
 
-# Labels beside curves. Their places depend on the size of the panels, so that they come last.
+# Labels next to curves. They are added last, because their positions depend on the layout.
 
 POINTS = 72
-"""Points in an inch, in which sizes of texts, marks and offsets are."""
+"""Points in an inch. Sizes of texts, sizes of marks and offsets are in points."""
 
 LINE_HEIGHT = 10.5
-"""Distance of labels one above the other, in points."""
+"""Vertical distance of labels that are next to each other, in points."""
 
 MARK_RADIUS = 3
 """Half the size of a mark, in points."""
 
 
 def ascending(values: np.ndarray) -> np.ndarray:
-    """The ascending numbers nearest to some values by least squares, by the min-max formula.
+    """Return the ascending numbers that are closest to some values in the least-squares sense.
+
+    This is isotonic regression by the min-max formula.
 
     Examples
     --------
@@ -404,10 +415,11 @@ def ascending(values: np.ndarray) -> np.ndarray:
 
 
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
-    """Labels at the right edge of a panel: text, height in data and colour of each.
+    """Add labels at the right edge of a panel.
 
-    Each is as near to its height as the others and the height of the panel allow. The panel must
-    have been laid out.
+    `names` are the text, the height in data coordinates and the colour of each label. Labels are
+    moved as little as possible so that none overlap and all are next to the panel. Draw the figure
+    without rendering first, because the panel needs its final size.
     """
     if not names:
         return
@@ -425,9 +437,11 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
 
 
 def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
-    """A label beside a point of the data, at the place where it hides the fewest curves, marks and
-    labels; of equally good places the nearest is taken. A line joins the label and the point. The
-    panel must have been laid out.
+    """Add a label next to a point, given in data coordinates, and a line that joins them.
+
+    The label is at the position where it hides the fewest curves, marks and labels. Among equally
+    good positions the nearest is chosen. Draw the figure without rendering first, because the panel
+    needs its final size.
     """
     labels = [other.get_window_extent() for other in axes.texts]
     note = axes.annotate(text, point, (0, 0), textcoords="offset points")
@@ -457,7 +471,7 @@ def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
 
 
 def move(note: Annotation, place: tuple[float, float]) -> None:
-    """Put a label at an offset in points from its point, and beside the point."""
+    """Move a label to an offset in points, with its nearest edge or corner towards its point."""
     x, y = np.sign(place).astype(int)
     horizontal = ("center", "left", "right")[x]
     vertical = ("center", "bottom", "top")[y]

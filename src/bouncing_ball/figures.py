@@ -1,7 +1,8 @@
-"""The figures of the paper, each a function of its dataset; Figs. 1 and 4 are schematics.
+"""Draw the figures of the paper and the validity map, each from its dataset.
 
-`draw` draws one by name in the style of the package. All numbers in titles, legends and labels are
-those of the dataset. `drawing` explains what line styles, widths and marks mean.
+`draw` draws a figure by its name. Figs. 1 and 4 are schematics without a dataset. The numbers in
+titles, legends and labels come from the dataset, or from `paper` if the paper prints them. The
+module `drawing` explains line styles, widths and marks.
 """
 
 from collections.abc import Callable, Mapping
@@ -52,7 +53,7 @@ CONTACT = COLOURS[1]
 """Colour of the spring-damper model where it is compared with the restitution model."""
 
 LIMIT: Look = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 2))}
-"""The value of the restitution model, to which that of the spring-damper model tends."""
+"""Line at the value of the restitution model, the limit of the spring-damper model."""
 
 PRINTED: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
 """Mark of a threshold of ϖ that the paper prints."""
@@ -67,14 +68,14 @@ PERIOD = 2 * np.pi
 TIME = r"time $\tau/2\pi$"
 
 CLOSE = 9.0
-"""Distance of marks in points below which they share a name."""
+"""Distance in points below which marks share a label."""
 
 
 # Schematics of both models
 
 
 def fig01() -> Figure:
-    """The restitution model: the ball meets the table in an instant."""
+    """Schematic of the restitution model: ball, table and an instantaneous impact."""
     figure, axes = schematic(r"$a\,\sin(\Omega t)$")
     axes.plot([0, 0], [0.0, 1.75], **GUIDE)
     axes.text(0.12, 0.3, "impact: $r$", va="center")
@@ -82,7 +83,7 @@ def fig01() -> Figure:
 
 
 def fig04() -> Figure:
-    """The spring-damper model: spring and damper stand on the table."""
+    """Schematic of the spring-damper model: ball, spring, damper and table."""
     figure, axes = schematic(r"$a\,\sin(\Omega t+\varphi)$")
     line: Look = {"color": "black", "linewidth": 1.0}
     zigzag = [0, 0, 0.16, -0.16, 0.16, -0.16, 0.16, -0.16, 0.16, 0, 0]
@@ -98,7 +99,7 @@ def fig04() -> Figure:
 
 
 def schematic(motion: str) -> tuple[Figure, Axes]:
-    """The ball above the moving table, whose upper side is at the height 0."""
+    """Draw the ball above the moving table. The surface of the table is at the height 0."""
     figure, axes = panels(1.9)
     axes.set(xlim=(-2.7, 3.3), ylim=(-0.6, 2.65), aspect="equal")
     axes.axis("off")
@@ -120,7 +121,7 @@ def schematic(motion: str) -> tuple[Figure, Axes]:
 
 
 def fig02(data: xr.Dataset) -> Figure:
-    """An n-T orbit of the restitution model over time."""
+    """Heights of ball and table over time for an n-T orbit of the restitution model."""
     figure, axes = panels(2.5)
     time = data.time / PERIOD
     axes.plot(time, data.ball, color="black", label="ball $z$")
@@ -132,7 +133,10 @@ def fig02(data: xr.Dataset) -> Figure:
 
 
 def fig03(data: xr.Dataset) -> Figure:
-    """Branches of n-T orbits of the restitution model, with the period doublings of Eq. 8."""
+    """Branches of n-T orbits of the restitution model over Λ, with their bifurcations.
+
+    The period doublings of Eq. 8 are also marked.
+    """
     figure, axes = panels(3.6)
     names = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
@@ -154,7 +158,7 @@ def fig03(data: xr.Dataset) -> Figure:
 
 
 def fig05(data: xr.Dataset) -> Figure:
-    """The apparent restitution along ϖ for each case (r, Λ), with r as a guide."""
+    """Apparent restitution against ϖ for each pair (r, Λ), with r as a guide line."""
     figure, axes = panels(3.0)
     draw_cases(axes, data, data.apparent_restitution)
     for restitution in np.unique(data.restitution):
@@ -165,7 +169,7 @@ def fig05(data: xr.Dataset) -> Figure:
 
 
 def fig10(data: xr.Dataset) -> Figure:
-    """The bouncing-off velocity along ϖ, and by how much it depends on Λ."""
+    """Bouncing-off velocity against ϖ for each Λ, and its difference from the first Λ."""
     figure, (axes, below) = panels(4.2, rows=2, sharex=True, height_ratios=(3, 2))
     limit = float(data.restitution_bounce_velocity)
     draw_cases(axes, data, data.bounce_velocity)
@@ -180,7 +184,7 @@ def fig10(data: xr.Dataset) -> Figure:
 
 
 def draw_cases(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
-    """A curve along ϖ for each case; what all cases share is in the title."""
+    """Draw a curve against ϖ for each case. The title has the parameters that all cases share."""
     common, names = case_names(data)
     shades = colours(data.sizes["case"])
     for k, (name, colour, dashes) in enumerate(zip(names, shades, cycle(DASHES), strict=False)):
@@ -192,7 +196,7 @@ def draw_cases(axes: Axes, data: xr.Dataset, values: xr.DataArray) -> None:
 
 
 def case_names(data: xr.Dataset) -> tuple[str, list[str]]:
-    """What all cases of a dataset share, and a label of each case."""
+    """Return a label of the parameters that all cases share, and a label of each case."""
     n = parameters(data)["n"]
     common, names = parted({"n": [n], "restitution": data.restitution, "amplitude": data.amplitude})
     present = data.phase.notnull().any("frequency_ratio").values
@@ -202,7 +206,7 @@ def case_names(data: xr.Dataset) -> tuple[str, list[str]]:
 
 
 def fig13(data: xr.Dataset) -> Figure:
-    """Phase and velocity along ϖ as contact starts and as it ends, and in the restitution model."""
+    """Phase and velocity at both ends of contact for all ϖ, and in the restitution model."""
     figure, axes = panels(4.0)
     common, names = case_names(data)
     shades = colours(data.sizes["case"])
@@ -231,7 +235,7 @@ def fig13(data: xr.Dataset) -> Figure:
         r"end of contact, $(\varphi+\tau_b,\,z'_b)$": sample(**end),
         "restitution model": sample(**star),
     }
-    # Colours need names only if there are several.
+    # A single case needs no legend of colours.
     if len(names) > 1:
         square: Look = {"marker": "s", "linestyle": "none"}
         pairs = zip(names, shades, strict=True)
@@ -243,9 +247,10 @@ def fig13(data: xr.Dataset) -> Figure:
 
 
 def name_ratios(axes: Axes, case: xr.Dataset) -> None:
-    """Names of the marked ϖ at the start and at the end of contact.
+    """Label the marked ϖ at the start and at the end of contact.
 
-    Those at which both points are beside the points of the stiffest contact share one name.
+    A ϖ shares the label of the largest ϖ if its points are closer than `CLOSE` to the points of the
+    largest ϖ, at both ends of contact.
     """
     marked = case.isel(frequency_ratio=np.flatnonzero(case.labelled & case.phase.notnull()))
     marked = marked.sortby("frequency_ratio")
@@ -270,7 +275,7 @@ def name_ratios(axes: Axes, case: xr.Dataset) -> None:
 
 
 def fig11(data: xr.Dataset) -> Figure:
-    """The threshold of permanent contact along ϖ, and its minimum."""
+    """Threshold of permanent contact against ϖ, and its minimum."""
     figure, axes = panels(2.9)
     draw_threshold(axes, data)
     legend_below(figure)
@@ -278,7 +283,7 @@ def fig11(data: xr.Dataset) -> Figure:
 
 
 def fig16(data: xr.Dataset) -> Figure:
-    """The thresholds of permanent contact of both models, and their relative difference."""
+    """Thresholds of permanent contact of both models against ϖ, and their relative difference."""
     figure, (axes, below) = panels(4.4, rows=2, sharex=True)
     draw_threshold(axes, data)
     limit = float(data.restitution_threshold)
@@ -291,7 +296,7 @@ def fig16(data: xr.Dataset) -> Figure:
 
 
 def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
-    """The threshold Λ_SD, or Λ_F of the force release, and the region of permanent contact."""
+    """Draw the threshold Λ_SD, or Λ_F for the force release, and fill the region below it."""
     force = parameters(data)["release"] == "force"
     symbol = r"\Lambda_F" if force else r"\Lambda_{SD}"
     formula = "" if force else r", $2\zeta\sqrt{1-\zeta^2}$"
@@ -312,7 +317,7 @@ def draw_threshold(axes: Axes, data: xr.Dataset) -> None:
 
 
 def fig07(data: xr.Dataset) -> Figure:
-    """One cycle of the spring-damper model, with the instants and velocities of the equations."""
+    """One cycle of the spring-damper model, with the instants and velocities of Eqs. 18 to 27."""
     figure, axes = panels(2.9)
     time = data.time / PERIOD
     axes.plot(time, data.table, color=TABLE, linewidth=2.0, label="table $w$")
@@ -343,7 +348,7 @@ def fig07(data: xr.Dataset) -> Figure:
 def draw_velocity(
     axes: Axes, place: tuple[float, float], velocity: float, reach: float, symbol: str
 ) -> None:
-    """The tangent before an impact or after a release; all are equally long in time."""
+    """Draw the tangent before an impact or after a release. `reach` is its length in time."""
     forward = velocity > 0
     far = place[0] + (reach if forward else -reach), place[1] + reach * abs(velocity)
     tip, tail = (far, place) if forward else (place, far)
@@ -353,7 +358,7 @@ def draw_velocity(
 
 
 def fig12(data: xr.Dataset) -> Figure:
-    """Orbits of both models over time on one table; below, the summit of the stiffest contact."""
+    """Heights in both models over time; below, the summit of the stiffest contact, enlarged."""
     figure, (axes, summit) = panels(4.9, rows=2, height_ratios=(3, 2))
     time, table = three_cycles(data, data.table)
     axes.plot(time, table, color=TABLE, linewidth=0.8)
@@ -374,7 +379,7 @@ def fig12(data: xr.Dataset) -> Figure:
 
 
 def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
-    """The orbit for each ϖ, the stiffest contact solid and above the others."""
+    """Draw the orbit for each ϖ. The stiffest contact is a solid line above the other lines."""
     stiff_first = data.sortby("frequency_ratio", ascending=False)
     shades = colours(data.sizes["frequency_ratio"])
     for k, (colour, dashes) in enumerate(zip(shades, cycle(DASHES), strict=False)):
@@ -385,9 +390,10 @@ def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
 
 
 def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np.ndarray]:
-    """Time in periods and a height over the cycles before, in and after that of the dataset.
+    """Repeat a height over three cycles, the cycle of the dataset in the middle.
 
-    The point between two cycles occurs once, because a segment of length zero restarts the dashes.
+    Returns the time in periods and the height. The point between two cycles occurs once, because a
+    segment of length zero restarts the dashes.
     """
     time = data.table_phase.values / PERIOD
     cycle_length = parameters(data)["n"]
@@ -396,12 +402,12 @@ def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np
 
 
 def show_summit(axes: Axes, data: xr.Dataset) -> None:
-    """Limits within which the summits of the restitution model and of the stiffest contact part."""
+    """Set limits that separate the summits of the restitution model and the stiffest contact."""
     place = int(np.argmax(data.restitution_ball.values))
     top = float(data.restitution_ball[place])
     stiffest = float(data.ball.sel(frequency_ratio=data.frequency_ratio.max()).max())
     below = np.fmax(2.5 * (top - stiffest), 0.02 * top)
-    # The restitution model falls so far in free flight.
+    # Time in which a free flight falls from the summit to the lower limit.
     reach = np.sqrt(2 * below) / PERIOD
     centre = float(data.table_phase[place]) / PERIOD
     axes.set(xlim=(centre - reach, centre + reach), ylim=(top - below, top + 0.15 * below))
@@ -415,21 +421,18 @@ Branch = tuple[str, xr.Dataset, str]
 
 
 def fig08(data: xr.Dataset) -> Figure:
-    """Branches along Λ, one panel for each ϖ: phases of the table at the start and end of contact.
-
-    All panels have the same scale of the phase.
-    """
+    """Branches over Λ, a panel for each ϖ: phases of the table at the start and end of contact."""
     contacts = contact_branches(data)
     return domains(data, [[branch] for branch in contacts], height=2.5 * len(contacts))
 
 
 def fig09(data: xr.Dataset) -> Figure:
-    """Branches along Λ for several ϖ: phases of the table at the start and end of contact."""
+    """Branches over Λ for several ϖ: phases of the table at the start and end of contact."""
     return domains(data, [contact_branches(data)], height=4.8)
 
 
 def fig15(data: xr.Dataset) -> Figure:
-    """Branches of both models along Λ: phases of the table at the start and end of contact."""
+    """Branches of both models over Λ: phases of the table at the start and end of contact."""
     names = ("amplitude", "phase", "stable", "admissible")
     rigid = xr.Dataset({name: data[f"restitution_{name}"] for name in names})
     shown = [("restitution", restitution_branch(rigid, data), COLOURS[0])]
@@ -439,7 +442,7 @@ def fig15(data: xr.Dataset) -> Figure:
 
 
 def contact_branches(data: xr.Dataset) -> list[Branch]:
-    """The branch of the spring-damper model for each ϖ."""
+    """Return the branch of the spring-damper model for each ϖ."""
     shades = colours(data.sizes["frequency_ratio"])
     shown = []
     for ratio, colour in zip(data.frequency_ratio, shades, strict=True):
@@ -449,7 +452,10 @@ def contact_branches(data: xr.Dataset) -> list[Branch]:
 
 
 def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figure:
-    """Both phases of branches over Λ, in a column of panels: `shown` has the branches of each."""
+    """Draw both phases of branches over Λ in a column of panels at one scale of the phase.
+
+    `shown` lists the branches of each panel. The title names branches without orbits.
+    """
     absent = [name for panel in shown for name, branch, _ in panel if not has_orbits(branch)]
     present = [[each for each in panel if has_orbits(each[1])] for panel in shown]
     # Without any branch, one empty panel remains.
@@ -464,7 +470,7 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     amplitude_max = parameters(data)["amplitude_max"]
     starts = [float(branch.amplitude.min()) for panel in present for _, branch, _ in panel]
     least = min(starts, default=0.0)
-    # The space left of branches that begin far to the right would be empty.
+    # If all branches start far to the right, the space left of them would be empty.
     left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
     note = f"\nno branch for {', '.join(absent)}" if absent else ""
     column[0].set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
@@ -478,12 +484,12 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
 
 
 def has_orbits(branch: xr.Dataset) -> bool:
-    """Whether a branch has any orbit."""
+    """Whether a branch has at least one orbit."""
     return bool(branch.amplitude.notnull().any())
 
 
 def draw_phases(axes: Axes, panel: list[Branch]) -> None:
-    """Both phases of some branches, with their special points."""
+    """Draw both phases of branches, with their special points."""
     for _, branch, colour in panel:
         draw_branch(axes, branch, "phase", pale(colour), WIDE)
         draw_branch(axes, branch, "release_phase", colour, NARROW)
@@ -492,7 +498,10 @@ def draw_phases(axes: Axes, panel: list[Branch]) -> None:
 
 
 def branch_names(present: list[Branch], close: float) -> list[tuple[str, float, str]]:
-    """Labels of branches at the right ends of both phases; one where these are close."""
+    """Return labels for the right ends of both phases of branches, or one label if they are close.
+
+    Each label is a text, a height in data coordinates and a colour.
+    """
     names = []
     for name, branch, colour in present:
         start = right_end(branch, "phase")
@@ -506,7 +515,7 @@ def branch_names(present: list[Branch], close: float) -> list[tuple[str, float, 
 
 
 def fig14(data: xr.Dataset) -> Figure:
-    """The greatest height of both models along ϖ, and their relative difference."""
+    """Greatest height in both models against ϖ, and the relative error of the restitution model."""
     figure, (axes, below) = panels(4.2, rows=2, sharex=True)
     look: Look = {"color": CONTACT, "label": "spring-damper model"}
     curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
@@ -525,9 +534,9 @@ def fig14(data: xr.Dataset) -> Figure:
 
 
 def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str) -> None:
-    """The relative error of the restitution model, its tolerance, and the threshold ϖ if there is.
+    """Draw the relative error of the restitution model, its tolerance, and any threshold of ϖ.
 
-    Where the difference of the models changes its sign the error is zero, and its line meets the
+    The error is zero where the difference of the models changes sign. There its line reaches the
     lower edge of the logarithmic panel.
     """
     tolerance = parameters(data)["tolerance"]
@@ -564,7 +573,7 @@ COMPARED: Mapping[str, str] = {
     "apparent_restitution": "apparent\nrestitution",
     "phase_in_periods": "phase",
 }
-"""Name of each quantity of `validity_map`."""
+"""Label of each quantity of `validity_map`."""
 
 DOUBLED: Look = {"facecolor": pale(COLOURS[2]), "edgecolor": COLOURS[2], "linewidth": 0.8}
 CURVES: Look = {
@@ -577,9 +586,9 @@ CURVES: Look = {
 
 
 def validity_map(data: xr.Dataset) -> Figure:
-    """Orbits for which the advised ϖ is not enough: a panel for each quantity and each n.
+    """Orbits for which the advised ϖ is not enough, with a panel for each quantity and each n.
 
-    The vertical axis is linear in Λ. The dark share of a panel is the share of these orbits.
+    Both axes are linear, so the dark share of a panel is the mean of `failing_share` over r.
     """
     given = parameters(data)
     shape: Look = {"rows": data.sizes["quantity"], "columns": data.sizes["n"], "squeeze": False}
@@ -609,13 +618,16 @@ def validity_map(data: xr.Dataset) -> Figure:
 
 
 def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
-    """The failing orbits of one quantity and n with their share; orbits without an answer as x."""
+    """Draw the failing orbits of one quantity and one n, and their share as a number.
+
+    A cross marks an orbit for which no sufficient ϖ is known.
+    """
     axes.fill_between(data.restitution, 1 - data.doubled_share, 1, **DOUBLED)
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
     if (excess > 0).any():
         axes.contourf(*over, levels=[0, float(excess.max()) + 1], colors=CONTACT)
-        # The border shows regions that are thinner than a line.
+        # The border keeps thin regions visible.
         axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], "x", color="black")
@@ -625,7 +637,7 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
 
 
 def share_text(share: float) -> str:
-    """A share in percent with one decimal; a smaller share as a bound.
+    """Return a share in percent with one decimal, or as "< 0.1 %" if it is smaller.
 
     Examples
     --------
@@ -640,7 +652,7 @@ def share_text(share: float) -> str:
 
 
 SCHEMATICS: Mapping[str, Callable[[], Figure]] = {"fig01": fig01, "fig04": fig04}
-"""The figures of the models, which have no dataset."""
+"""Figures of the models, which need no dataset."""
 PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig02": fig02,
     "fig03": fig03,
@@ -662,9 +674,9 @@ FIGURES: Mapping[str, Callable[..., Figure]] = {**SCHEMATICS, **PLOTS}
 
 
 def draw(name: str, *data: xr.Dataset) -> Figure:
-    """A figure of the paper, fig01 to fig16, from its dataset; Figs. 1 and 4 have none.
+    """Draw a figure of the paper, fig01 to fig16, or the validity map from its dataset.
 
-    The style is that of the package, whatever the settings of the user are.
+    fig01 and fig04 need no dataset. The style is independent of the user's settings.
     """
     with style():
         return FIGURES[name](*data)

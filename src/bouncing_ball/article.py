@@ -169,7 +169,7 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
         if up_to == r[-1]:
             parts.append(f"n = {up_to.n.item()} at every r")
         elif np.isfinite(up_to):
-            parts.append(f"n = {up_to.n.item()} up to r = {fixed(up_to, 2)}")
+            parts.append(f"n = {up_to.n.item()} up to r ≈ {fixed(up_to, 2)}")
     return listed(parts) if parts else "no n"
 
 

@@ -22,7 +22,7 @@ sys.path.insert(0, str(TOP / "src"))
 from bouncing_ball.configuration import mistakes
 
 # Scripts import the package of this checkout, whatever else is installed.
-os.environ["PYTHONPATH"] = str(TOP / "src")
+os.environ.update(PYTHONPATH=str(TOP / "src"))
 
 
 configfile: TOP / "config/config.yaml"

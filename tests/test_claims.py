@@ -110,9 +110,9 @@ def test_a_changed_number_changes_its_verdict_alone(reference, judged):
 
 READINGS = {
     "safe above 100": (
-        ["the greatest height on Figs. 5, 6, 10", "permanent contact"],
+        ["the maximum height on Figs. 5, 6, 10", "permanent contact"],
         [
-            "the greatest height on all orbits",
+            "the maximum height on all orbits",
             "the bouncing-off velocity",
             "the apparent restitution",
         ],

@@ -94,7 +94,7 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
     )
     assert tables.thresholds(data) == [
         ["quantity", "10 %", "1 %", "0.5 %"],
-        ["greatest height", "< 20", "82.177", "> 100"],
+        ["maximum height", "< 20", "82.177", "> 100"],
     ]
 
 

@@ -715,7 +715,7 @@ def velocity_rises(fig12, fig13):
 @claim(
     "height rises",
     "after Fig. 12, Fig. 14",
-    "as the frequency ratio rises the greatest height of the flight rises",
+    "as the frequency ratio rises the maximum height of the flight rises",
     "fig12 fig14",
 )
 def height_rises(fig12, fig14):
@@ -747,7 +747,7 @@ def phases_converge(fig13):
 @claim(
     "height threshold",
     "after Eq. 37, Fig. 14",
-    "frequency ratio from which on the greatest heights differ by less than 1 %",
+    "frequency ratio from which on the maximum heights differ by less than 1 %",
     "fig14",
 )
 def height_threshold(fig14):
@@ -805,7 +805,7 @@ def permanent_contact_threshold(fig16):
     "Conclusion",
     "the restitution model is good above a frequency ratio of 100",
     "validity_map fig16 fig05 fig06 fig10 thresholds",
-    remark="the paper sets the limit of 1 % for the greatest height and for permanent contact; the "
+    remark="the paper sets the limit of 1 % for the maximum height and for permanent contact; the "
     "orbits are the stable ones of the restitution model with n = 1, 2, 3 and r = 0.05 to 0.95, "
     "the ends of their range those of n = 1, r = 0.65",
 )
@@ -815,12 +815,12 @@ def safe_above_100(validity_map, fig16, fig05, fig06, fig10, thresholds):
     contact = fig16["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     ends = thresholds["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     return [
-        at_most("the greatest height on all orbits", orbits.sel(quantity="max_height"), LIMIT),
+        at_most("the maximum height on all orbits", orbits.sel(quantity="max_height"), LIMIT),
         at_most("the bouncing-off velocity", orbits.sel(quantity="bounce_velocity"), LIMIT),
         at_most("the apparent restitution", orbits.sel(quantity="apparent_restitution"), LIMIT),
         at_most("the phase in periods", orbits.sel(quantity="phase_in_periods"), LIMIT),
         at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
-        at_most("the greatest height on Figs. 5, 6, 10", curves.sel(measure="max_height"), LIMIT),
+        at_most("the maximum height on Figs. 5, 6, 10", curves.sel(measure="max_height"), LIMIT),
         at_most("permanent contact", contact, LIMIT),
         at_most("the saddle-node", ends.sel(quantity="saddle_node"), LIMIT),
         at_most("the period doubling of Eq. 5", ends.sel(quantity="period_doubling"), LIMIT),

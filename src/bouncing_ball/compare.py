@@ -336,10 +336,10 @@ def compare(
         elif file.endswith(PICTURES) and another_matplotlib(project, results, name):
             report.drawn_elsewhere.append(file)
         elif not made_again(project, results, file):
-            found = "the picture differs"
+            change = "the picture differs"
             if not file.endswith(PICTURES):
-                found = first_change(project.top / file, results / file)
-            line = f"{name}: {found}; {why.of([], code, versions())}"
+                change = first_change(project.top / file, results / file)
+            line = f"{name}: {change}; {why.of([], code, versions())}"
             # Both pictures of a figure have the same line.
             report.lines.extend({line} - {*report.lines})
     return report

@@ -521,7 +521,7 @@ def fig14(data: xr.Dataset) -> Figure:
     curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)
     limit = float(data.restitution_max_height)
     axes.axhline(limit, label="restitution model", **LIMIT)
-    axes.set_ylabel(r"greatest height $\max\,z$")
+    axes.set_ylabel(r"maximum height $\max\,z$")
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     along_ratio(axes, data.frequency_ratio)
     draw_error(below, data, data.max_height - limit, "h")
@@ -568,7 +568,7 @@ def mark_printed(axes: Axes, claim: str) -> None:
 # Where the frequency ratio of the paper is enough
 
 COMPARED: Mapping[str, str] = {
-    "max_height": "greatest\nheight",
+    "max_height": "maximum\nheight",
     "bounce_velocity": "bouncing-off\nvelocity",
     "apparent_restitution": "apparent\nrestitution",
     "phase_in_periods": "phase",

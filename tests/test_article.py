@@ -11,7 +11,7 @@ import xarray as xr
 from tests import independent
 from tests.reference import ENTRIES, reference, table_with_another_row
 
-from bouncing_ball import article, claims, pages, spring_damper, tables
+from bouncing_ball import article, claims, measures, pages, spring_damper, tables
 from bouncing_ball.paper import LIMIT, printed_table
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -302,7 +302,7 @@ BOUNDS = {
 }
 """What the texts bound, from above (↑) or from below (↓)."""
 
-SIDES = {"up": "↑", "down": "↓"}
+SIDES = {"upper": "↑", "lower": "↓"}
 NUMBER = r"([↑↓]?\d+(?:\.\d+)?)"
 OF = rf"(?:[Λϖr] = )?{NUMBER}(?!ζ)"
 PHRASES = {
@@ -318,8 +318,8 @@ def test_bounds_are_rounded_away_from_what_they_bound(name, data, monkeypatch):
     """In a text whose numbers are marked with the side to which they are rounded."""
     plain = article.fixed
 
-    def marked(value, digits, to="nearest", shift=0):
-        return SIDES.get(to, "") + plain(value, digits, to, shift)
+    def marked(value, digits, bound="", shift=0):
+        return SIDES.get(bound, "") + plain(value, digits, bound, shift)
 
     monkeypatch.setattr(article, "fixed", marked)
     monkeypatch.setitem(article.environment(article.TEMPLATES).filters, "fixed", marked)
@@ -349,7 +349,7 @@ def test_bounds_are_rounded_away_from_what_they_bound(name, data, monkeypatch):
 
 
 def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
-    errors = claims.stiff_errors(**{name: data[name] for name in article.STIFF_CURVES})
+    errors = measures.stiff_errors(**{name: data[name] for name in article.STIFF_CURVES})
     curves = {
         (n, float(r), float(amplitude))
         for name, n in zip(article.STIFF_CURVES, (1, 1, 2), strict=True)
@@ -413,7 +413,7 @@ def test_what_the_article_says_of_the_branches(data):
     """On the most compliant contact the branch is stable thrice and ends in permanent contact."""
     fig08 = data["fig08"]
     compliant = fig08.sel(frequency_ratio=fig08.frequency_ratio.min())
-    ranges = claims.stable_ranges(compliant)
+    ranges = measures.stable_ranges(compliant)
     assert len(ranges) == 3
     first, _, last = ranges
     assert max(first[0], last[0]) < min(first[1], last[1])
@@ -424,13 +424,13 @@ def test_what_the_article_says_of_the_branches(data):
     for ratio in fig08.frequency_ratio.values[:-1]:
         branch = fig08.sel(frequency_ratio=ratio)
         assert "permanent contact" not in branch.end_reason.sel(end="unstable side").item()
-        assert len(claims.stable_ranges(branch)) == 1
+        assert len(measures.stable_ranges(branch)) == 1
 
 
 def test_stable_ranges_are_those_of_the_orbits(data):
     for ratio in data["fig08"].frequency_ratio.values:
         branch = data["fig08"].sel(frequency_ratio=ratio)
-        ranges = claims.stable_ranges(branch)
+        ranges = measures.stable_ranges(branch)
         stable = branch.amplitude.values[branch.stable.values]
         assert all(any(low <= each <= high for low, high in ranges) for each in stable)
 

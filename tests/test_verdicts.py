@@ -15,18 +15,18 @@ from bouncing_ball import verdicts
     [
         (0.2545, "0.255", "reproduced"),
         (0.2555, "0.255", "reproduced"),
-        (0.25449, "0.255", "near"),
-        (0.256, "0.255", "near"),
+        (0.25449, "0.255", "not reproduced"),
+        (0.256, "0.255", "not reproduced"),
         (0.25399, "0.255", "not reproduced"),
         (0.7505, "0.750", "reproduced"),
-        (0.751, "0.750", "near"),
+        (0.751, "0.750", "not reproduced"),
         (0.751, "0.75", "reproduced"),
         (82.5, "82", "reproduced"),
-        (82.6, "82", "near"),
+        (82.6, "82", "not reproduced"),
         (83.01, "82", "not reproduced"),
         (6.49, "6", "reproduced"),
         (7.01, "6", "not reproduced"),
-        (np.nan, "6", "not computed"),
+        (np.nan, "6", "not reproduced"),
     ],
 )
 def test_a_number_is_reproduced_if_it_rounds_to_the_printed_one(found, printed, verdict):
@@ -41,30 +41,33 @@ def test_readings_that_agree_decide_and_others_are_named():
     high = verdicts.at_most("the higher", [1.0, 2.1], 2.0)
     claim = verdicts.Claim("name", "Fig. 1", "text", {}, lambda: [])
     assert verdicts.of_readings(claim, [low])["verdict"] == "reproduced"
-    assert verdicts.of_readings(claim, [high, high])["verdict"] == "contradicted"
+    assert verdicts.of_readings(claim, [high, high])["verdict"] == "not reproduced"
     mixed = verdicts.of_readings(claim, [high, low])
-    assert mixed["verdict"] == "by reading"
+    assert mixed["verdict"] == "partly"
     assert mixed["own_sense"] == "does not hold"
     assert verdicts.of_readings(claim, [low, high])["own_sense"] == "holds"
-    assert mixed["condition"] == (
-        "right for the lower (2, required ≤ 2); not for the higher (2.1, required ≤ 2)"
-    )
+    assert mixed["condition"] == ("yes: the lower (2, at most 2); no: the higher (2.1, at most 2)")
 
 
-def test_what_the_text_lacks_makes_a_statement_undecidable_only_if_readings_differ():
+def test_what_the_text_lacks_makes_a_statement_not_testable_only_if_readings_differ():
     claim = verdicts.Claim("name", "Fig. 1", "text", {}, lambda: [], missing="the axis")
     low = verdicts.above("the lower", 1.0)
     high = verdicts.above("the higher", 0.0)
     undecidable = verdicts.of_readings(claim, [low, high])
-    assert undecidable["verdict"] == "undecidable"
-    assert undecidable["reason"] == "the text lacks the axis"
+    assert undecidable["verdict"] == "not testable"
+    assert undecidable["reason"] == "the text does not say the axis"
     assert verdicts.of_readings(claim, [low, low])["verdict"] == "reproduced"
-    assert verdicts.of_readings(claim, [])["verdict"] == "undecidable"
+    assert verdicts.of_readings(claim, [])["verdict"] == "not testable"
 
 
 def test_what_is_so_by_construction_is_not_counted_as_reproduced():
-    claim = verdicts.Claim("name", "Eq. 1", "text", {}, list, because="by algebra")
-    assert verdicts.answer(claim, {}) == {"verdict": "by construction", "condition": "by algebra"}
+    claim = verdicts.Claim("name", "Eq. 1", "text", {}, list, because="Eq. 1")
+    reason = "it follows by algebra: Eq. 1"
+    assert verdicts.answer(claim, {}) == {
+        "verdict": "not testable",
+        "asked": True,
+        "reason": reason,
+    }
 
 
 def test_conditions_take_the_worst_number_and_refuse_a_missing_one():

@@ -401,7 +401,7 @@ def closer_with_stiffness(fig05):
     ]
 
 
-def seen(curves: xr.DataArray) -> float:
+def line_width(curves: xr.DataArray) -> float:
     """The width of a line on an axis that the curves fill."""
     return max(LINE * float(complete(curves).max() - curves.min()), ROUNDING)
 
@@ -416,7 +416,7 @@ def seen(curves: xr.DataArray) -> float:
 def depends_on_amplitude(fig06):
     curves = fig06["apparent_restitution"]
     apart = (curves.max("case") - curves.min("case")).max()
-    return [at_least("the largest distance of two curves", apart, seen(curves))]
+    return [at_least("the largest distance of two curves", apart, line_width(curves))]
 
 
 @claim(
@@ -433,7 +433,7 @@ def dip_at_12(fig06):
     curves = fig06["apparent_restitution"]
     depth = (fig06["restitution"] - curves).max("frequency_ratio", skipna=False)
     name = f"the depth below r at Λ = 1.2; it is {float(depth[0]):.2g} at Λ = 0.7"
-    return [at_least(name, depth[-1], seen(curves))]
+    return [at_least(name, depth[-1], line_width(curves))]
 
 
 @claim(
@@ -527,7 +527,7 @@ def damping_of_085(fig08):
 )
 def superimposed_when_stiff(*figures):
     stiff = [figure.sel(frequency_ratio=figure["frequency_ratio"].max()) for figure in figures]
-    width = min(seen(figure["phase"]) for figure in stiff)
+    width = min(line_width(figure["phase"]) for figure in stiff)
     longest = [complete(figure["contact_duration"]).max() for figure in stiff]
     return [
         at_most("the longest contact at the largest ϖ, in radians of the table", longest, width)

@@ -108,9 +108,9 @@ class Report:
 
     def text(self) -> str:
         """The report on a terminal; the verdict is its last line."""
-        told = [*self.lines]
+        text = [*self.lines]
         if self.skipped:
-            told.append(
+            text.append(
                 f"Not compared, because a dataset differs: {', '.join(sorted(self.skipped))}."
             )
         verdict = f"All {self.count} files agree with the reference."
@@ -119,7 +119,7 @@ class Report:
         if self.drawn_elsewhere:
             number = len(self.drawn_elsewhere)
             verdict += f" {number} pictures of another matplotlib were not compared."
-        return "\n".join([*told, verdict])
+        return "\n".join([*text, verdict])
 
 
 # Datasets

@@ -106,12 +106,12 @@ SYMBOLS = {
 }
 
 
-def number(value: float) -> str:
+def latex_number(value: float) -> str:
     r"""Return a number in LaTeX with four digits, and as a power of ten if it is at least 10⁴.
 
     Examples
     --------
-    >>> number(0.85), number(0.135851), number(10000.0), number(250000.0)
+    >>> latex_number(0.85), latex_number(0.135851), latex_number(10000.0), latex_number(250000.0)
     ('0.85', '0.1359', '10^{4}', '2.5\\times10^{5}')
     """
     if abs(value) < 1e4:
@@ -129,7 +129,7 @@ def label(**values: float) -> str:
     >>> label(n=1, restitution=0.85, frequency_ratio=2.0)
     '$n=1$, $r=0.85$, $\\varpi=2$'
     """
-    return ", ".join(f"${SYMBOLS[name]}={number(value)}$" for name, value in values.items())
+    return ", ".join(f"${SYMBOLS[name]}={latex_number(value)}$" for name, value in values.items())
 
 
 def title(data: xr.Dataset, *names: str) -> str:

@@ -33,11 +33,11 @@ from bouncing_ball.drawing import (
     curve,
     draw_branch,
     label,
+    latex_number,
     legend_below,
     mark_special,
     name_at_right,
     name_beside,
-    number,
     pale,
     panels,
     parted,
@@ -267,7 +267,7 @@ def name_ratios(axes: Axes, case: xr.Dataset) -> None:
     for places in both:
         for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
             name_beside(axes, label(frequency_ratio=ratio), tuple(place))
-        shared = rf"$\varpi{relation}{number(ratios[beside][0])}$"
+        shared = rf"$\varpi{relation}{latex_number(ratios[beside][0])}$"
         name_beside(axes, shared, tuple(places[beside][0]))
 
 
@@ -552,7 +552,7 @@ def draw_error(axes: Axes, data: xr.Dataset, difference: xr.DataArray, name: str
     threshold = float(data.error_threshold)
     if np.isfinite(threshold):
         axes.axvline(threshold, **GUIDE)
-        value = rf"$\varpi_{{{name},{percent}\%}}={number(threshold)}$"
+        value = rf"$\varpi_{{{name},{percent}\%}}={latex_number(threshold)}$"
         axes.plot(threshold, tolerance, "o", color="black", markersize=4, label=value)
     axes.set(yscale="log", ylabel="relative error")
     axes.set_ylim(bottom=bottom)
@@ -607,7 +607,7 @@ def validity_map(data: xr.Dataset) -> Figure:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
     figure.supylabel(r"$\Lambda$ from saddle-node (0 %) to period doubling (100 %)", y=0.56)
-    advised = rf"$\varpi={number(given['advised'])}$"
+    advised = rf"$\varpi={latex_number(given['advised'])}$"
     entries: dict[str, Patch | Line2D] = {
         f"{advised} is not enough: share of the panel in %": Patch(facecolor=CONTACT),
         f"the period has doubled at {advised}": Patch(**DOUBLED),

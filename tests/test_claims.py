@@ -130,7 +130,8 @@ READINGS = {
     "stable between": (
         ["the stability of this range, in branches without it (0,"],
         [
-            "the instability of all other orbits, in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)"
+            "the instability of all other orbits",
+            "in stable ranges (Λ = 0.7518-1.0955, 1.1625-1.1763)",
         ],
     ),
     "compliant divergence": (

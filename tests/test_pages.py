@@ -131,4 +131,4 @@ def test_a_claim_that_was_not_asked_says_why(data):
     changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     text = pages.filled_in("md", changed, ENTRIES)
-    assert "| fig14: n is 2, and the claim needs 1 | *not asked* |" in text
+    assert "fig14: n is 2, and the claim needs 1 | *not testable* |" in text

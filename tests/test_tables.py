@@ -52,14 +52,17 @@ def test_each_printed_end_has_its_verdict(ends):
     assert rows[5][3:] == ["1.03193", "", "", ""]
 
 
-def test_an_end_within_a_unit_is_near(ends):
+def test_an_end_within_a_unit_is_named_as_such(ends):
     ends["computed"][0, 0, 1] = 1.0328
-    assert tables.table1(ends)[2][-2:] == ["+0.8 units, +0.08 %", "near"]
+    assert tables.table1(ends)[2][-2:] == [
+        "+0.8 units, +0.08 %, within one unit of the last digit",
+        "not reproduced",
+    ]
 
 
 def test_an_end_that_does_not_exist_has_no_number(ends):
     ends["computed"][0, 0, 1] = np.nan
-    assert tables.table1(ends)[2][3:] == ["–", "1.032", "", "not computed"]
+    assert tables.table1(ends)[2][3:] == ["–", "1.032", "", "not reproduced"]
 
 
 def test_an_end_that_is_not_printed_has_no_verdict(ends):
@@ -77,7 +80,7 @@ def test_a_row_that_the_paper_does_not_print_has_numbers_alone_and_leaves_the_ot
 
 def test_table_1_under_other_parameters_is_not_judged(ends):
     ends.attrs["parameters"] = json.dumps(PARAMETERS | {"restitution": 0.7})
-    assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not asked", "not asked"]
+    assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not testable", "not testable"]
 
 
 def test_a_threshold_outside_of_the_scan_is_a_bound():

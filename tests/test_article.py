@@ -85,7 +85,7 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers |= {"0.0005", "0.267"}
     # Formulas of parameters: tolerances in per cent, an impact at rest, a doubling by Eq. 8
     # and its error.
-    return numbers | {"0.5", "0.2", "0.1", "0.22", "2.27", "0.23", "3.1", "3.14", "11.1"}
+    return numbers | {"0.5", "0.2", "0.1", "0.0022", "0.22", "2.27", "0.23", "3.1", "3.14", "11.1"}
 
 
 @cache
@@ -273,32 +273,27 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
     return {key: float(value) for key, value in found.items()} | stiff_errors(data)
 
 
-BOUNDS = {
-    "paper": {
-        "longest contact": "↑",
-        "shortest contact": "↓",
-        "spread": "↑",
-        "meeting": "↑",
-        "units": "↑",
-        "share": "↑",
-        "lowest flight": "↓",
-        "above Eq. 8": "↑",
-        "compliant units": "↑",
-        "height": "↑",
-        "phase": "↑",
-        "apparent": "↑",
-        "saddle-node": "↑",
-        "needed": "↑",
-        "doubled": "↑",
-    },
-    "supplement": {
-        "moves at 10": "↑",
-        "moves at 2": "↑",
-        "least damping": "↓",
-        "most damping": "↑",
-    },
+PRINTED = {
+    "paper": [
+        "longest contact",
+        "shortest contact",
+        "spread",
+        "meeting",
+        "units",
+        "share",
+        "lowest flight",
+        "above Eq. 8",
+        "compliant units",
+        "height",
+        "phase",
+        "apparent",
+        "saddle-node",
+        "needed",
+        "doubled",
+    ],
+    "supplement": ["moves at 10", "moves at 2", "least damping", "most damping"],
 }
-"""What the texts bound, from above (↑) or from below (↓)."""
+"""What the texts print of `bounded`."""
 
 SIDES = {"upper": "↑", "lower": "↓"}
 NUMBER = r"([↑↓]?\d+(?:\.\d+)?)"
@@ -311,9 +306,9 @@ PHRASES = {
 """Words that make a number a bound."""
 
 
-@pytest.mark.parametrize("name", BOUNDS)
-def test_bounds_are_rounded_away_from_what_they_bound(name, data, monkeypatch):
-    """In a text whose numbers are marked with the side to which they are rounded."""
+@pytest.mark.parametrize("name", PRINTED)
+def test_largest_and_smallest_numbers_are_those_of_their_own_formulas(name, data, monkeypatch):
+    """In a text whose bounds are marked, they are true, and each number is rounded correctly."""
     plain = article.fixed
 
     def marked(value, digits, bound="", shift=0):
@@ -322,25 +317,21 @@ def test_bounds_are_rounded_away_from_what_they_bound(name, data, monkeypatch):
     monkeypatch.setattr(article, "fixed", marked)
     monkeypatch.setitem(article.environment(article.TEMPLATES).filters, "fixed", marked)
     text = text_of(name, data).partition("## References")[0]
-    # Up to which r the orbits of an n fail.
-    ends = r"n = (\d) up to r = ↑(\d+\.\d+)"
-    for n, number in re.findall(ends, text):
-        fails = data["validity_map"].failing_up_to.sel(n=int(n)).values
-        assert any(0 <= float(number) - up_to < 1e-2 for up_to in fails)
-    # Counts, and the tolerance of 1 %, are exact.
+    # Counts, the tolerance of 1 % and the frequency ratio of the advice are exact.
     true = bounded(data)
     exact = {"1", f"{STIFF:g}", f"{true['hits']:g}", f"{true['largest n']:g}"}
-    for side, words in PHRASES.items():
-        numbers = {"".join(found) for found in re.findall(words, text)}
+    for side, phrase in PHRASES.items():
+        numbers = {"".join(found) for found in re.findall(phrase, text)}
         assert {number for number in numbers - exact if number[0] != side} == set()
-    for what, side in BOUNDS[name].items():
-        surplus = []
-        for number in re.findall(rf"{side}(\d+(?:\.\d+)?)", text):
-            unit = 10.0 ** -len(number.partition(".")[2])
-            off = float(number) - true[what]
-            surplus.append((off if side == "↑" else -off) / unit)
-        # It is true, and off by less than a unit of its last digit.
-        assert any(-1e-9 <= each < 1 for each in surplus), what
+    numbers = re.findall(r"\d+(?:\.\d+)?", text)
+    for what in PRINTED[name]:
+        units = [10.0 ** -len(number.partition(".")[2]) for number in numbers]
+        off = [abs(float(number) - true[what]) for number in numbers]
+        # A half, up to rounding errors of the datasets.
+        assert any(each <= 0.500001 * unit for each, unit in zip(off, units, strict=True)), what
+    for n, number in re.findall(r"n = (\d) up to r ≈ (\d+\.\d+)", text):
+        fails = data["validity_map"].failing_up_to.sel(n=int(n)).values
+        assert np.nanmin(abs(fails - float(number))) <= 0.005
 
 
 # Statements in words, which have no number in their template
@@ -458,7 +449,7 @@ def test_all_orbits_drawn_are_admissible(data):
 def test_what_the_article_says_of_figures_6_10_and_16(data):
     fig06, fig10, fig16 = (data[name] for name in ("fig06", "fig10", "fig16"))
     dips = (fig06.restitution - fig06.apparent_restitution.min("frequency_ratio")).values
-    assert dips[0] > claims.seen(fig06.apparent_restitution) > 100 * abs(dips[-1])
+    assert dips[0] > claims.line_width(fig06.apparent_restitution) > 100 * abs(dips[-1])
     compliant = fig06.apparent_restitution.isel(frequency_ratio=0)
     assert [article.fixed(value, 2) for value in compliant] == ["0.81"] * 3
     departure = 1 - fig10.bounce_velocity / fig10.restitution_bounce_velocity
@@ -485,7 +476,8 @@ def test_numbers_are_rounded_correctly():
             off = sign * (Decimal(text) - exact)
             # It is true, and rounded to the nearest in its last digit.
             digit = Decimal(10) ** Decimal(text).as_tuple().exponent
-            assert -1e-9 <= off <= digit / 2
+            # Rounding errors of datasets, 1e-9 of them, make no bound false.
+            assert Decimal("-1e-9") * max(1, abs(exact)) <= off <= digit / 2
             # It has two decimals if that is true.
             if sign * (Decimal(nearest) - exact) >= 0:
                 assert text == nearest

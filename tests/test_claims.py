@@ -324,7 +324,7 @@ def test_a_range_that_is_not_stable_breaks_the_rule(reference, judged):
 
 def test_a_dip_that_cannot_be_seen_is_none(reference):
     curves = reference["fig06"]["apparent_restitution"]
-    line = claims.seen(curves)
+    line = claims.line_width(curves)
     assert line == pytest.approx(0.01 * float(curves.max() - curves.min()))
     for depth, expected in ((0.9, "not reproduced"), (1.1, "reproduced")):
         dipping = curves.copy()

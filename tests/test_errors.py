@@ -28,11 +28,13 @@ def test_a_threshold_is_the_last_crossing_of_the_tolerance():
         return 0.1 + 1e-3 * (2 - ratio) * (5 - ratio) * (20 - ratio) / ratio**2
 
     grid = np.linspace(1.3, 31.3, 31)
-    found = errors.threshold(grid, Error(error(grid), lambda ratio, i: error(ratio)), 0.1)
+    found = errors.threshold(
+        grid, Error(error(grid), lambda ratio, below, curve: error(ratio)), 0.1
+    )
     assert found.status == "found"
     assert found.ratio == pytest.approx(20, rel=1e-12)
     # A ratio at which the error is the tolerance is within it.
-    exact = Error(1 / grid, lambda ratio, i: 1 / ratio)
+    exact = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
     assert errors.threshold(grid, exact, 1 / grid[10]).ratio == pytest.approx(grid[10], rel=1e-12)
 
 
@@ -174,11 +176,19 @@ def test_a_dense_scan_has_the_same_errors_and_threshold(release):
             assert error.values[i] == pytest.approx(expected[ratio][name], abs=1e-8)
         for k, ratio in enumerate(expected):
             if k % 4:
-                assert error.between(ratio, k // 4) == pytest.approx(
+                assert error.between(ratio, k // 4, 0) == pytest.approx(
                     expected[ratio][name], abs=1e-8
                 )
     scan = list(expected)
     threshold = errors.threshold(coarse, found["max_height"], 0.01).ratio
+    # The same root by a method for one curve, in the interval that the scan encloses.
+    below = int(np.flatnonzero(found["max_height"].values > 0.01)[-1])
+
+    def excess(ratio):
+        return float(found["max_height"].between(ratio, below, 0)) - 0.01
+
+    # The orbits are known to about 1e-12.
+    assert threshold == pytest.approx(brentq(excess, *coarse[below : below + 2]), rel=1e-10)
     outside = [expected[ratio]["max_height"] > 0.01 for ratio in scan]
     assert outside == sorted(outside, reverse=True)
     assert scan[sum(outside) - 1] < threshold < scan[sum(outside)]
@@ -250,7 +260,6 @@ NODES = {
     # n, r, and the place of Λ between saddle-node and period doubling
     "at the saddle-node": (1, 0.05, 0.0),
     "beside the saddle-node": (1, 0.31, 0.004),
-    "beside a curve of the paper": (1, 0.1, 0.04),
     "in the middle": (2, 0.57, 0.5),
     "at the period doubling": (3, 0.83, 1.0),
 }

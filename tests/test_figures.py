@@ -301,7 +301,7 @@ def test_a_branch_that_ends_early_at_its_last_point_is_marked_there():
     """The branch of the most compliant contact, followed backwards, with unknown points at last."""
     (data,) = data_of("fig08")
     along = [name for name in data.data_vars if "point" in data[name].dims]
-    for name in (*along, "end_reason"):
+    for name in (*along, "end_kind"):
         data[name][-1] = data[name].values[-1, ::-1]
     data.special_arclength[-1] = 1 - data.special_arclength[-1]
     data.amplitude[-1, -3:] = data.phase[-1, -3:] = data.release_phase[-1, -3:] = np.nan

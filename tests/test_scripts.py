@@ -129,8 +129,10 @@ def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
 # Orbits along the frequency ratio
 
 
-@pytest.mark.parametrize("release", RELEASES)
-@pytest.mark.parametrize("name", ["fig05", "fig06", "fig10", "fig13"])
+@pytest.mark.parametrize(
+    ("name", "release"),
+    [("fig05", "displacement"), ("fig06", "force"), ("fig10", "force"), ("fig13", "displacement")],
+)
 def test_the_orbits_along_the_frequency_ratio_are_those_of_the_closed_form(name, release):
     ratios = {"min": 2.0, "max": 1000.0, "samples": 4}
     given = registered("apparent_restitution", name, frequency_ratio=ratios)
@@ -194,7 +196,7 @@ def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
         counts.append(count)
         durations = branch.contact_duration.values
         at = (given["n"], ratio, zeta, "displacement")
-        grid = np.interp(np.arange(0, 59.95, 0.1), np.arange(61), durations)
+        grid = np.interp(np.arange(0, 60.1, 0.25), np.arange(61), durations)
         expected = []
         for kind, k in FORMS.items():
             zeros = independent.roots(

@@ -7,6 +7,7 @@ predicted point, or a bifurcation. Newton's method is the corrector for all of t
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,11 +35,6 @@ LEAST_FLIGHT = 8e-4
 """Flight at which a branch counts as merged with permanent contact. Its Λ then exceeds that of
 permanent contact by less than the square of this, and the multipliers, which are divided by the
 squared velocity of the impact, still have some digits."""
-
-VANISHES = "the amplitude vanishes, as it does for undamped contacts only"
-"""Why the branch of an undamped contact ends: its phase is not defined at Λ = 0."""
-
-MERGES = "the flight vanishes: the orbit merges with permanent contact"
 
 SPECIAL = ("saddle-node", "period doubling", "grazing")
 """The kinds of special points of a branch."""
@@ -310,18 +306,45 @@ class Special:
     place: float
 
 
+class End(NamedTuple):
+    """Where a branch ends.
+
+    Attributes
+    ----------
+    kind
+        "largest amplitude", "permanent contact" or, where the continuation fails, "inside".
+    reason
+        The reason as text.
+    """
+
+    kind: str
+    reason: str
+
+
+VANISHES = End("inside", "the amplitude vanishes, as it does for undamped contacts only")
+"""End of the branch of an undamped contact, whose phase is not defined at Λ = 0."""
+
+MERGES = End("permanent contact", "the flight vanishes: the orbit merges with permanent contact")
+"""End of a branch whose flight vanishes."""
+
+
 @dataclass(frozen=True)
 class Branch:
     """A branch of orbits along Λ, from the unstable to the stable side.
 
-    ``orbits`` has the shape (4, points), with chords of equal length between neighbours;
-    ``special`` has the special points in their order, and ``ends`` says why the branch ends at its
-    unstable and at its stable side.
+    Attributes
+    ----------
+    orbits
+        Orbits, shape (4, points), with chords of equal length between neighbours.
+    special
+        Special points in the order of the branch.
+    ends
+        Its ends at the unstable and at the stable side.
     """
 
     orbits: NDArray
     special: list[Special]
-    ends: tuple[str, str]
+    ends: tuple[End, End]
 
 
 def branch(family: Family, amplitude_max: float, points: int, largest_step: float = 0.2) -> Branch:
@@ -347,8 +370,8 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
     start = _upper_orbits(family, np.array([[amplitude_max]]))[:, 0, 0]
     if np.isnan(start).any():
         raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
-    reached = f"amplitude = {amplitude_max:g} is reached"
-    path, reason = _follow(family, start, amplitude_max, largest_step)
+    reached = End("largest amplitude", f"amplitude = {amplitude_max:g} is reached")
+    path, end = _follow(family, start, amplitude_max, largest_step)
     if np.isnan(path).any():
         raise NoOrbit(f"the end of a {family.n}-T branch is not found at ϖ = {ratio:g}")
     path = path[:, ::-1]
@@ -357,7 +380,7 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
     for kind, test in _tests(family).items():
         for orbit in _zeros(family, path, test):
             found.append(Special(kind, orbit, _place(orbit, orbits)))
-    ends = (reached if reason is None else reason, reached)
+    ends = (end or reached, reached)
     return Branch(orbits, sorted(found, key=lambda each: each.place), ends)
 
 
@@ -374,12 +397,12 @@ def _tangent(family: Family, y: NDArray) -> NDArray:
 
 def _follow(
     family: Family, start: NDArray, amplitude_max: float, largest_step: float
-) -> tuple[NDArray, str | None]:
+) -> tuple[NDArray, End | None]:
     """Pseudo-arclength continuation from an orbit towards smaller Λ, and round the saddle-node.
 
     A step is halved if the corrector fails or the tangent turns by more than about 14 degrees, and
-    grows otherwise. Returns the orbits, shape (4, steps), and why the branch ends where it does not
-    end at the amplitude.
+    grows otherwise. Returns the orbits, shape (4, steps), and the end of the branch unless it is at
+    the largest amplitude.
     """
     path = [start]
     y = start
@@ -408,8 +431,8 @@ def _follow(
         y = new
         direction = following
         step = min(1.5 * step, largest_step)
-    reason = f"the continuation does not get beyond amplitude = {y[0]:.6g}"
-    return np.stack(path, axis=1), VANISHES if y[0] < 10 * SMALLEST_STEP else reason
+    lost = End("inside", f"the continuation does not get beyond amplitude = {y[0]:.6g}")
+    return np.stack(path, axis=1), VANISHES if y[0] < 10 * SMALLEST_STEP else lost
 
 
 def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:

@@ -348,13 +348,11 @@ def mark_special(axes: Axes, branch: xr.Dataset, phase: str, colour: str) -> Non
 def inner_ends(branch: xr.Dataset) -> list[tuple[str, int]]:
     """Kind and point of each end of a branch that is not an end of the range of Λ."""
     known = np.flatnonzero(branch.amplitude.notnull())
-    if "end_reason" not in branch or not known.size:
+    if "end_kind" not in branch or not known.size:
         return []
-    ends = zip(branch.end_reason.values, (known[0], known[-1]), strict=True)
-    inner = [(reason, int(point)) for reason, point in ends if "is reached" not in reason]
-    joins = "joins permanent contact"
-    other = "end of the branch"
-    return [(joins if "permanent contact" in reason else other, point) for reason, point in inner]
+    marks = {"permanent contact": "joins permanent contact", "inside": "end of the branch"}
+    ends = zip(branch.end_kind.values, (known[0], known[-1]), strict=True)
+    return [(marks[kind], int(point)) for kind, point in ends if kind in marks]
 
 
 def right_end(branch: xr.Dataset, phase: str) -> float:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import minimize_scalar
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball import restitution
@@ -30,26 +30,36 @@ from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contac
 
 
 class Error(NamedTuple):
-    """The relative error of one quantity along ϖ.
+    """Relative errors of quantities along ϖ.
 
-    ``values`` are those at the ratios of a scan, and ``between(ratio, i)`` computes one between
-    the ratios i and i + 1.
+    Attributes
+    ----------
+    values
+        Errors at the frequency ratios of a scan, shape (..., ratios). A row is a curve.
+    between
+        ``between(ratio, below, curve)`` returns the errors at frequency ratios between those of the
+        scan with the indices ``below`` and ``below + 1``, on the curves with these flat indices.
     """
 
     values: NDArray
-    between: Callable[[float, int], float]
+    between: Callable[[NDArray, NDArray, NDArray], NDArray]
 
 
 class Threshold(NamedTuple):
-    """A frequency ratio, and how it was found.
+    """Frequency ratios above which errors stay within a tolerance.
 
-    The status is ``found``; ``within`` if the error is within the tolerance at every ratio of the
-    scan; and ``outside`` if it is not so at the largest, or if the error jumps into the tolerance
-    because there is no orbit at the ratio before. The ratio is NaN if it is not found.
+    Attributes
+    ----------
+    ratio
+        Shape (...); NaN if it is not found.
+    status
+        ``found``; ``within`` if the error is within the tolerance at every ratio of the scan;
+        ``outside`` if it exceeds the tolerance at the largest ratio, or if there is no orbit at the
+        ratio below the first that is enough.
     """
 
-    ratio: float
-    status: str
+    ratio: NDArray
+    status: NDArray
 
 
 def relative_error(value: Numbers, reference: Numbers) -> NDArray:
@@ -62,29 +72,39 @@ def relative_error(value: Numbers, reference: Numbers) -> NDArray:
 
 
 def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
-    """The frequency ratio from which on an error stays within a tolerance.
+    """Find the frequency ratios above which errors stay within a tolerance.
 
     The last ratio of the scan whose error exceeds the tolerance begins the interval in which the
     threshold is located. Two crossings between two neighbours are not noticed.
 
     >>> grid = np.geomspace(1, 1000, 7)
-    >>> found = threshold(grid, Error(1 / grid, lambda ratio, i: 1 / ratio), 0.02)
-    >>> round(found.ratio, 9), found.status
+    >>> error = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
+    >>> found = threshold(grid, error, 0.02)
+    >>> round(float(found.ratio), 9), str(found.status)
     (50.0, 'found')
     """
-    outside = np.flatnonzero(~(error.values <= tolerance))
-    if outside.size == 0:
-        return Threshold(np.nan, "within")
-    last = int(outside[-1])
-    if last + 1 == ratios.size or np.isinf(error.values[last]):
-        return Threshold(np.nan, "outside")
-    place = brentq(
-        lambda logarithm: error.between(np.exp(logarithm), last) - tolerance,
-        np.log(ratios[last]),
-        np.log(ratios[last + 1]),
-        xtol=1e-14,
-    )
-    return Threshold(float(np.exp(place)), "found")
+    values = error.values.reshape(-1, ratios.size)
+    outside = ~(values <= tolerance)
+    last = ratios.size - 1 - np.argmax(outside[:, ::-1], axis=1)
+    curves = np.arange(len(values))
+    is_within = ~outside.any(axis=1)
+    is_crossed = ~is_within & (last < ratios.size - 1) & np.isfinite(values[curves, last])
+    curve = curves[is_crossed]
+    below = last[is_crossed]
+    logarithms = np.log(ratios)
+    ratio = np.full(len(values), np.nan)
+    if curve.size:
+        found = find_root(
+            lambda log, below, curve: error.between(np.exp(log), below, curve) - tolerance,
+            (logarithms[below], logarithms[below + 1]),
+            args=(below, curve),
+            tolerances={"xatol": 1e-14, "xrtol": 0.0},
+        )
+        ratio[curve] = np.where(found.success, np.exp(found.x), np.nan)
+    status = np.where(is_within, "within", np.where(np.isnan(ratio), "outside", "found"))
+    shape = error.values.shape[:-1]
+    # Of a single curve, the results are numbers.
+    return Threshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
 
 
 def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Error:
@@ -94,7 +114,7 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
         found = permanent_contact(ratio, zeta, release)
         return relative_error(found, restitution.PERMANENT_CONTACT)
 
-    return Error(error(ratios), lambda ratio, i: float(error(ratio)))
+    return Error(error(ratios), lambda ratio, below, curve: error(ratio))
 
 
 def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) -> dict[str, Error]:
@@ -150,11 +170,11 @@ def _along(
     def error(family, y):
         return relative_error(value(family, y), reference)
 
-    def between(ratio, i):
+    def between(ratio, below, curve):
+        part = np.log(ratio / ratios[below]) / np.log(ratios[below + 1] / ratios[below])
+        guess = orbits[:, below] + part * (orbits[:, below + 1] - orbits[:, below])
         one = replace(family, contact=replace(family.contact, frequency_ratio=ratio))
-        part = np.log(ratio / ratios[i]) / np.log(ratios[i + 1] / ratios[i])
-        guess = orbits[:, i] + part * (orbits[:, i + 1] - orbits[:, i])
-        return float(error(one, correct(one, guess, condition)))
+        return error(one, correct(one, guess, condition))
 
     # Where there is no orbit, the restitution model is as wrong as can be.
     values = error(family, orbits)
@@ -234,37 +254,22 @@ def enough_from(
         ratio below the first that is enough, it is NaN.
     """
     ratios = np.asarray(family.contact.frequency_ratio)
-    logarithms = np.log(ratios)
     n = np.asarray(family.n)
     zeta = np.asarray(family.contact.damping_ratio)
-    outside = ~(errors_of_orbits(family, orbits, r, amplitude) <= tolerance)
-    last = ratios.size - 1 - np.argmax(outside[..., ::-1], axis=-1)
-    crossed = outside.any(axis=-1) & (last < ratios.size - 1)
-    quantity, orbit = np.nonzero(crossed)
+    values = errors_of_orbits(family, orbits, r, amplitude)
 
-    def excess(logarithm, quantity, orbit, below):
-        low = logarithms[below]
-        high = logarithms[below + 1]
-        part = (logarithm - low) / (high - low)
+    def between(ratio, below, curve):
+        quantity, orbit = np.unravel_index(curve, values.shape[:2])
+        part = np.log(ratio / ratios[below]) / np.log(ratios[below + 1] / ratios[below])
         guess = (1 - part) * orbits[:, orbit, below] + part * orbits[:, orbit, below + 1]
-        contact = replace(
-            family.contact,
-            frequency_ratio=np.exp(logarithm),
-            damping_ratio=zeta[orbit, 0],
-        )
+        contact = replace(family.contact, frequency_ratio=ratio, damping_ratio=zeta[orbit, 0])
         one = Family(n[orbit, 0], contact)
         at = amplitude[orbit, 0]
         found = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
-        return found[quantity, np.arange(quantity.size)] - tolerance
+        return found[quantity, np.arange(quantity.size)]
 
-    below = last[quantity, orbit]
-    bracket = logarithms[below], logarithms[below + 1]
-    # The ratios are known to 1e-11, which is what the orbits are known to.
-    precision = {"xatol": 1e-11, "xrtol": 0.0}
-    found = find_root(excess, bracket, args=(quantity, orbit, below), tolerances=precision)
-    enough = np.where(outside.any(axis=-1), np.nan, ratios[0])
-    enough[quantity, orbit] = np.where(found.success, np.exp(found.x), np.nan)
-    return enough
+    found = threshold(ratios, Error(values, between), tolerance)
+    return np.where(found.status == "within", ratios[0], found.ratio)
 
 
 def lowest_period_doublings(

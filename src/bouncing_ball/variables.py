@@ -80,6 +80,7 @@ SYMBOLS = {
     ),
     "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
     "admissible": Variable("whether the orbit has no earlier impact or release"),
+    "end_kind": Variable("kind of the end of the branch"),
     "end_reason": Variable("reason for the end of the branch"),
     "labelled": Variable("whether the figure marks this frequency ratio"),
     # Orbits of the restitution model

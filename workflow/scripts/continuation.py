@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import Branch, NoOrbit, bifurcations, branch
+from bouncing_ball.continuation import Branch, End, NoOrbit, bifurcations, branch
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
@@ -20,7 +20,8 @@ def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
     try:
         return branch(family, parameters["amplitude_max"], points, largest_step)
     except NoOrbit as error:
-        return Branch(np.full((4, points), np.nan), [], (str(error), str(error)))
+        absent = End("inside", str(error))
+        return Branch(np.full((4, points), np.nan), [], (absent, absent))
 
 
 def padded(values: list, count: int, fill) -> list:
@@ -39,7 +40,7 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
     found = [followed(family, parameters, largest_step) for family in families]
     if all(np.isnan(each.orbits).all() for each in found):
-        raise NoOrbit(found[0].ends[0])
+        raise NoOrbit(found[0].ends[0].reason)
     count = max(len(each.special) for each in found)
     rows = []
     for family, each in zip(families, found, strict=True):
@@ -59,7 +60,8 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
                 "special_phase": padded([point.orbit[1] for point in special], count, np.nan),
                 "special_contact_duration": padded(durations, count, np.nan),
                 "special_arclength": padded([point.place for point in special], count, np.nan),
-                "end_reason": list(each.ends),
+                "end_kind": [end.kind for end in each.ends],
+                "end_reason": [end.reason for end in each.ends],
             }
         )
     axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}

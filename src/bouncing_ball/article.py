@@ -30,7 +30,7 @@ STIFF_CURVES = ("fig05", "fig06", "fig10")
 
 @cache
 def environment(templates: Path) -> jinja2.Environment:
-    """What reads the templates of a folder, each once, with what they can do with a number."""
+    """Return the Jinja environment of a folder of templates, with the filters for numbers."""
     found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
@@ -44,7 +44,7 @@ def environment(templates: Path) -> jinja2.Environment:
 
 
 def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> str:
-    """The text of a template, as "paper" or "supplement", in Markdown or another kind of text.
+    """Fill in a template, such as "paper" or "supplement", in Markdown or HTML.
 
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
@@ -116,7 +116,7 @@ def percent(value: float, digits: int = 0, bound: str = "") -> str:
 
 
 def short(value: float) -> str:
-    """A parameter with as many digits as it has; large powers of ten as such.
+    """Print a parameter with all its digits, and large powers of ten as such.
 
     >>> short(0.85), short(10.0), short(1e4)
     ('0.85', '10', '10⁴')
@@ -129,7 +129,7 @@ def short(value: float) -> str:
 
 
 def listed(values: Iterable, digits: int | None = None) -> str:
-    """Words or numbers in a row.
+    """List words or numbers, with "and" before the last.
 
     >>> listed([1.0, 2.5, 4.0]), listed(["one", "two"]), listed([1.234], 2)
     ('1, 2.5 and 4', 'one and two', '1.23')
@@ -140,12 +140,12 @@ def listed(values: Iterable, digits: int | None = None) -> str:
 
 
 def word(value: float, digits: int | None) -> str:
-    """A number of a list: with a number of decimals, or with as many digits as it has."""
+    """Print a number of a list, with all its digits if `digits` is None."""
     return short(value) if digits is None else fixed(value, digits)
 
 
 def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
-    """The values of a variable at labels of its coordinates; NaN if there is no such label."""
+    """Select values at labels of coordinates; NaN if there is no such label."""
     try:
         return values.sel(labels)
     except KeyError:
@@ -156,13 +156,13 @@ def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
 
 
 def durations(datasets: Datasets, ratio: float) -> NDArray:
-    """The durations of all contacts of Figs. 8 and 9 at a frequency ratio."""
+    """Return the durations of all contacts of Figs. 8 and 9 at a frequency ratio."""
     figures = [datasets[name].contact_duration for name in ("fig08", "fig09")]
     return np.concatenate([np.ravel(at(figure, frequency_ratio=ratio)) for figure in figures])
 
 
 def failing(validity_map: xr.Dataset, quantity: str) -> str:
-    """For which n, and up to which r, the advised frequency ratio is not enough, in words."""
+    """Print for which n, and up to which r, the advised frequency ratio is too small."""
     r = validity_map.restitution.values
     parts = []
     for up_to in validity_map.failing_up_to.sel(quantity=quantity):
@@ -174,12 +174,12 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
 
 
 def other_contacts(hypotheses: xr.Dataset) -> list[str]:
-    """The contacts of hypotheses that differ from the contact of the restored equations."""
+    """Return the hypotheses with another contact than the restored equations."""
     return sorted({*hypotheses.contact_of.values.tolist()} - {"", "equations as they stand"})
 
 
 def stiff_errors(datasets: Datasets) -> xr.DataArray:
-    """`measures.stiff_errors` on the figures that reach stiff contacts; NaN if none does."""
+    """Return `measures.stiff_errors` of the figures that reach ϖ = 100; NaN if none does."""
     sweeps = {name: datasets[name] for name in STIFF_CURVES}
     stiff = {
         name: each

@@ -1,10 +1,10 @@
 """The claims of the paper, and the verdict on each, from the datasets of figures and tables.
 
-Each claim is a function of the datasets that decide it: it returns the computed number where a
-number is printed, and otherwise a condition for each way to read the words, that of the paper's own
-sentence first (`verdicts` says what follows). A claim that follows from restored formulas by
-algebra has the reason in place of a function. The formulas themselves were *restored* from a
-damaged text by deriving them again, and are listed and not counted.
+A claim is a function of the datasets that decide it. If a number is printed, the function returns
+the computed number. Otherwise it returns a condition for each sense of the words, first the literal
+one; the module `verdicts` defines the verdicts. A claim that follows by algebra from restored
+formulas has the reason instead of a function. The formulas were *restored* from a damaged text by
+deriving them again; they are listed and not counted.
 """
 
 from collections.abc import Callable, Mapping
@@ -37,8 +37,8 @@ from bouncing_ball.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, STIFF, TABLE
 from bouncing_ball.verdicts import Claim, above, answer, argued, at_least, at_most
 
 LINE = 0.01
-"""The width of a line as a share of the axis of a figure, some 0.5 mm of 5 cm: what is smaller
-cannot be seen in it."""
+"""Width of a line divided by the length of the axis, about 0.5 mm of 5 cm. Smaller differences are
+not visible in a figure."""
 
 
 # Claims

@@ -38,31 +38,32 @@ def complete(values: ArrayLike) -> NDArray:
 
 
 def steps(data: xr.DataArray) -> NDArray:
-    """Changes from each contact to the next stiffer one."""
+    """Return the changes from each contact to the next stiffer one."""
     return data.sortby("frequency_ratio").diff("frequency_ratio").values
 
 
 def between(curve: xr.DataArray) -> PchipInterpolator:
-    """A curve along ϖ as a function of ln ϖ, by the piecewise cubic that is monotone with it."""
+    """Interpolate a curve along ϖ by a monotone piecewise cubic in ln ϖ."""
     return PchipInterpolator(np.log(curve["frequency_ratio"].values), complete(curve))
 
 
 def crossing(curve: xr.DataArray, level: float) -> float:
-    """The largest ϖ at which a curve takes a value; NaN if it does not."""
+    """Return the largest ϖ at which a curve reaches a level; NaN if there is none."""
     places = between(curve).solve(level, extrapolate=False)
     return float(np.exp(places.max())) if places.size else np.nan
 
 
 def from_the_stiffest(table1: xr.Dataset) -> xr.Dataset:
-    """The rows that the paper prints of Table 1, from the stiffest to the most compliant one."""
+    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ."""
     printed = table1.dropna("frequency_ratio", subset=["printed"])
     return printed.sortby("frequency_ratio", ascending=False)
 
 
 def last_special(branch: xr.Dataset, kind: str) -> float:
-    """Λ at the last special point of a kind along a branch.
+    """Return Λ at the last special point of a kind along a branch.
 
-    A branch ends on the stable side of the saddle-node with which Table 1 begins.
+    The range of Table 1 lies at the end of a branch, on the stable side of its last saddle-node.
+    Raises ValueError if the branch has no such point.
     """
     found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
     if not found.size:
@@ -71,7 +72,7 @@ def last_special(branch: xr.Dataset, kind: str) -> float:
 
 
 def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
-    """The branches of figures, one for each frequency ratio, from the most compliant contact on."""
+    """Return the branches of figures in order of increasing frequency ratio."""
     return [
         figure.sel(frequency_ratio=ratio)
         for figure in figures
@@ -80,9 +81,9 @@ def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
 
 
 def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
-    """The ranges of Λ in which the orbits of one branch are stable, in the order of the branch.
+    """Return the ranges of Λ with stable orbits, in the order of the branch.
 
-    They lie between special points, or between one and an end of the branch.
+    A range begins and ends at a special point or at an end of the branch.
     """
     special = branch.isel(special=branch["special_kind"].values != "")
     places = complete([0.0, *special["special_arclength"].values, 1.0])
@@ -95,10 +96,10 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
 
 
 def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
-    """The largest errors of the restitution model at ϖ ≥ 100, over orbit and measure.
+    """Return the largest errors of the restitution model at ϖ ≥ 100, over orbit and measure.
 
-    `sweeps` are the datasets of Figs. 5, 6 and 10 by name; an orbit that two of them have is given
-    once. Errors are relative, but that of the phase is a share of a period of the table.
+    `sweeps` are the datasets of Figs. 5, 6 and 10 by name. An orbit of two figures is listed once.
+    Errors are relative, except for the phase: its error is a fraction of a period of the table.
     """
     found = {}
     for sweep in sweeps.values():
@@ -121,20 +122,21 @@ def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
 
 
 def departure(fig10: xr.Dataset) -> xr.DataArray:
-    """Relative departure of the bouncing-off velocity from nπ."""
+    """Return the relative difference of the bouncing-off velocity and nπ."""
     return abs(fig10["bounce_velocity"] / fig10["restitution_bounce_velocity"] - 1)
 
 
 def spread(fig10: xr.Dataset) -> xr.DataArray:
-    """How far the bouncing-off velocities at different amplitudes are apart, as a share of nπ."""
+    """Return the largest difference of velocities between amplitudes, divided by nπ."""
     velocity = fig10["bounce_velocity"]
     apart = velocity.max("case", skipna=False) - velocity.min("case", skipna=False)
     return apart / fig10["restitution_bounce_velocity"]
 
 
 def error_of_eq_8(thresholds: xr.Dataset) -> float:
-    """Relative distance of the period doubling of Eq. 8 from that of the map of Eq. 5, to which
-    the spring-damper model tends.
+    """Return the relative difference of the period doublings of Eq. 8 and of the map of Eq. 5.
+
+    The spring-damper model converges to the period doubling of Eq. 5.
     """
     given = parameters(thresholds)
     limit = restitution.period_doubling(given["n"], given["restitution"])
@@ -143,8 +145,9 @@ def error_of_eq_8(thresholds: xr.Dataset) -> float:
 
 
 def residual(figure: xr.Dataset) -> NDArray:
-    """What Eqs. 23, 24, 25 and 26 leave on the orbits of a figure, of which 23 is in contact times
-    ϖ and the others in the units of the model.
+    """Return the residuals of Eqs. 23 to 26 on the orbits of a figure, shape (4, ϖ, points).
+
+    The residual of Eq. 23 is multiplied by ϖ; the others are in the units of the model.
     """
     n = parameters(figure)["n"]
     ratio = figure["frequency_ratio"].values[:, np.newaxis]
@@ -176,7 +179,10 @@ def residual(figure: xr.Dataset) -> NDArray:
 
 
 def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
-    """Restitution of a ball that falls with the velocity π of the 1-T orbit on a table at rest."""
+    """Return the restitution of a ball that hits a table at rest with the velocity π.
+
+    This is the velocity of the 1-T orbit. `weight` multiplies gravity during the contact.
+    """
     contact = Contact(ratio, damping_ratio(r), weight=weight)
     time = np.pi / (ratio * np.sqrt(1 - contact.damping_ratio**2))
     for _ in range(20):  # Newton's method for the end of the contact, δ = 0

@@ -51,12 +51,12 @@ def printed_table() -> xr.DataArray:
 
 
 def on_contacts(**given) -> dict:
-    """Parameters of a dataset of the spring-damper model with the paper's condition of release."""
+    """Add the release of the paper to the parameters of the spring-damper model."""
     return {**given, "release": "displacement"}
 
 
 def cases(*pairs: tuple[float, float]) -> list[dict]:
-    """Cases of r and Λ."""
+    """Return cases of (r, Λ)."""
     return [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs]
 
 
@@ -102,7 +102,7 @@ cannot be read, the ends of the ranges to which the conditions refer. The three 
 
 
 def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
-    """What differs from the parameters that are needed of a dataset; empty if nothing does."""
+    """Name the parameters of a dataset that differ from the needed ones; empty if none does."""
     given = parameters(data)
     return "; ".join(
         f"{name}: {key} is {given.get(key)}, and the claim needs {value}"
@@ -112,7 +112,7 @@ def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
 
 
 def agrees(given, needed) -> bool:
-    """Whether a parameter is the needed one; of a range only the needed keys count."""
+    """Whether a parameter has the needed value; of a range only the needed keys count."""
     if isinstance(needed, Mapping) and isinstance(given, Mapping):
         return all(agrees(given.get(key), value) for key, value in needed.items())
     return given == needed

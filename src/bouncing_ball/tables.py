@@ -19,27 +19,27 @@ MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 
 
 
 def markdown(rows: list[list[str]]) -> str:
-    """Rows as a Markdown table; the first is the header."""
+    """Print rows of texts, the header first, as a Markdown table."""
     header, *body = rows
     lines = [header, ["---"] * len(header), *body]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def comma_separated(rows: list[list[str]]) -> str:
-    """Rows as CSV; the first is the header."""
+    """Print rows of texts, the header first, as CSV."""
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
 
 
 def number(value: xr.DataArray | float, form: str, none: str = "–") -> str:
-    """A number in a format; `none` if it is NaN or infinite."""
+    """Print a number in a format; `none` if it is NaN or infinite."""
     plain = float(value)
     return f"{plain:{form}}" if np.isfinite(plain) else none
 
 
 def distance_text(units: float, share: float) -> str:
-    """A distance from a printed number as text; empty if there is none.
+    """Print the distance from a printed number; empty if there is none.
 
     >>> distance_text(6.3, 0.0061), distance_text(0.8, 0.0008)
     ('+6.3 units, +0.61 %', '+0.8 units, +0.08 %, within one unit of the last digit')
@@ -81,7 +81,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
 
 
 def thresholds(data: xr.Dataset) -> list[list[str]]:
-    """The frequency ratio from which on each error stays within each tolerance.
+    """Frequency ratios above which each error stays within each tolerance.
 
     Outside of the range scanned it is given as the end of the range, after < or >.
     """
@@ -128,7 +128,7 @@ def hypotheses(data: xr.Dataset) -> list[list[str]]:
 
 
 def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
-    """The parts of a dataset along dimensions, the last dimension fastest."""
+    """Split a dataset along dimensions; the last dimension varies fastest."""
     parts = [data]
     for name in dimensions:
         parts = [part.isel({name: place}) for part in parts for place in range(data.sizes[name])]
@@ -140,8 +140,9 @@ TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses}
 
 
 def choices(text: str) -> list[list[str]]:
-    """What is chosen, what was tried instead, and the verdicts that change, from the CSV of all
-    other choices.
+    """Our choices, the alternatives that were tried, and the verdicts that change.
+
+    `text` is the CSV of the study `workflow/studies/choices.py`.
     """
     rows = list(csv.DictReader(io.StringIO(text)))
     found = [["choice", "instead", "verdicts that depend on it"]]
@@ -157,7 +158,7 @@ def choices(text: str) -> list[list[str]]:
 
 
 def computed_text(found: float, printed: str) -> str:
-    """A computed number with two digits more than the printed one.
+    """Print a computed number with two digits more than the printed one.
 
     >>> computed_text(1.0383008, "1.032"), computed_text(82.177, "82"), computed_text(np.nan, "6")
     ('1.03830', '82.18', '–')
@@ -167,7 +168,7 @@ def computed_text(found: float, printed: str) -> str:
 
 
 def claims_of(data: xr.Dataset, group: str) -> list[dict]:
-    """The claims of a group, each as a mapping from the variables to its values.
+    """Return the claims of a group, each as a mapping from variables to values.
 
     Besides, `computed` and `distance` have the number found beside a printed one as texts, and
     `notes` the reason for the verdict and the remark.
@@ -234,17 +235,17 @@ EVERYTHING = {
 
 
 def chosen(columns: Mapping[str, str], claims: list[dict]) -> list[list[str]]:
-    """Rows of texts with some columns for claims, the header first."""
+    """Select columns of claims: rows of texts, the header first."""
     return [[*columns], *([claim[name] for name in columns.values()] for claim in claims)]
 
 
 def all_claims(data: xr.Dataset) -> list[list[str]]:
-    """Rows of texts for all claims and restored formulas, with all that is known of them."""
+    """Return rows of texts for all claims and restored formulas, with all columns."""
     return chosen(EVERYTHING, [claim for group in SECTIONS for claim in claims_of(data, group)])
 
 
 def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
-    """How many claims of each group have each verdict; restored formulas are not counted."""
+    """Count the claims by group and verdict; restored formulas are not counted."""
     found = Counter(
         zip(data["group"].values.tolist(), data["verdict"].values.tolist(), strict=True)
     )
@@ -252,7 +253,7 @@ def counts(data: xr.Dataset) -> dict[str, dict[str, int]]:
 
 
 def summary(data: xr.Dataset) -> list[list[str]]:
-    """Rows of texts with the number of claims of each group and verdict, the header first."""
+    """Return the counts as rows of texts, the header first."""
     found = counts(data)
     used = [verdict for verdict in VERDICTS if any(by[verdict] for by in found.values())]
     rows = [["claims", "in all", *used]]
@@ -275,7 +276,7 @@ Formulas were *restored* from the damaged text by deriving them again, and are n
 
 
 def claims_markdown(data: xr.Dataset) -> str:
-    """The claims with their verdicts as a page."""
+    """Return the claims with their verdicts as a page in Markdown."""
     text = f"{INTRODUCTION}\n## How many\n\n{markdown(summary(data))}"
     for group, columns in SECTIONS.items():
         rows = chosen(columns, claims_of(data, group))

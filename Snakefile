@@ -104,7 +104,7 @@ PAPER = modules("paper")
 DRAWING = modules("figures", "drawing", "paper", "datasets")
 JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
 WRITING = JUDGING + modules("article", "pages")
-TEMPLATES = ["paper.md", "supplement.md", "figures.md", "figures.html"]
+TEMPLATES = ["paper.md", "supplement.md", "article.html", "figures.md", "figures.html"]
 
 
 rule all:
@@ -333,6 +333,8 @@ rule article:
     output:
         paper="results/paper.md",
         supplement="results/supplement.md",
+        paper_page="results/paper.html",
+        supplement_page="results/supplement.html",
         figures="results/figures/README.md",
         index="results/index.html",
     params:

@@ -1,10 +1,19 @@
-"""The page of the results and the list of figures, both templates over the same parts.
+"""Pages for a browser: the results, and the article and its supplement; and the list of figures.
 
-A part is a figure, a table or a dataset, with the claims that are shown beside it.
+The page of the results and the list are templates over the same parts. A part is a figure, a table
+or a dataset, with the claims that are shown next to it.
 """
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+
+import xarray as xr
+from latex2mathml.converter import convert
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
+from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from bouncing_ball import article, tables
 from bouncing_ball.datasets import Datasets
@@ -15,11 +24,32 @@ SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 
 @dataclass(frozen=True)
 class Row:
-    """A claim: what the paper says, what we find, and the verdict."""
+    """A claim as it is shown.
+
+    Attributes
+    ----------
+    said, where
+        What the paper says, with the printed number, and where.
+    found
+        The computed number, or the conditions of the verdict.
+    verdict
+        One of `verdicts.VERDICTS`.
+    asked
+        Whether this run can judge the claim.
+    literal
+        Whether the literal sense holds, if the senses differ.
+    reason, remark
+        Why the claim is not testable, and how we read it.
+    """
 
     said: str
-    found: str
+    where: str
+    found: Sequence[str]
     verdict: str
+    asked: bool
+    literal: str
+    reason: str
+    remark: str
 
 
 @dataclass(frozen=True)
@@ -46,24 +76,33 @@ class Part:
     table: Sequence[Sequence[str]] = ()
 
 
+# The page of the results, and the list of figures
+
+
 def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **more) -> str:
     """Return the list of figures in Markdown ("md"), or the page of the results ("html").
 
     `entries` are the registered figures, tables and datasets by name.
     """
     found = parts(datasets, entries)
-    return article.filled_in(
+    claims = datasets["claims"]
+    formulas = tables.claims_of(claims, "restored formula")
+    text = article.filled_in(
         "figures",
         datasets,
         kind,
         markdown=tables.markdown,
-        counts=tables.summary(datasets["claims"]),
+        counts=tables.counts(claims),
+        unasked=int((~claims.asked).sum()),
+        exceptions=exceptions(datasets["validity_map"]),
+        formulas=tables.chosen(tables.SECTIONS["restored formula"], formulas),
         figures=[part for part in found if "PNG" in part.files],
         tabulated=[part for part in found if part.table],
         others=[part for part in found if part.files.keys() == {"dataset"}],
         general=[part for part in found if not part.files],
         **more,
     )
+    return unbroken(text) if kind == "html" else text
 
 
 def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
@@ -91,7 +130,7 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
 
 
 def rows_beside(name: str, datasets: Datasets) -> list[Row]:
-    """The claims beside a figure or table; the ends of Table 1 are in the table itself."""
+    """The claims next to a figure or table; the ends of Table 1 are in the table itself."""
     return [
         row(claim)
         for group in tables.GROUPS
@@ -100,8 +139,173 @@ def rows_beside(name: str, datasets: Datasets) -> list[Row]:
     ]
 
 
-def row(claim: Mapping[str, str]) -> Row:
-    """A claim as it is shown: with the number found, or with what decided it."""
-    said = ": ".join(filter(None, (claim["statement"], claim["printed_text"])))
-    known = (claim["computed"], claim["condition"], claim["reason"])
-    return Row(said, "; ".join(filter(None, known)), claim["verdict"])
+def row(claim: Mapping) -> Row:
+    """A claim as it is shown."""
+    number = " ".join(filter(None, (claim["computed"], f"({claim['distance']})")))
+    return Row(
+        said=": ".join(filter(None, (claim["statement"], claim["printed_text"]))),
+        where=claim["item"],
+        found=[number] if claim["distance"] else senses(claim["condition"]),
+        verdict=claim["verdict"],
+        asked=claim["asked"],
+        literal=claim["own_sense"],
+        reason=claim["reason"],
+        remark=claim["remark"],
+    )
+
+
+def senses(condition: str) -> list[str]:
+    """The conditions of a statement, one for each sense of its words.
+
+    >>> senses("yes: Eq. 5 (0.0132 %, at most 1 %); no: Eq. 8 (2.97 %, at most 1 %)")
+    ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
+    """
+    return re.split(r"; (?=(?:yes|no): )", condition) if condition else []
+
+
+MAPPED = {
+    "max_height": "maximum height",
+    "bounce_velocity": "bouncing-off velocity",
+    "apparent_restitution": "apparent restitution",
+    "phase_in_periods": "phase of the impact, in periods",
+}
+"""Names of the quantities of the validity map."""
+
+
+def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
+    """Where the advised frequency ratio is not enough, as rows of texts, the header first."""
+    advised = article.short(article.parameters(validity_map)["advised"])
+    limit = article.percent(article.parameters(validity_map)["tolerance"])
+    rows = [["quantity", f"largest error at ϖ ≥ {advised}", f"some orbits exceed {limit} for"]]
+    for quantity, name in MAPPED.items():
+        error = validity_map.stiff_error.sel(quantity=quantity).max()
+        where = article.failing(validity_map, quantity)
+        rows.append([name, article.percent(error, 2), where])
+    return rows
+
+
+# The article and its supplement
+
+
+PAGES = {
+    "paper.md": "paper.html",
+    "supplement.md": "supplement.html",
+    "figures/README.md": "index.html",
+}
+"""The page for each text; the page of a table or of the claims is a part of index.html."""
+
+
+def page_of(markdown: str, name: str, captions: Mapping[str, str]) -> str:
+    """The page of a text in Markdown: "paper" or "supplement".
+
+    Formulas become MathML. Links to texts lead to their pages, and citations to the references.
+    `captions` describe the pictures, by the names of figures.
+    """
+    tokens = parser().parse(markdown)
+    inside = [token for block in tokens for token in (block, *(block.children or ()))]
+    for token in inside:
+        if token.type == "image":
+            figure = token.attrs["src"].removeprefix("figures/").removesuffix(".png")
+            token.attrs["src"] = f"figures/{figure}.svg"
+            token.children = [Token("text", "", 0, content=captions[figure])]
+        elif token.type == "link_open":
+            token.attrs["href"] = link(token.attrs["href"])
+    contents = name_headings(tokens)
+    name_references(tokens)
+    name_cells(tokens)
+    body = parser().renderer.render(tokens, parser().options, {})
+    template = article.environment(article.TEMPLATES).get_template("article.html.j2")
+    page = template.render(
+        name=name, title=contents[0][1], contents=contents[1:], body=with_links(body)
+    )
+    return unbroken(page)
+
+
+@cache
+def parser() -> MarkdownIt:
+    """The parser of our texts: Markdown with tables, line breaks in cells, and formulas."""
+    found = MarkdownIt("commonmark").enable("table")
+    return found.use(dollarmath_plugin, renderer=formula, allow_digits=False)
+
+
+def formula(tex: str, options: Mapping) -> str:
+    """A formula as MathML. A displayed one is split at its wide spaces, where a line may break."""
+    if not options["display_mode"]:
+        return convert(tex)
+    return "".join(convert(each, display="block") for each in re.split(r"\\q?quad", tex))
+
+
+def link(target: str) -> str:
+    """Where a link of a text leads in a browser.
+
+    >>> link("supplement.md"), link("figures/table1.md"), link("figures/claims.csv")
+    ('supplement.html', 'index.html#table1', 'figures/claims.csv')
+    """
+    table = re.fullmatch(r"figures/(\w+)\.md", target)
+    return PAGES.get(target) or (f"index.html#{table[1]}" if table else target)
+
+
+def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
+    """Give each heading its number as an anchor, and return anchors and texts."""
+    found = []
+    for heading, text in zip(tokens, tokens[1:], strict=False):
+        if heading.type == "heading_open":
+            number = re.match(r"S?\d[\d.]*", text.content)
+            anchor = f"section-{number[0].rstrip('.')}" if number else text.content.lower()
+            heading.attrs["id"] = anchor
+            if heading.tag != "h3":
+                found.append((anchor, text.content))
+    return found
+
+
+def name_references(tokens: Sequence[Token]) -> None:
+    """Give each entry of the list of references its number as an anchor."""
+    for token in tokens:
+        if token.type == "list_item_open" and token.info:
+            token.attrs["id"] = f"reference-{token.info}"
+
+
+def name_cells(tokens: Sequence[Token]) -> None:
+    """Give each cell of a table the text of its column's header, for narrow screens."""
+    header: list[str] = []
+    column = 0
+    for token, text in zip(tokens, tokens[1:], strict=False):
+        if token.type == "thead_open":
+            header = []
+        elif token.type == "tr_open":
+            column = 0
+        elif token.type == "th_open":
+            header.append(text.content)
+        elif token.type == "td_open":
+            token.attrs["data-label"] = header[column]
+            column += 1
+
+
+def with_links(body: str) -> str:
+    """Link citations, sections and identifiers of documents in a text in HTML."""
+
+    def sections(found: re.Match) -> str:
+        page = "supplement.html" if found[1].startswith("S") else "paper.html"
+        return f'<a href="{page}#section-{found[1]}">{found[0]}</a>'
+
+    def citations(found: re.Match) -> str:
+        return re.sub(r"\d+", r'<a href="paper.html#reference-\g<0>">\g<0></a>', found[0])
+
+    body = re.sub(r"\bSection (S?\d(?:\.\d)?)", sections, body)
+    body = re.sub(r"\[\d+(?:, \d+)*\]", citations, body)
+    return re.sub(r"doi:(10\.[^\s<]+[^\s<.,])", r'<a href="https://doi.org/\1">\g<0></a>', body)
+
+
+# Both
+
+
+def unbroken(page: str) -> str:
+    """Keep relations, units and numbers of equations on one line.
+
+    >>> unbroken("for r = 0.55 (1 %), by Eq. 8").replace("\\N{NO-BREAK SPACE}", "_")
+    'for r_=_0.55 (1_%), by Eq._8'
+    """
+    page = re.sub(r" (=|≤|≥|≈|&lt;|&gt;) ", "\N{NO-BREAK SPACE}\\1\N{NO-BREAK SPACE}", page)
+    page = re.sub(r"(?<=\d) (?=%)", "\N{NO-BREAK SPACE}", page)
+    numbered = r"\b(Eqs?\.|Figs?\.|Figure|Section|Table) (?=S?\d)"
+    return re.sub(numbered, "\\1\N{NO-BREAK SPACE}", page)

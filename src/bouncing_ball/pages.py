@@ -16,7 +16,7 @@ from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from bouncing_ball import article, tables
-from bouncing_ball.datasets import Datasets
+from bouncing_ball.datasets import Datasets, parameters
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
@@ -167,20 +167,25 @@ MAPPED = {
     "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
     "apparent_restitution": "apparent restitution",
-    "phase_in_periods": "phase of the impact, in periods",
+    "phase_in_periods": "phase of the impact",
 }
 """Names of the quantities of the validity map."""
 
 
 def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     """Where the advised frequency ratio is not enough, as rows of texts, the header first."""
-    advised = article.short(article.parameters(validity_map)["advised"])
-    limit = article.percent(article.parameters(validity_map)["tolerance"])
-    rows = [["quantity", f"largest error at ϖ ≥ {advised}", f"some orbits exceed {limit} for"]]
+    advised = article.short(parameters(validity_map)["advised"])
+    rows = [["quantity", f"largest error at ϖ ≥ {advised}", "where"]]
     for quantity, name in MAPPED.items():
         error = validity_map.stiff_error.sel(quantity=quantity).max()
+        of = " of a period" if quantity == "phase_in_periods" else ""
         where = article.failing(validity_map, quantity)
-        rows.append([name, article.percent(error, 2), where])
+        rows.append([name, article.percent(error, 2) + of, where])
+    shares = validity_map.doubled_share.mean("restitution")
+    families = article.listed(shares.n.values)
+    parts = article.listed([article.percent(share, 1) for share in shares])
+    where = f"the last {parts} of the range for n = {families}, on average over r"
+    rows.append(["period", f"doubled at ϖ = {advised}", where])
     return rows
 
 
@@ -230,6 +235,9 @@ def parser() -> MarkdownIt:
 
 def formula(tex: str, options: Mapping) -> str:
     """A formula as MathML. A displayed one is split at its wide spaces, where a line may break."""
+    # The library leaves no space around the names of functions.
+    tex = re.sub(r"(?<=[\w}])(?=\\(?:sin|cos|ln)\b)", r"\\,", tex)
+    tex = re.sub(r"(\\(?:sin|cos|ln|max))(?=\\| )", r"\1\\,", tex)
     if not options["display_mode"]:
         return convert(tex)
     return "".join(convert(each, display="block") for each in re.split(r"\\q?quad", tex))

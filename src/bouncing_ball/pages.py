@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from itertools import pairwise
 
 import xarray as xr
 from latex2mathml.converter import convert
@@ -256,7 +257,7 @@ def link(target: str) -> str:
 def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
     """Give each heading its number as an anchor, and return anchors and texts."""
     found = []
-    for heading, text in zip(tokens, tokens[1:], strict=False):
+    for heading, text in pairwise(tokens):
         if heading.type == "heading_open":
             number = re.match(r"S?\d[\d.]*", text.content)
             anchor = f"section-{number[0].rstrip('.')}" if number else text.content.lower()
@@ -277,7 +278,7 @@ def name_cells(tokens: Sequence[Token]) -> None:
     """Give each cell of a table the text of its column's header, for narrow screens."""
     header: list[str] = []
     column = 0
-    for token, text in zip(tokens, tokens[1:], strict=False):
+    for token, text in pairwise(tokens):
         if token.type == "thead_open":
             header = []
         elif token.type == "tr_open":

@@ -16,7 +16,7 @@ from bouncing_ball.paper import LIMIT, STIFF, printed_table
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXTS = ("paper", "supplement", "figures")
-TEMPLATES = ("paper.md", "supplement.md", "figures.md", "figures.html")
+TEMPLATES = ("paper.md", "supplement.md", "figures.md", "figures.html", "article.html")
 FAMILY_PARAMETERS = {
     "table1": {"n": [0], "frequency_ratio": [1]},
     "fig03": {"n": [1, 2]},

@@ -38,7 +38,7 @@ def made(folder: Path) -> set[str]:
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     files = {f"figures/{path.name}" for path in (ROOT / "figures").iterdir()}
     beside = {"figures/accepted.json"}
-    texts = {"paper.md", "supplement.md", "index.html"}
+    texts = {"paper.md", "supplement.md", "index.html", "paper.html", "supplement.html"}
     assert made(complete.path) | beside == files | texts
 
 

@@ -136,7 +136,7 @@ def test_the_exceptions_are_those_of_the_map(data):
     other["doubled_share"][:] = 0.25
     assert pages.exceptions(other)[1:3] == [
         ["maximum height", "0.42 %", "no n"],
-        ["bouncing-off velocity", "1.32 %", "n = 2 up to r = 0.31"],
+        ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31"],
     ]
     assert "25.0 %, 25.0 % and 25.0 %" in pages.exceptions(other)[-1][-1]
 

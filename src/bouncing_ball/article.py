@@ -1,9 +1,7 @@
 """The article and its supplement: templates filled in from datasets.
 
-A template has text and names of numbers, and no numbers. The filters below print a number. All
-numbers are rounded to the nearest; an upper or lower bound gets more digits if it would become
-false. A number that a dataset does not have, because it was computed with other parameters, is a
-dash.
+A template has text and names of numbers, and no numbers. The filters below print a number. A number
+that a dataset does not have, because it was computed with other parameters, is a dash.
 """
 
 from collections.abc import Iterable
@@ -78,40 +76,29 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
 
 # Numbers as text
 
-NOISE = Decimal("1e-9")
-"""Rounding errors of the datasets: a bound that is passed by less is true."""
 
-
-def fixed(value: float, digits: int, bound: str = "", shift: int = 0) -> str:
-    """Print a number with a number of decimals, with the decimal point moved by `shift`.
-
-    As an "upper" or "lower" `bound` it gets more decimals until it is true.
+def fixed(value: float, digits: int, shift: int = 0) -> str:
+    """Round a number to a number of decimals, with the decimal point moved by `shift`.
 
     >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
     ('82.18', '−0.2', '0.00', '–')
-    >>> fixed(5.9794, 2, "upper"), fixed(5.9714, 2, "upper"), fixed(5.9714, 2, "lower")
-    ('5.98', '5.9714', '5.97')
     """
     if not np.isfinite(value):
         return "–"
     # The shortest decimal number that is this binary one: 0.01 is 1 % and no other share.
     number = Decimal(repr(float(value))).scaleb(shift)
-    noise = NOISE * max(abs(number), Decimal(1))
     rounded = number.quantize(Decimal(1).scaleb(-digits), rounding=ROUND_HALF_EVEN)
-    is_false = {"upper": rounded < number - noise, "lower": rounded > number + noise}
-    if is_false.get(bound):
-        return fixed(value, digits + 1, bound, shift)
     # Zero has no sign.
     return str(rounded + 0).replace("-", "−")
 
 
-def percent(value: float, digits: int = 0, bound: str = "") -> str:
+def percent(value: float, digits: int = 0) -> str:
     """Print a share in per cent.
 
-    >>> percent(0.01), percent(0.02673, 1), percent(0.00866, 2, "upper")
-    ('1 %', '2.7 %', '0.87 %')
+    >>> percent(0.01), percent(0.02673, 1)
+    ('1 %', '2.7 %')
     """
-    text = fixed(value, digits, bound, shift=2)
+    text = fixed(value, digits, shift=2)
     return text if text == "–" else f"{text} %"
 
 

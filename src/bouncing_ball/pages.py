@@ -17,6 +17,7 @@ from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from bouncing_ball import article, tables
+from bouncing_ball.claims import CLAIMS
 from bouncing_ball.datasets import Datasets, parameters
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
@@ -67,6 +68,8 @@ class Part:
         The claims.
     table
         Rows of texts, the header first.
+    elsewhere
+        Names of the figures and tables next to which the dataset decides a claim, too.
     """
 
     name: str
@@ -75,6 +78,7 @@ class Part:
     files: Mapping[str, str] = field(default_factory=dict)
     rows: Sequence[Row] = ()
     table: Sequence[Sequence[str]] = ()
+    elsewhere: Sequence[str] = ()
 
 
 # The page of the results, and the list of figures
@@ -124,6 +128,7 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
                 {label: f"{name}.{kind}" for label, kind in kinds.items()},
                 rows_beside(name, datasets),
                 tables.TABLES[name](datasets[name]) if entry.get("table") else (),
+                sorted({claim.beside for claim in CLAIMS if name in claim.datasets} & {*entries}),
             )
         )
     general = [Part(key, title, rows=rows_beside(key, datasets)) for key, title in SEVERAL.items()]

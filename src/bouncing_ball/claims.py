@@ -932,7 +932,7 @@ NOTHING = {
     "verdict": "",
     "asked": True,
     "own_sense": "",
-    "condition": "",
+    "condition": [],
     "reason": "",
     "remark": "",
 }
@@ -971,9 +971,12 @@ def judge(datasets: Datasets) -> xr.Dataset:
             "item": equations,
             "statement": text,
             "decided_by": members,
-            "condition": "tests/test_formulas.py",
+            "condition": ["tests/test_formulas.py"],
         }
         for equations, text, members in FORMULAS
     ]
     columns = {name: ("claim", [row[name] for row in rows]) for name in rows[0]}
+    most = max(len(row["condition"]) for row in rows)
+    padded = [[*row["condition"], *[""] * (most - len(row["condition"]))] for row in rows]
+    columns["condition"] = (("claim", "sense"), padded)
     return xr.Dataset(columns).set_coords("claim")

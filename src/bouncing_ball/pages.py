@@ -151,22 +151,13 @@ def row(claim: Mapping) -> Row:
     return Row(
         said=": ".join(filter(None, (claim["statement"], claim["printed_text"]))),
         where=claim["item"],
-        found=[number] if claim["distance"] else senses(claim["condition"]),
+        found=[number] if claim["distance"] else claim["senses"],
         verdict=claim["verdict"],
         asked=claim["asked"],
         literal=claim["own_sense"],
         reason=claim["reason"],
         remark=claim["remark"],
     )
-
-
-def senses(condition: str) -> list[str]:
-    """The conditions of a statement, one for each sense of its words.
-
-    >>> senses("yes: Eq. 5 (0.0132 %, at most 1 %); no: Eq. 8 (2.97 %, at most 1 %)")
-    ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
-    """
-    return re.split(r"; (?=(?:yes|no): )", condition) if condition else []
 
 
 MAPPED = {

@@ -178,6 +178,8 @@ def claims_of(data: xr.Dataset, group: str) -> list[dict]:
     rows = []
     for values in zip(*columns.values(), strict=True):
         row = dict(zip(columns, values, strict=True))
+        row["senses"] = list(filter(None, row["condition"]))
+        row["condition"] = "; ".join(row["senses"])
         printed = row["printed_text"]
         row["computed"] = computed_text(row["found"], printed) if printed else ""
         row["distance"] = distance_text(row["deviation_units"], row["deviation"])

@@ -257,7 +257,9 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         "item": Variable("figure, table, equation or section of the paper"),
         "statement": Variable("what the claim says"),
         "remark": Variable("how we read the claim"),
-        "condition": Variable("conditions that decide a statement"),
+        "condition": Variable(
+            "conditions that decide a statement, one for each sense of its words"
+        ),
         "group": Variable("category in which the claim is counted"),
         "printed_text": Variable("the number as printed"),
         "decided_by": Variable("datasets that decide"),

@@ -227,18 +227,18 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     return found | {"verdict": "partly", "own_sense": literal}
 
 
-def listed(readings: list[Reading]) -> str:
-    """Readings as text: those that hold first, each with its number and the bound.
+def listed(readings: list[Reading]) -> list[str]:
+    """Print readings, those that hold first, each with its number and the bound.
 
     >>> listed([at_most("Eq. 8", 0.0297, 0.01), at_most("Eq. 5", 0.000132, 0.01)])
-    'yes: Eq. 5 (0.0132 %, at most 1 %); no: Eq. 8 (2.97 %, at most 1 %)'
+    ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
     """
     texts = []
     for reading in sorted(readings, key=lambda reading: not reading.holds):
         number = f"{rounded(reading)}, " if np.isfinite(reading.found) else ""
         word = "yes" if reading.holds else "no"
         texts.append(f"{word}: {reading.name} ({number}{reading.required})")
-    return "; ".join(texts)
+    return texts
 
 
 def rounded(reading: Reading) -> str:

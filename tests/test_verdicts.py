@@ -46,7 +46,10 @@ def test_readings_that_agree_decide_and_others_are_named():
     assert mixed["verdict"] == "partly"
     assert mixed["own_sense"] == "does not hold"
     assert verdicts.of_readings(claim, [low, high])["own_sense"] == "holds"
-    assert mixed["condition"] == ["yes: the lower (2, at most 2)", "no: the higher (2.1, at most 2)"]
+    assert mixed["condition"] == [
+        "yes: the lower (2, at most 2)",
+        "no: the higher (2.1, at most 2)",
+    ]
 
 
 def test_what_the_text_lacks_makes_a_statement_not_testable_only_if_readings_differ():

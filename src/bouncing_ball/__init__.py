@@ -1,31 +1,34 @@
-"""A ball on a vibrating table: a restitution coefficient, or a spring and a damper.
+"""Two models of a ball that bounces on a vibrating table, and their differences.
 
-A replication of A. Carbonelli, J. Perret-Liaudet, E. Rigaud and M.-S. Feki, *Investigation of
-restitution coefficient and spring-damper models for the bouncing ball problem*, DETC2011-47870
-(2011). The chapters, in the order in which one reads them:
+In the restitution model an impact is an instant. In the spring-damper model an impact is a contact
+of finite duration. The package replicates A. Carbonelli, J. Perret-Liaudet, E. Rigaud and M.-S.
+Feki, *Investigation of restitution coefficient and spring-damper models for the bouncing ball
+problem*, DETC2011-47870 (2011).
+
+Read the modules in this order:
 
 `restitution`
-    the map of the restitution model, its n-T orbits and their stability
+    map of the restitution model, its n-T orbits and their stability
 `spring_damper`
-    the contact, its two conditions of release, and permanent contact
+    contact with a spring and a damper, its two release conditions, and permanent contact
 `orbits`
-    the n-T orbits of the spring-damper model and their stability
+    n-T orbits of the spring-damper model and their stability
 `continuation`
-    how these orbits are found and followed
+    search for these orbits, and continuation of families of orbits
 `errors`
-    relative errors of the restitution model, and from which stiffness on they are tolerable
+    relative errors of the restitution model, and the stiffness that keeps them within a tolerance
 `datasets`
-    what the variables mean, how they are saved, and from which code they come
+    saved variables: their meaning, their units, and the code that computed them
 `drawing`, `figures`
-    the pictures
+    figures of the article
 `paper`, `verdicts`, `claims`
-    what the paper has and prints, how a claim is judged, and what the paper claims
+    contents and printed numbers of the paper, its claims, and the verdict on each claim
 `tables`, `article`
-    the texts that say what we find
+    texts and tables that report the results
 `differences`, `compare`
-    how files differ, and the comparison of results with the reference
+    differences between files, and the comparison of results with the reference
 
-From the equations of the paper to the code:
+Equations of the paper and the functions that implement them:
 
 =========  =====================================================================================
 Eq. 2      `restitution.impact_map`, the velocity after an impact
@@ -34,8 +37,8 @@ Eq. 4      `restitution.height`, height in flight
 Eq. 5      `restitution.flight_time`, `restitution.impact_map`
 Eq. 6      `restitution.bounce_velocity`, `restitution.impact_phase`
 Eq. 7      `restitution.saddle_node`
-Eq. 8      `restitution.holmes_period_doubling`; of Eq. 5 it is `restitution.period_doubling`
-Eq. 9      `restitution.PERMANENT_CONTACT`
+Eq. 8      `restitution.holmes_period_doubling`; for Eq. 5, `restitution.period_doubling`
+Eq. 9      `restitution.PERMANENT_CONTACT`, the threshold Λ_CR
 Eqs. 10-11 `spring_damper.Contact`, the equation of motion in contact
 Eqs. 12-13 `spring_damper.Contact.motion`
 Eqs. 14-15 `orbits.Family.motion`, height and velocity in flight

@@ -1,10 +1,11 @@
 """The restitution model: an impact is an instant (Eqs. 1-9).
 
-Time is in units of 1/Ω and length in units of g/Ω². The table is at w = Λ sin τ, a flight obeys
-z″ = -1, and an impact reverses the velocity relative to the table and multiplies it by the
-restitution coefficient r (Eq. 2). An n-T orbit has one impact, at the phase φ of the table, and
-repeats after n periods of the table; X = Λ cos φ is the velocity of the table at the impact and
-Y = Λ sin φ its height, the impact height.
+Time is in units of 1/Ω, and length is in units of g/Ω². The table moves as w = Λ sin τ, and the
+ball in flight obeys z″ = -1. An impact reverses the velocity of the ball relative to the table, and
+multiplies it by the restitution coefficient r (Eq. 2).
+
+An n-T orbit repeats after n periods of the table and has one impact per cycle. At the impact the
+table has the phase φ and the velocity X = Λ cos φ. Its height Y = Λ sin φ is the impact height.
 """
 
 from dataclasses import dataclass
@@ -14,18 +15,18 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
 Numbers = float | NDArray
-"""A number, or an array of them."""
+"""A number, or an array of numbers."""
 
 PERMANENT_CONTACT = 1.0
-"""Λ_CR: a ball at rest stays on the table up to this amplitude (Eq. 9)."""
+"""Largest amplitude Λ_CR at which a ball at rest on the table stays in contact (Eq. 9)."""
 
 STICKING = 1e-9
-"""Relative velocity after an impact below which a ball sticks to the table. Its impacts then follow
-each other faster and faster, and their velocities fall geometrically."""
+"""Relative velocity after an impact below which a ball sticks to the table. Without this limit, the
+ball would bounce infinitely often in a finite time, with geometrically decreasing velocities."""
 
 
 def bounce_velocity(n: Numbers) -> NDArray:
-    """Velocity nπ of the ball just after the impact of an n-T orbit (Eq. 6).
+    """Velocity nπ of the ball after the impact of an n-T orbit (Eq. 6).
 
     >>> round(float(bounce_velocity(1)), 6)
     3.141593
@@ -34,9 +35,9 @@ def bounce_velocity(n: Numbers) -> NDArray:
 
 
 def saddle_node(n: Numbers, r: Numbers) -> NDArray:
-    """Amplitude nπ(1 - r)/(1 + r) from which on the n-T orbits exist (Eq. 7).
+    """Minimum amplitude nπ(1 - r)/(1 + r) at which n-T orbits exist (Eq. 7).
 
-    It is also the velocity X of the table at the impact of every n-T orbit (Eq. 6).
+    The velocity X of the table at the impact has the same value, for every n-T orbit (Eq. 6).
 
     >>> round(float(saddle_node(1, 0.85)), 4)
     0.2547
@@ -46,9 +47,9 @@ def saddle_node(n: Numbers, r: Numbers) -> NDArray:
 
 
 def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
-    """Phase φ of the impact of the stable n-T orbit (Eq. 6); that of the unstable orbit is -φ.
+    """Phase φ of the impact of the stable n-T orbit (Eq. 6), NaN below the saddle-node.
 
-    It is NaN below the saddle-node.
+    The impact of the unstable n-T orbit has the phase -φ.
 
     >>> round(float(impact_phase(1, 0.65, 1.0)), 4)
     0.8414
@@ -58,21 +59,28 @@ def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
 
 
 def trace(r: Numbers, impact_height: Numbers) -> NDArray:
-    """Trace 1 + r² - (1 + r)² Y of the linearised map (Eq. 5) at an n-T orbit; its determinant
-    is r².
+    """Trace 1 + r² - (1 + r)² Y of the linearised map (Eq. 5) at an n-T orbit.
+
+    The determinant of the linearised map is r².
     """
     r = np.asarray(r)
     return 1 + r**2 - (1 + r) ** 2 * np.asarray(impact_height)
 
 
 def period_doubling_height(r: Numbers) -> NDArray:
-    """Impact height Y = 2(1 + r²)/(1 + r)² at the period doubling: 1 + trace + determinant = 0."""
+    """Impact height Y = 2(1 + r²)/(1 + r)² at the period doubling.
+
+    It solves 1 + trace + determinant = 0.
+    """
     r = np.asarray(r)
     return 2 * (1 + r**2) / (1 + r) ** 2
 
 
 def period_doubling(n: Numbers, r: Numbers) -> NDArray:
-    """Amplitude at which the n-T orbit of the map of Eq. 5 loses its stability.
+    """Amplitude √(X² + Y²) at the period doubling of the n-T orbit of Eq. 5.
+
+    Below this amplitude, down to the saddle-node, the orbit is stable. X is given by
+    `saddle_node` and Y by `period_doubling_height`.
 
     >>> round(float(period_doubling(1, 0.85)), 4)
     1.0383
@@ -81,10 +89,11 @@ def period_doubling(n: Numbers, r: Numbers) -> NDArray:
 
 
 def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
-    """The period doubling as printed, Λ² = 1 + [nπ(1 - r)/(1 + r)]² (Eq. 8).
+    """Amplitude of the period doubling as the paper prints it (Eq. 8).
 
-    It belongs to Holmes' map, which neglects the height of the table against that of the flight;
-    there Y is 1, its trace 1 + r - 2(1 + r) Y and its determinant r.
+    The formula Λ² = 1 + [nπ(1 - r)/(1 + r)]² belongs to Holmes' map. This map neglects the height
+    of the table compared with the height of the flight. Its trace is 1 + r - 2(1 + r) Y and its
+    determinant is r. Its period doubling is therefore at Y = 1.
 
     >>> round(float(holmes_period_doubling(1, 0.85)), 4)
     1.0319
@@ -93,15 +102,15 @@ def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
 
 
 def stable(r: Numbers, impact_height: Numbers) -> NDArray[np.bool_]:
-    """Whether both Floquet multipliers of an n-T orbit lie inside the unit circle."""
+    """Whether both Floquet multipliers of an n-T orbit are inside the unit circle."""
     return is_stable(trace(r, impact_height), np.asarray(r) ** 2)
 
 
 def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
-    """Whether both eigenvalues of a 2 × 2 matrix lie inside the unit circle.
+    """Whether both eigenvalues of a 2 × 2 matrix are inside the unit circle.
 
-    An orbit within 1e-9 of a bifurcation counts as not stable, so that rounding errors do not
-    decide at the bifurcation itself.
+    The conditions are |trace| < 1 + determinant and determinant < 1. Both must hold by a margin of
+    1e-9. Without the margin, rounding errors would decide at a bifurcation.
     """
     determinant = np.asarray(determinant)
     margin = 1e-9
@@ -109,28 +118,34 @@ def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
 
 
 def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
-    """Greatest height Λ sin φ + (nπ)²/2 of the ball over a cycle of the stable n-T orbit."""
+    """Maximum height Λ sin φ + (nπ)²/2 of the ball on the stable n-T orbit.
+
+    It is NaN below the saddle-node.
+    """
     impact_height = np.asarray(amplitude) * np.sin(impact_phase(n, r, amplitude))
     return impact_height + bounce_velocity(n) ** 2 / 2
 
 
 def height(n: int, impact_height: Numbers, time: Numbers) -> NDArray:
-    """Height of the ball at times since an impact at the height Y, for an n-T orbit (Eq. 4)."""
+    """Height of the ball on an n-T orbit (Eq. 4), at times since an impact at the height Y."""
     since = np.mod(time, 2 * np.pi * n)
     return impact_height + bounce_velocity(n) * since - since**2 / 2
 
 
 def velocity(n: int, time: Numbers) -> NDArray:
-    """Velocity of the ball at times since an impact of an n-T orbit (Eq. 3)."""
+    """Velocity of the ball on an n-T orbit (Eq. 3), at times since an impact."""
     return bounce_velocity(n) - np.mod(time, 2 * np.pi * n)
 
 
 def grazing_height(n: int, r: float) -> float:
-    """Impact height of the n-T orbit whose flight touches the table; no orbit has a smaller one.
+    """Minimum impact height Y of the n-T orbits.
 
-    The ball is at Y(1 - cos s) + h(s) above the table at a time s after the impact, with
-    h(s) = nπ s - s²/2 - X sin s. This is positive for all s if Y exceeds the largest value of
-    -h(s)/(1 - cos s), which has a maximum in each period of the flight.
+    The flight of the orbit with this impact height touches the table. At a smaller impact height
+    the flight would pass through the table.
+
+    Define h(s) = nπ s - s²/2 - X sin s. At a time s after the impact, the ball is at the height
+    Y(1 - cos s) + h(s) above the table. This height is positive for all s if Y exceeds the maximum
+    of -h(s)/(1 - cos s). The function -h(s)/(1 - cos s) has a maximum in each period of the flight.
     """
     x = float(saddle_node(n, r))
 
@@ -139,8 +154,8 @@ def grazing_height(n: int, r: float) -> float:
 
     largest = -np.inf
     for k in range(n):
-        # Between two whole periods after the impact 1 - cos s is positive, and at each of them the
-        # function tends to minus infinity, so that it has a maximum in between.
+        # In each period 1 - cos s is positive, and it vanishes at both ends of the period. There
+        # the function tends to minus infinity, so it has a maximum inside the period.
         grid = 2 * np.pi * (k + np.linspace(0, 1, 202)[1:-1])
         best = int(np.argmax(needed(grid)))
         low = grid[max(best - 1, 0)]
@@ -153,12 +168,14 @@ def grazing_height(n: int, r: float) -> float:
 
 
 def flight_time(amplitude: float, time: float, velocity: float) -> float:
-    """Duration of the flight of a ball that leaves the table at a time τ with a velocity (Eq. 5).
+    """Duration of a flight that starts on the table at a time τ with a velocity (Eq. 5).
 
-    It is the first positive zero of the height above the table, which is searched in steps of a
-    twentieth of a radian; where the height falls and rises again within a step, its minimum is
-    looked at, too. A ball without relative velocity must be where the table falls faster than it,
-    Λ sin τ >= 1.
+    The duration is the first positive zero of the height above the table. The search takes steps
+    of at most 1/20 rad. If the height falls and rises again within a step, the search also
+    evaluates its minimum.
+
+    A ball without velocity relative to the table needs Λ sin τ >= 1. The table then falls at least
+    as fast as the ball.
     """
     start = amplitude * np.sin(time)
     relative = velocity - amplitude * np.cos(time)
@@ -169,14 +186,14 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
     def gap_rate(s):
         return velocity - s - amplitude * np.cos(time + s)
 
-    # The relative acceleration is at least -(1 + Λ), so that the ball does not land before this.
+    # The relative acceleration is at least -(1 + Λ), so the ball cannot land before this time.
     earliest = 2 * relative / (1 + amplitude)
     if relative <= STICKING:
-        # The height above the table begins with (Λ sin τ - 1)s²/2 + Λ cos τ s³/6, which is positive
-        # unless cos τ < 0: half of its zero is taken then.
+        # The height above the table is (Λ sin τ - 1)s²/2 + Λ cos τ s³/6 + O(s⁴). If cos τ < 0, the
+        # first two terms have a zero at a positive time: start the search at half of this time.
         slowing = max(-amplitude * np.cos(time), 0.0)
         earliest = min(0.01, 1.5 * (start - 1) / slowing) if slowing else 0.01
-    # At this time the flight is at the lowest level of the table.
+    # At this time the ball is at the lowest level of the table, -Λ.
     latest = velocity + np.sqrt(velocity**2 + 2 * (start + amplitude))
     grid = np.linspace(earliest, latest, 2 + int(20 * (latest - earliest)))
     rates = gap_rate(grid)
@@ -185,7 +202,7 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
     stops = np.sort(np.concatenate([grid, minima]))
     below = np.flatnonzero(gap(stops[1:]) <= 0)
     if gap(stops[0]) <= 0 or below.size == 0:
-        # Rounding errors decide at both ends of the search, where the height is zero.
+        # The zero is at an end of the search, where rounding errors decide the sign of the height.
         return float(stops[0] if below.size else stops[-1])
     return brentq(gap, stops[below[0]], stops[below[0] + 1], xtol=1e-14)
 
@@ -193,10 +210,22 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
 def impact_map(
     r: float, amplitude: float, time: float, velocity: float
 ) -> tuple[float, float, NDArray]:
-    """The next impact: its time, the velocity after it (Eq. 5), and the derivative of both.
+    """Map an impact to the next impact (Eqs. 2 and 5).
 
-    The derivative is a 2 × 2 matrix; its rows are those of time and velocity, its columns those by
-    time and velocity of the impact before.
+    Parameters
+    ----------
+    r, amplitude : float
+        Restitution coefficient and amplitude Λ.
+    time, velocity : float
+        Time τ of the impact, and velocity of the ball after it.
+
+    Returns
+    -------
+    time, velocity : float
+        Time of the next impact, and velocity of the ball after it.
+    derivative : ndarray, shape (2, 2)
+        Derivatives of the returned time (row 0) and velocity (row 1) with respect to the given time
+        (column 0) and velocity (column 1).
     """
     duration = flight_time(amplitude, time, velocity)
     following = time + duration
@@ -221,9 +250,19 @@ def impact_map(
 
 @dataclass(frozen=True)
 class Impacts:
-    """The impacts of a ball: their times τ, the velocities of the ball after them, the logarithm of
-    the growth of a small deviation from each impact to the next, which has an entry less, and the
-    number of impacts after which the ball sticks to the table for a while.
+    """Successive impacts of a ball.
+
+    Attributes
+    ----------
+    time : ndarray, shape (impacts,)
+        Times τ of the impacts.
+    velocity : ndarray, shape (impacts,)
+        Velocities of the ball after the impacts.
+    growth : ndarray, shape (impacts - 1,)
+        Logarithm of the factor by which a small deviation grows from one impact to the next. NaN if
+        the ball sticks to the table between them.
+    stickings : int
+        Number of impacts after which the ball sticks to the table.
     """
 
     time: NDArray
@@ -233,9 +272,10 @@ class Impacts:
 
 
 def departure(amplitude: float, time: float) -> float:
-    """The time at which a ball leaves the table if it sticks to it at a time τ and Λ > 1.
+    """Time at which a sticking ball leaves the table, for Λ > 1.
 
-    It is the next time at which Λ sin τ exceeds 1, so that the table falls faster than the ball.
+    The ball sticks to the table from the given time on. It leaves as soon as Λ sin τ >= 1, because
+    the table then falls faster than the ball.
     """
     rising = np.arcsin(1 / amplitude)
     phase = np.mod(time, 2 * np.pi)
@@ -245,16 +285,25 @@ def departure(amplitude: float, time: float) -> float:
 
 
 def iterate(r: float, amplitude: float, time: float, velocity: float, impacts: int) -> Impacts:
-    """Follow a ball that leaves the table at a time τ with a velocity over a number of impacts.
+    """Follow a ball over a number of impacts.
 
-    After an impact with a relative velocity below STICKING the ball moves with the table until
-    that falls faster than the ball. Deviations from its motion are then lost, so that the growth
-    is NaN.
+    If the relative velocity after an impact is at most STICKING, the ball sticks to the table. It
+    then moves with the table until the table falls faster than the ball. All deviations from the
+    motion vanish while the ball sticks, so their growth is NaN.
+
+    Parameters
+    ----------
+    r, amplitude : float
+        Restitution coefficient and amplitude Λ.
+    time, velocity : float
+        Time τ of the first impact, and velocity of the ball after it.
+    impacts : int
+        Number of impacts, including the first.
 
     Raises
     ------
     ValueError
-        If the ball comes to rest, on a table with Λ <= 1 (Eq. 9).
+        If the ball comes to rest on a table with Λ <= 1 (Eq. 9).
     """
     times = np.empty(impacts)
     velocities = np.empty(impacts)
@@ -285,10 +334,11 @@ def iterate(r: float, amplitude: float, time: float, velocity: float, impacts: i
 
 
 def repetition(path: Impacts) -> tuple[int, int]:
-    """After how many impacts, and how many periods of the table, a motion repeats; zeros if not.
+    """Numbers of impacts and of table periods after which a motion repeats, (0, 0) if it does not.
 
-    The last quarter of the impacts must repeat, in phase and velocity, to 1e-9, which a stable
-    orbit reaches by then unless it is close to a bifurcation.
+    The test uses the last quarter of the impacts. It requires that phase and velocity repeat within
+    1e-9, and that the cycle fits twice into this quarter. A motion that tends to a stable orbit
+    passes unless the orbit is close to a bifurcation.
     """
     settled = 3 * path.time.size // 4
     time = path.time[settled:]
@@ -304,8 +354,10 @@ def repetition(path: Impacts) -> tuple[int, int]:
 def lyapunov_exponent(path: Impacts, block: int = 32) -> tuple[float, float]:
     """Largest Lyapunov exponent per period of the table, and its standard error.
 
-    The first quarter of the impacts is left out. The error is that of a ratio of means over blocks
-    of impacts. Both are NaN if the ball sticks to the table in the others.
+    The first quarter of the impacts is discarded, and the rest is divided into blocks of `block`
+    impacts. The exponent is the growth divided by the number of periods. Its standard error is the
+    error of a ratio of means over blocks. Exponent and error are NaN if the ball sticks to the
+    table after the first quarter.
     """
     blocks = 3 * path.growth.size // (4 * block)
     grown = path.growth[-blocks * block :].reshape(blocks, block).sum(axis=1)

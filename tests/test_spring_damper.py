@@ -152,5 +152,5 @@ def test_no_frequency_ratio_has_a_threshold_below_the_lowest():
 
 
 def test_another_release_is_refused():
-    with pytest.raises(ValueError, match="release is 'speed'; allowed are displacement, force"):
+    with pytest.raises(ValueError, match="release is 'speed': it must be displacement or force"):
         Contact(2.0, 0.1, "speed")

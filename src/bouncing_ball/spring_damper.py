@@ -4,8 +4,8 @@ In contact the height δ = z - w of the ball above the table obeys (Eq. 11)
 
     δ″ + 2ζϖ δ′ + ϖ² δ = -1 + Λ sin(s + φ),
 
-with s the time since the start of the contact, at which δ = 0 and δ′ = u < 0, and φ the phase of
-the table there. The motion is linear in u, X = Λ cos φ and Y = Λ sin φ.
+where s is the time since the start of the contact. At the start, δ = 0, δ′ = u < 0, and the table
+has the phase φ. The motion is linear in u, X = Λ cos φ and Y = Λ sin φ.
 """
 
 from dataclasses import dataclass
@@ -20,21 +20,21 @@ RELEASES = ("displacement", "force")
 
 
 def damping_ratio(r: Numbers) -> NDArray:
-    """Damping ratio ζ of the contact on which a free impact has the restitution r (Eq. 16).
+    """Damping ratio ζ = -ln r/√(π² + ln² r) for which a free impact has the restitution r (Eq. 16).
 
-    Free means without weight, and with a contact that ends at δ = 0. `free_restitution` is the
-    inverse, which has to follow a change of this formula.
+    In a free impact no weight acts, and the contact ends at δ = 0. `free_restitution` is the
+    inverse: if you change this formula, change `free_restitution`, too.
 
     >>> round(float(damping_ratio(0.85)), 5)
     0.05166
     """
     logarithm = np.log(r)
-    # The sum has no negative zero for r = 1.
+    # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.
     return 0.0 - logarithm / np.hypot(np.pi, logarithm)
 
 
 def free_restitution(zeta: Numbers) -> NDArray:
-    """Restitution exp(-πζ/√(1 - ζ²)) of a free impact, the inverse of Eq. 16.
+    """Restitution coefficient exp(-πζ/√(1 - ζ²)) of a free impact, the inverse of Eq. 16.
 
     >>> round(float(free_restitution(damping_ratio(0.85))), 12)
     0.85
@@ -44,10 +44,10 @@ def free_restitution(zeta: Numbers) -> NDArray:
 
 
 def force_release_restitution(zeta: Numbers) -> NDArray:
-    """Restitution of a free impact whose contact ends where its force vanishes, for ζ < 1.
+    """Restitution coefficient of a free impact with the force release, for ζ < 1.
 
-    Schwager and Pöschel (2007): the contact is shorter than half a free oscillation, by the angle
-    at which the force leads the displacement.
+    The contact ends when its force vanishes, before half a free oscillation has passed. The
+    difference is the angle by which the force leads the displacement (Schwager and Pöschel, 2007).
     """
     zeta = np.asarray(zeta)
     damped = np.sqrt(1 - zeta**2)
@@ -56,7 +56,15 @@ def force_release_restitution(zeta: Numbers) -> NDArray:
 
 
 class Responses(NamedTuple):
-    """Responses of the contact at a time s to unit forces, from rest: see `Contact.responses`."""
+    """Responses of a contact, initially at rest, at a time s.
+
+    Attributes
+    ----------
+    impulse, impulse_rate
+        Displacement I and velocity I′ after a unit impulse.
+    constant, sine, cosine
+        Displacements J, P and Q under the forces 1, sin s and cos s.
+    """
 
     impulse: NDArray
     impulse_rate: NDArray
@@ -66,7 +74,7 @@ class Responses(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """Relative displacement δ, velocity δ′ and acceleration δ″ in contact."""
+    """Displacement δ, velocity δ′ and acceleration δ″ of the ball relative to the table."""
 
     displacement: NDArray
     velocity: NDArray
@@ -75,19 +83,26 @@ class Motion(NamedTuple):
 
 @dataclass(frozen=True)
 class Contact:
-    """A linear contact, or an array of them.
+    """A linear contact, or an array of linear contacts.
 
     Parameters
     ----------
     frequency_ratio : array_like
-        ϖ = ω/Ω > 0, the natural frequency of the contact over the frequency of the table.
+        Frequency ratio ϖ = ω/Ω > 0: natural frequency of the contact divided by the frequency of
+        the table.
     damping_ratio : array_like
-        0 <= ζ < 1.
+        Damping ratio ζ, 0 <= ζ < 1, or NaN if no contact exists.
     release : str
-        The condition that ends a contact: ``displacement`` for δ = 0 (Eq. 23), or ``force`` for a
-        vanishing force of the contact, δ + (2ζ/ϖ) δ′ = 0.
+        Condition that ends a contact. ``displacement``: δ = 0 (Eq. 23). ``force``: the force of the
+        contact vanishes, δ + (2ζ/ϖ) δ′ = 0.
     weight : array_like
-        The weight in contact, 1 but for the reading of Table 1 without gravity in contact.
+        Weight of the ball in contact, divided by its weight in flight. It is 1 in the model, and 0
+        in the reading of Table 1 without gravity in contact.
+
+    Raises
+    ------
+    ValueError
+        If the release is unknown, or a damping ratio is outside its range.
     """
 
     frequency_ratio: float | NDArray
@@ -97,38 +112,42 @@ class Contact:
 
     def __post_init__(self):
         if self.release not in RELEASES:
-            raise ValueError(f"release is {self.release!r}; allowed are {', '.join(RELEASES)}")
-        # NaN stays allowed, as the answer where there is no contact.
+            raise ValueError(f"release is {self.release!r}: it must be {' or '.join(RELEASES)}")
+        # NaN must pass, because it marks elements of an array for which no contact exists.
         if np.any(np.less(self.damping_ratio, 0) | np.greater_equal(self.damping_ratio, 1)):
-            raise ValueError(f"the damping ratio is {self.damping_ratio}; it must be 0 <= ζ < 1")
+            raise ValueError(f"the damping ratio ζ is {self.damping_ratio}: give 0 <= ζ < 1")
 
     @property
     def lag(self) -> NDArray:
-        """κ in the condition of release δ + κδ′ = 0: zero, or 2ζ/ϖ for the force."""
+        """Coefficient κ of the release condition δ + κδ′ = 0.
+
+        It is 0 for the displacement release and 2ζ/ϖ for the force release.
+        """
         if self.release == "displacement":
             return np.zeros_like(self.frequency_ratio, dtype=float)
         return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
 
     @property
     def restitution(self) -> NDArray:
-        """The restitution coefficient of a free impact, the limit of r_a for a stiff contact."""
+        """Restitution coefficient of a free impact, the limit of r_a as ϖ tends to infinity."""
         if self.release == "displacement":
             return free_restitution(self.damping_ratio)
         return force_release_restitution(self.damping_ratio)
 
     def responses(self, s: Numbers) -> Responses:
-        """The responses I, I′, J, P and Q at times s, from which the motion in contact is made.
+        """Responses I, I′, J, P and Q at times s; `motion` is a linear combination of them.
 
-        I and I′ are displacement and velocity after a unit impulse; J, P and Q the displacements
-        under the forces 1, sin s and cos s. They are integrals of products of exponentials, written
-        with (e^{as} - e^{bs})/(a - b) in a form that is finite for a = b, so that there is no
-        singularity at the resonance ζ = 0, ϖ = 1, as Eqs. 12 and 13 have one.
+        The responses are integrals of products of exponentials. They contain the quotient
+        (e^{as} - e^{bs})/(a - b). This quotient is evaluated in a form that is finite for a = b.
+        The responses are therefore finite at the resonance ζ = 0, ϖ = 1, where Eqs. 12 and 13 are
+        singular.
         """
         s = np.asarray(s)
         zeta = np.asarray(self.damping_ratio)
         root = self.frequency_ratio * (-zeta + 1j * np.sqrt(1 - zeta**2))
         free = np.exp(root * s)
-        # The real force 1 has a real response, the force e^{is} a complex one.
+        # The force 1 is real, so one root gives its response. The force e^{is} is complex, so both
+        # roots are needed: P is the imaginary part of its response, and Q is the real part.
         unit = _quotient(0, root, s).imag / root.imag
         wave = (_quotient(1j, root, s) - _quotient(1j, np.conj(root), s)) / (root - np.conj(root))
         return Responses(
@@ -147,10 +166,18 @@ class Contact:
         impact_height: Numbers,
         response: Responses | None = None,
     ) -> Motion:
-        """Motion in contact (Eqs. 12 and 13) at times s, from δ = 0 and δ′ = u.
+        """Motion in contact from δ = 0 and δ′ = u (Eqs. 12 and 13).
 
-        x and impact_height are Λ cos φ and Λ sin φ at the start of the contact. The responses at s
-        are computed unless they are given.
+        Parameters
+        ----------
+        s : array_like
+            Times since the start of the contact.
+        u : array_like
+            Relative velocity δ′ at the start.
+        x, impact_height : array_like
+            X = Λ cos φ and Y = Λ sin φ at the start.
+        response : Responses, optional
+            Responses at the times s. Pass them to avoid computing them again.
         """
         response = response or self.responses(s)
         displacement = (
@@ -172,20 +199,21 @@ class Contact:
 
 
 def _quotient(a, b, s):
-    """(e^{as} - e^{bs})/(a - b) for complex a and b, also where they are equal."""
+    """(e^{as} - e^{bs})/(a - b) for complex a and b, or the limit s e^{as} for a = b."""
     half = (a - b) * s / 2
     small = np.abs(half) < 1e-4
-    # Complex arithmetic warns of NaN, which is the answer where there is no orbit.
+    # Complex arithmetic warns of NaN, but here NaN only marks elements without an orbit.
     with np.errstate(invalid="ignore"):
-        # The series of sinh(x)/x, whose next term is x⁴/120 < 1e-18 here.
+        # For small x, use the series of sinh(x)/x. The first omitted term is x⁴/120 < 1e-18.
         ratio = np.where(small, 1 + half**2 / 6, np.sinh(half) / np.where(small, 1, half))
         return s * np.exp((a + b) * s / 2) * ratio
 
 
 def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacement") -> NDArray:
-    """Λ_SD: the amplitude up to which the steady motion stays in contact (Eq. 33).
+    """Largest amplitude Λ_SD at which the steady motion stays in contact (Eq. 33).
 
-    Its displacement must not become positive or, with the force release, its force not negative.
+    With the displacement release, the condition is δ <= 0 at all times. With the force release, the
+    condition is that the contact never pulls, δ + (2ζ/ϖ) δ′ <= 0.
 
     >>> float(permanent_contact(1.0, 0.1))
     0.2
@@ -198,11 +226,16 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
 
 
 def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tuple[float, float]:
-    """The frequency ratio at which Λ_SD is lowest, and its value there (Eq. 36).
+    """Frequency ratio that minimises Λ_SD, and the minimum of Λ_SD (Eq. 36).
 
-    With the displacement release they are 1/√(1 - 2ζ²) and 2ζ√(1 - ζ²) for ζ < 1/√2; beyond, Λ_SD
-    falls towards 1 as the stiffness grows, and the frequency ratio is infinite. With the force
-    release the derivative of Λ² by ϖ² vanishes at ϖ² = (1 + √(1 + 8ζ²))/2.
+    - Displacement release, ζ < 1/√2: ϖ = 1/√(1 - 2ζ²) and Λ_SD = 2ζ√(1 - ζ²).
+    - Displacement release, ζ >= 1/√2: Λ_SD decreases towards 1 as ϖ grows. The function returns
+      ϖ = inf and Λ_SD = 1.
+    - Force release: ϖ² = (1 + √(1 + 8ζ²))/2, where the derivative of Λ_SD² with respect to ϖ²
+      vanishes.
+
+    >>> [round(each, 4) for each in lowest_permanent_contact(0.1)]
+    [1.0102, 0.199]
     """
     if release == "force":
         ratio = np.sqrt((1 + np.sqrt(1 + 8 * zeta**2)) / 2)
@@ -213,9 +246,10 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
 
 
 def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, float]:
-    """The frequency ratios at which Λ_SD has a value below 1, the smaller first (Eqs. 34 and 35).
+    """Two frequency ratios at which Λ_SD equals an amplitude below 1 (Eqs. 34 and 35).
 
-    They are NaN below the lowest Λ_SD.
+    The smaller frequency ratio comes first. Both are NaN if the amplitude is below the minimum of
+    Λ_SD. The equations assume the displacement release.
 
     >>> [round(each, 4) for each in permanent_contact_ratios(0.99, 0.1359)]
     [0.7225, 9.8116]

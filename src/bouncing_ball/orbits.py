@@ -1,10 +1,15 @@
-"""The n-T orbits of the spring-damper model and their stability (Eqs. 17-27).
+"""n-T orbits of the spring-damper model and their stability (Eqs. 17-27).
 
-An orbit is a vector y = (Λ, φ, z′_i, θ): the amplitude of the table, its phase at the start of the
-contact, the velocity of the ball there, and the duration of the contact in units of that of the
-contact itself, θ = ϖ τ_b. With the constants A and B of Eqs. 12 and 13 and z′_b eliminated,
-Eqs. 21-26 are three equations for these four numbers, so that the orbits of a family form curves.
-The first axis of y has the four numbers; further axes are further orbits.
+An orbit is represented by a vector y = (Λ, φ, z′_i, θ):
+
+    Λ     amplitude of the table,
+    φ     phase of the table when the contact starts,
+    z′_i  velocity of the ball when the contact starts,
+    θ     scaled duration of the contact, θ = ϖ τ_b.
+
+The paper describes an orbit by six equations, Eqs. 21-26. Here z′_b and the constants A and B of
+Eqs. 12 and 13 are eliminated. Three equations remain for the four unknowns of y, so the orbits of a
+family form curves. Arrays of orbits have the shape (4, ...).
 """
 
 from dataclasses import dataclass
@@ -18,11 +23,18 @@ from bouncing_ball.spring_damper import Contact
 
 @dataclass(frozen=True)
 class ContactEnd:
-    """The end of a contact: its duration and that of the flight, height and velocity of the table,
-    the relative motion δ, δ′ and δ″ before it, and the velocity z′_b of the ball (Eq. 24).
+    """State of ball and table when a contact ends.
 
-    `gap_by` and `gap_velocity_by` are the derivatives of δ and δ′ by (X, Y, u) at this time after
-    the start.
+    Attributes
+    ----------
+    duration, flight
+        Durations of the contact and of the flight after it.
+    table_height, table_velocity
+        Height and velocity of the table.
+    gap, gap_velocity, gap_acceleration
+        Relative motion δ, δ′ and δ″ at the end of the contact, while the contact still acts.
+    gap_by, gap_velocity_by
+        Derivatives of δ and δ′ with respect to X, Y and u, for a fixed duration.
     """
 
     duration: NDArray
@@ -37,15 +49,23 @@ class ContactEnd:
 
     @property
     def velocity(self) -> NDArray:
+        """Velocity z′_b of the ball (Eq. 24)."""
         return self.gap_velocity + self.table_velocity
 
 
 @dataclass(frozen=True)
 class Family:
-    """The n-T orbits on a contact, or on an array of contacts, for one n or an array of them.
+    """n-T orbits for one contact and one n, or for arrays of contacts and n.
 
-    Methods take orbits y, shape (4, ...), where the further axes are those of the contact's
-    frequency ratio or broadcast against them.
+    Methods take orbits y, shape (4, ...). The axes after the first must broadcast against n and
+    against the parameters of the contact.
+
+    Attributes
+    ----------
+    n
+        Number of table periods in one cycle.
+    contact
+        Contact of ball and table.
     """
 
     n: int | NDArray
@@ -53,16 +73,17 @@ class Family:
 
     @property
     def period(self) -> float | NDArray:
+        """Period 2πn of the orbits."""
         return 2 * np.pi * self.n
 
     def start(self, y: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """X = Λ cos φ, Y = Λ sin φ and the relative velocity u = δ′_i = z′_i - X of the impact."""
+        """X = Λ cos φ, Y = Λ sin φ and the relative impact velocity u = δ′_i = z′_i - X."""
         amplitude, phase, velocity, _ = y
         x = amplitude * np.cos(phase)
         return x, amplitude * np.sin(phase), velocity - x
 
     def contact_end(self, y: NDArray) -> ContactEnd:
-        """The end of the contact."""
+        """State of ball and table when the contact ends."""
         x, impact_height, u = self.start(y)
         duration = y[3] / self.contact.frequency_ratio
         cosine = np.cos(duration)
@@ -86,19 +107,23 @@ class Family:
         )
 
     def equations(self, y: NDArray, end: ContactEnd | None = None) -> NDArray:
-        """The defects of the three equations of an orbit, shape (3, ...).
+        """Residuals of the three equations of an orbit, shape (3, ...).
 
-        They are the release, ϖ(δ + κδ′) = 0 (Eq. 23), the landing at δ = 0 after the flight L
-        (Eqs. 19 and 25), and the velocity there, z′_b - L = z′_i (Eqs. 20, 26 and 27). The landing
-        is divided by L, and δ at the release is replaced by -κδ′, so that the equations are regular
-        also where the flight vanishes and the orbit becomes permanent contact. The end of the
-        contact is computed unless it is given.
+        1. Release: ϖ(δ + κδ′) = 0 when the contact ends (Eq. 23).
+        2. Landing: δ = 0 after a flight of duration L (Eqs. 19 and 25).
+        3. Velocity: z′_b - L = z′_i at the landing (Eqs. 20, 26 and 27).
+
+        The landing equation is divided by L, and -κδ′ replaces δ at the release. The equations are
+        then regular as L tends to 0, where the orbit becomes permanent contact.
+
+        Pass `end` to avoid computing the end of the contact again.
         """
         x, impact_height, _ = self.start(y)
         end = end or self.contact_end(y)
         lag = self.contact.lag
         flight = end.flight
-        # (w_b - w_i)/L, where the phases of the table differ by -L up to whole turns.
+        # (w_b - w_i)/L. The phase of the table grows by L from the release to the landing, and at
+        # the landing it equals φ up to a multiple of 2π.
         table_rise = -x * np.sinc(flight / np.pi) - impact_height * np.sin(flight / 2) * np.sinc(
             flight / (2 * np.pi)
         )
@@ -114,9 +139,9 @@ class Family:
         )
 
     def jacobian(self, y: NDArray, end: ContactEnd | None = None) -> NDArray:
-        """Derivatives of the defects by the four numbers of an orbit, shape (3, 4, ...).
+        """Derivatives of the residuals with respect to y, shape (3, 4, ...).
 
-        The end of the contact is computed unless it is given.
+        Pass `end` to avoid computing the end of the contact again.
         """
         x, impact_height, _ = self.start(y)
         end = end or self.contact_end(y)
@@ -125,7 +150,8 @@ class Family:
         flight = end.flight
         by_rate = np.stack(end.gap_velocity_by)
         zero = np.zeros_like(x)
-        # Columns by X, Y, u and the duration, of which the flight takes the rest.
+        # Columns: derivatives with respect to X, Y, u and the duration of the contact. A longer
+        # contact shortens the flight by the same time.
         to_release = ratio * np.stack(
             [*(np.stack(end.gap_by) + lag * by_rate), end.gap_velocity + lag * end.gap_acceleration]
         )
@@ -137,7 +163,8 @@ class Family:
                 end.gap_acceleration - end.table_height,
             ]
         )
-        # Derivatives by L of sin(L)/L and (1 - cos L)/L, whose series serve where they cancel.
+        # Derivatives of sin(L)/L and (1 - cos L)/L with respect to L. For small L use their series,
+        # because the terms of the closed forms cancel.
         small = np.abs(flight) < 1e-3
         safe = np.where(small, 1, flight)
         by_sine = np.where(
@@ -159,7 +186,8 @@ class Family:
             to_landing = to_landing - lag / flight * np.stack([*by_rate, by_duration])
         whole = np.stack([to_release, to_landing, to_velocity])
         whole[2, 3] += 1
-        # The chain rule to Λ, φ, z′_i and θ = ϖ τ_b, with X = Λ cos φ, Y = Λ sin φ, u = z′_i - X.
+        # Chain rule from (X, Y, u, τ_b) to (Λ, φ, z′_i, θ): X = Λ cos φ, Y = Λ sin φ,
+        # u = z′_i - X, τ_b = θ/ϖ.
         by_x = whole[:, 0] - whole[:, 2]
         cosine = np.cos(y[1])
         sine = np.sin(y[1])
@@ -174,17 +202,17 @@ class Family:
         return matrix
 
     def return_map(self, y: NDArray) -> NDArray:
-        """The linearised map from a start of contact to the next, shape (2, 2, ...).
+        """Linearised map from one start of contact to the next, shape (2, 2, ...).
 
-        Rows are phase and velocity at the next start, columns at this one. A change of the start
-        changes the duration of the contact by the condition of release, and that of the flight by
-        the condition of landing.
+        Rows: phase and velocity at the next start. Columns: phase and velocity at this start. The
+        release condition gives the change of the duration of the contact. The landing condition
+        gives the change of the duration of the flight.
         """
         x, impact_height, u = self.start(y)
         end = self.contact_end(y)
         lag = self.contact.lag
         columns = []
-        # The change of (X, Y, u) with the phase and with the velocity at the start.
+        # Derivatives of (X, Y, u) with respect to the phase and to the velocity at the start.
         for phase, change in (
             (1, (-impact_height, x, impact_height)),
             (0, (0 * u, 0 * u, 1 + 0 * u)),
@@ -200,30 +228,35 @@ class Family:
         return np.moveaxis(np.array(columns), 0, 1)
 
     def trace_and_determinant(self, y: NDArray) -> tuple[NDArray, NDArray]:
-        """Trace and determinant of the return map; the latter is exp(-2ζϖτ_b) for both releases."""
+        """Trace and determinant of the linearised return map.
+
+        The determinant is exp(-2ζϖτ_b) for both release conditions.
+        """
         matrix = self.return_map(y)
         return matrix[0, 0] + matrix[1, 1], np.exp(-2 * self.contact.damping_ratio * y[3])
 
     def saddle_node_test(self, y: NDArray) -> NDArray:
-        """1 - trace + determinant, zero where a Floquet multiplier is 1."""
+        """1 - trace + determinant, which vanishes if a Floquet multiplier is 1."""
         trace, determinant = self.trace_and_determinant(y)
         return 1 - trace + determinant
 
     def period_doubling_test(self, y: NDArray) -> NDArray:
-        """1 + trace + determinant, zero where a Floquet multiplier is -1."""
+        """1 + trace + determinant, which vanishes if a Floquet multiplier is -1."""
         trace, determinant = self.trace_and_determinant(y)
         return 1 + trace + determinant
 
     def multipliers(self, y: NDArray) -> NDArray:
-        """Floquet multipliers, complex, shape (2, ...), that of the larger modulus first."""
+        """Complex Floquet multipliers, shape (2, ...), in order of decreasing modulus."""
         trace, determinant = self.trace_and_determinant(y)
         root = np.sqrt(trace**2 / 4 - determinant + 0j)
         larger = np.where(trace < 0, trace / 2 - root, trace / 2 + root)
         return np.stack([larger, determinant / larger])
 
     def motion(self, y: NDArray, s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
-        """Height and velocity of the ball at times s since the start of contact, from 0 to the
-        period, and whether it is in contact (Eqs. 12-15).
+        """Motion of the ball during one cycle (Eqs. 12-15).
+
+        Returns height, velocity, and whether the ball is in contact, at the times s since the start
+        of the contact. The times must be between 0 and the period.
         """
         x, impact_height, u = self.start(y)
         end = self.contact_end(y)
@@ -241,27 +274,28 @@ class Family:
         return height, velocity, touching
 
     def bounce_velocity(self, y: NDArray) -> NDArray:
-        """Velocity z′_b of the ball at the end of the contact (Eq. 24)."""
+        """Velocity z′_b of the ball when the contact ends (Eq. 24)."""
         return self.contact_end(y).velocity
 
     def apparent_restitution(self, y: NDArray) -> NDArray:
-        """The apparent restitution coefficient r_a = -δ′_b/δ′_i (Eq. 17)."""
+        """Apparent restitution coefficient r_a = -δ′_b/δ′_i (Eq. 17)."""
         _, _, u = self.start(y)
         return -self.contact_end(y).gap_velocity / u
 
     def summit(self, y: NDArray) -> NDArray:
-        """Greatest height of the flight, which is at one of its ends if the ball falls, or rises,
-        throughout.
+        """Maximum height of the ball during the flight.
+
+        If the ball only falls or only rises, the maximum is at one end of the flight.
         """
         end = self.contact_end(y)
         rise = np.clip(end.velocity, 0, end.flight)
         return end.table_height + end.gap + end.velocity * rise - rise**2 / 2
 
     def max_height(self, y: NDArray) -> NDArray:
-        """Greatest height of the ball over a cycle.
+        """Maximum height of the ball over one cycle.
 
-        It is the summit of the flight or, if the table lifts the ball higher in contact than it
-        flies, as compliant contacts can, a height in contact.
+        On a compliant contact the table can lift the ball higher than it flies. The maximum height
+        is then reached in contact, and otherwise in flight (`summit`).
         """
         x, impact_height, u = self.start(y)
         duration = y[3] / self.contact.frequency_ratio
@@ -278,21 +312,30 @@ class Family:
         return np.maximum(summit, -_least(lambda part: -in_contact(part), summit.shape))
 
     def possible(self, y: NDArray) -> NDArray:
-        """Whether a solution of the equations has the signs of an orbit: Λ >= 0, a contact and a
-        flight that take time, and an impact from above.
+        """Whether the numbers of a solution of the equations have the signs of an orbit.
+
+        The conditions are Λ >= 0, positive durations of contact and flight, and an impact from
+        above, u < 0.
         """
         _, _, u = self.start(y)
         flight = self.period - y[3] / self.contact.frequency_ratio
         return (y[0] >= 0) & (y[3] > 0) & (flight > 0) & (u < 0)
 
     def clearance(self, y: NDArray) -> NDArray:
-        """Positive if nothing else happens during an orbit, and zero where it grazes.
+        """Margin by which an orbit is admissible: positive if it is, zero if it grazes.
 
-        In contact δ + κδ′ must be negative until the release. In flight the ball must be above the
-        table or, after a force release, must not be pressed by the contact before it is. Both
-        functions are divided by t(1 - t), with t the part of the contact or flight that has passed,
-        because they vanish at its ends; there, the relative velocity of the impact must be
-        negative and δ + κδ′ must rise. The smallest of these numbers is returned.
+        An orbit is admissible if the ball is not released before the end of the contact, and does
+        not touch the table before the end of the flight:
+
+        - In contact, δ + κδ′ < 0 until the release.
+        - In flight, δ > 0 or δ + κδ′ > 0 until the landing. The second condition is needed after a
+          force release. The ball is then below the table at first, but the contact does not press
+          it if δ + κδ′ > 0.
+        - At the ends, u < 0 at the impact, and δ + κδ′ increases at the release.
+
+        The functions of the first two conditions vanish at the ends of contact and flight. They are
+        therefore divided by t(1 - t), where t is the elapsed fraction of the contact or flight. The
+        method returns the minimum over all three conditions.
         """
         x, impact_height, u = self.start(y)
         end = self.contact_end(y)
@@ -319,7 +362,7 @@ class Family:
         return np.minimum(inside, np.minimum(-u, end.gap_velocity + lag * end.gap_acceleration))
 
     def observables(self, y: NDArray) -> dict[str, NDArray]:
-        """The quantities of orbits by the names that they have in datasets."""
+        """Quantities of orbits, by the names of their variables in datasets."""
         duration = y[3] / self.contact.frequency_ratio
         return {
             "amplitude": y[0],
@@ -336,12 +379,21 @@ class Family:
 
 
 def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:
-    """The smallest value of functions between 0 and 1, for an array of functions.
+    """Minimum of each function of an array on the open interval (0, 1).
 
-    The functions are sampled at places that are denser towards the ends, where they need not be
-    defined, and sampled again four times between the neighbours of their smallest samples. The last
-    samples are 1e-6 of the interval apart at most, so that the smallest of them is the minimum of a
-    smooth function up to the square of this.
+    The samples are denser towards the ends of the interval, where the functions may be undefined.
+    The interval between the neighbours of the smallest sample is then refined four times. The final
+    samples are at most 1e-6 apart. The minimum of a smooth function has an error of the order of
+    the square of this distance.
+
+    Parameters
+    ----------
+    function
+        Function of points in (0, 1), shape (samples, *shape). Its values have the same shape.
+    shape
+        Shape of the array of functions.
+    samples
+        Number of samples before the first refinement.
     """
     axes = (-1, *np.ones(len(shape), dtype=int))
     places = (1 - np.cos(np.pi * np.arange(1, samples + 1) / (samples + 1))) / 2

@@ -1,8 +1,9 @@
-"""Continuation of n-T orbits: corrector, walks along the frequency ratio, branches along Λ.
+"""Find n-T orbits, and follow them along the frequency ratio or along the amplitude.
 
-The three equations of a family (`orbits.Family.equations`) for the four numbers of an orbit are
-completed by a condition: a given amplitude, a given duration of the contact, a plane through a
-predicted point, or a bifurcation. Newton's method is the corrector for all of them.
+A family has three equations for the four unknowns of an orbit (`orbits.Family.equations`). A
+condition is the fourth equation: a given amplitude, a given duration of the contact, a plane
+through a predicted orbit, or a bifurcation. The corrector solves the four equations by Newton's
+method.
 """
 
 from collections.abc import Callable
@@ -20,32 +21,36 @@ from bouncing_ball.restitution import Numbers
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
-"""A function of orbits y, shape (4, ...), whose zero is wanted, and its derivative by y."""
+"""Fourth equation of an orbit: a function of the family and of orbits y, shape (4, ...). It returns
+the residual, shape (...), and its derivative with respect to y, shape (4, ...)."""
 
 WALK_START = 1e3
-"""The frequency ratio at which walks start, from the orbit of the restitution model."""
+"""Frequency ratio ϖ at which a walk starts, from the orbit of the restitution model. If the largest
+ϖ of a walk exceeds half of this value, the walk starts at twice that ϖ."""
 
 STEPS_PER_DECADE = 16
-"""Steps of a walk per decade of ϖ; a step is predicted to about an eighth of the orbit's change."""
+"""Minimum number of steps of a walk per decade of ϖ. The error of a prediction is then about one
+eighth of the change of the orbit in the step."""
 
 SMALLEST_STEP = 1e-6
-"""The step at which a continuation gives up."""
+"""Step length at or below which a continuation ends."""
 
 LEAST_FLIGHT = 8e-4
-"""Flight at which a branch counts as merged with permanent contact. Its Λ then exceeds that of
-permanent contact by less than the square of this, and the multipliers, which are divided by the
-squared velocity of the impact, still have some digits."""
+"""Duration of the flight below which a branch counts as merged with permanent contact. At this
+duration, Λ exceeds the threshold of permanent contact by less than the square of the duration,
+6.4e-7. At shorter durations the multipliers would lose their last digits, because they are divided
+by the squared velocity of the impact."""
 
 SPECIAL = ("saddle-node", "period doubling", "grazing")
-"""The kinds of special points of a branch."""
+"""Kinds of special points of a branch."""
 
 
 class NoOrbit(ValueError):
-    """There is no such orbit, or Newton's method does not find it."""
+    """The orbit does not exist, or Newton's method does not find it."""
 
 
 def at_amplitude(amplitude: Numbers) -> Condition:
-    """The condition of an amplitude Λ."""
+    """Condition that the amplitude Λ is given."""
 
     def condition(family, y):
         return y[0] - amplitude, _unit(0, y)
@@ -54,7 +59,7 @@ def at_amplitude(amplitude: Numbers) -> Condition:
 
 
 def at_duration(angle: Numbers) -> Condition:
-    """The condition of a duration θ = ϖ τ_b of the contact."""
+    """Condition that the scaled duration θ = ϖ τ_b of the contact is given."""
 
     def condition(family, y):
         return y[3] - angle, _unit(3, y)
@@ -63,7 +68,10 @@ def at_duration(angle: Numbers) -> Condition:
 
 
 def on_plane(point: NDArray, normal: NDArray) -> Condition:
-    """The condition of the plane through a point, as in pseudo-arclength continuation."""
+    """Condition that the orbit is on a plane, as in pseudo-arclength continuation.
+
+    The plane contains `point` and is perpendicular to `normal`, both of the shape (4, ...).
+    """
 
     def condition(family, y):
         return np.sum(normal * (y - point), axis=0), normal
@@ -72,10 +80,10 @@ def on_plane(point: NDArray, normal: NDArray) -> Condition:
 
 
 def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
-    """The condition that a test function of orbits vanishes, such as `Family.saddle_node_test`.
+    """Condition that a test function vanishes, such as `Family.saddle_node_test`.
 
-    Its derivative is by central differences with a step of 1e-6: errors of 1e-9 in it slow
-    Newton's method down a little, and do not change the orbit to which it converges.
+    Its derivative is computed by central differences with a step of 1e-6, with an error of about
+    1e-9. This error slows the convergence of Newton's method, but does not change the limit.
     """
     step = 1e-6
     shifts = step * np.hstack([np.zeros((4, 1)), np.eye(4), -np.eye(4)])
@@ -89,7 +97,7 @@ def at_bifurcation(test: Callable[[Family, NDArray], NDArray]) -> Condition:
 
 
 def _unit(k: int, y: NDArray) -> NDArray:
-    """The unit vector of a component, for orbits y."""
+    """Unit vector of component k, of the shape of the orbits y."""
     unit = np.zeros_like(y)
     unit[k] = 1
     return unit
@@ -102,22 +110,28 @@ def correct(
     iterations: int = 12,
     tolerance: float = 1e-11,
 ) -> NDArray:
-    """Orbits near the guesses that meet a condition, by Newton's method; NaN where it fails.
+    """Find the orbits of a family that satisfy a condition, by Newton's method.
 
     Parameters
     ----------
     family : Family
     guess : ndarray, shape (4, ...)
+        Initial guesses of the orbits.
     condition : Condition
     iterations : int
-        The largest number of steps.
+        Maximum number of Newton steps.
     tolerance : float
-        The largest last step relative to 1 + |y|. As the steps fall quadratically, the error after
-        a step of 1e-11 is that of rounding.
+        Maximum size of the last step relative to 1 + |y|, in the maximum norm. Newton's method
+        converges quadratically, so only rounding errors remain after a step of 1e-11.
+
+    Returns
+    -------
+    ndarray, shape (4, ...)
+        NaN if Newton's method does not converge.
     """
     y = np.array(guess, dtype=float)
     step = np.full_like(y, np.inf)
-    # A guess that is too far away can lead anywhere; its orbit becomes NaN in the end.
+    # A distant guess can overflow or make the matrix singular. Its orbit becomes NaN.
     with np.errstate(all="ignore"):
         for _ in range(iterations):
             value, gradient = condition(family, y)
@@ -134,7 +148,7 @@ def correct(
 
 
 def _solve(matrix: NDArray, values: NDArray) -> NDArray:
-    """Solve systems whose axes come first; NaN for those whose matrix is singular."""
+    """Solve linear systems, shape (4, 4, ...) and (4, ...); NaN if a matrix is singular."""
     rows = np.moveaxis(matrix, (0, 1), (-2, -1))
     columns = np.moveaxis(values, 0, -1)[..., np.newaxis]
     try:
@@ -147,9 +161,10 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
 
 
 def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:
-    """The orbit of the restitution model with X and Y as a guess for a stiff contact.
+    """Orbit of the restitution model with given X and Y, as a guess for a stiff contact.
 
-    The contact lasts half a free oscillation, or less with the force release.
+    The contact of the guess lasts half a free oscillation. With the force release it is shorter, as
+    in `spring_damper.force_release_restitution`.
     """
     contact = family.contact
     damped = np.sqrt(1 - np.asarray(contact.damping_ratio) ** 2)
@@ -167,22 +182,27 @@ def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:
 
 
 def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArray) -> NDArray:
-    """Orbits under a condition along ϖ, shape (4, cases, ratios), NaN where they are not reached.
+    """Follow the orbits that satisfy a condition along ϖ, from stiff to compliant contacts.
 
-    The walk starts at WALK_START, or at twice the largest ratio, with the orbit of the restitution
-    model, and goes in equal steps of log ϖ to the most compliant contact; each orbit is predicted
-    from the two before it. The orbits at the ratios of the family are then corrected side by side,
-    from predictions of the same kind.
+    The walk starts at WALK_START or at twice the largest ratio, whichever is larger. There, the
+    guess is the orbit of the restitution model. The walk takes equal steps of log ϖ to the smallest
+    ratio, and extrapolates each orbit linearly from the two orbits before it. The orbits at the
+    ratios of the family are extrapolated in the same way, and corrected all at once.
 
     Parameters
     ----------
     family : Family
-        With one frequency ratio or several, shape (ratios,); n and ζ are numbers or have the shape
-        (cases, 1).
+        Family with one or several frequency ratios, shape (ratios,). n and ζ are numbers or have
+        the shape (cases, 1).
     condition : Condition
-        For orbits of the shapes (4, cases, 1) and (4, cases, ratios).
+        Condition for orbits of the shapes (4, cases, 1) and (4, cases, ratios).
     x, impact_height : ndarray, shape (cases, 1)
         X and Y of the orbits of the restitution model.
+
+    Returns
+    -------
+    ndarray, shape (4, cases, ratios)
+        NaN if the walk does not reach the orbit.
     """
     ratios = np.atleast_1d(family.contact.frequency_ratio)
     stiffest = max(WALK_START, 2 * ratios.max())
@@ -195,7 +215,7 @@ def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArra
         path.append(_reached(_at_ratio(family, node), guess, condition))
         guess = path[-1] if len(path) == 2 else 2 * path[-1] - path[-2]
     orbits = np.stack(path[1:])
-    # The node before each ratio, and the one before that.
+    # Index of the last node before each ratio. Extrapolate from this node and its predecessor.
     before = np.clip(np.searchsorted(-nodes, -ratios, side="right") - 1, 1, count - 2)
     part = np.log(ratios / nodes[before]) / np.log(nodes[1] / nodes[0])
     latest = orbits[before, ..., 0]
@@ -204,10 +224,14 @@ def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArra
 
 
 def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
-    """The orbits predicted by a walk; NaN where they have ceased.
+    """Orbits that a walk has predicted, corrected; NaN if they no longer exist.
 
-    There Newton's method finds none, or one of another branch, which is far from the prediction, or
-    a solution without the signs of an orbit.
+    An orbit no longer exists if one of the following is true:
+
+    1. Newton's method does not converge.
+    2. Newton's method converges to another branch: φ or θ differs from the prediction by 0.5 or
+       more.
+    3. The solution does not have the signs of an orbit (`Family.possible`).
     """
     y = correct(family, guess, condition)
     with np.errstate(invalid="ignore"):
@@ -216,7 +240,7 @@ def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
 
 
 def _at_ratio(family: Family, ratio: Numbers) -> Family:
-    """The same family on contacts of another frequency ratio."""
+    """Copy of a family with another frequency ratio."""
     return replace(family, contact=replace(family.contact, frequency_ratio=ratio))
 
 
@@ -227,27 +251,33 @@ def stable_orbits(
     ratios: Numbers,
     release: str = "displacement",
 ) -> NDArray:
-    """The orbits on the stable side of the saddle-node at given amplitudes along ϖ.
+    """Orbits on the stable side of the saddle-node, at given amplitudes, along ϖ.
 
     Parameters
     ----------
     n : int
+        Number of table periods in one cycle.
     r, amplitude : array_like, shape (cases,)
         Restitution coefficient and Λ of each case.
     ratios : array_like, shape (ratios,)
         Frequency ratios ϖ.
     release : str
+        Release condition, ``displacement`` or ``force``.
 
     Returns
     -------
     ndarray, shape (4, cases, ratios)
-        NaN where the orbits of the stiff contacts have ceased.
+        Orbits y. NaN if the walk from stiff contacts does not reach the orbit.
 
     Raises
     ------
     NoOrbit
-        If all amplitudes lie below the saddle-node of the stiff limit, the restitution model
-        (Eq. 7); orbits of compliant contacts alone are not searched for.
+        If all amplitudes are below the saddle-node of the restitution model (Eq. 7), which is the
+        limit of stiff contacts. The search does not find orbits that exist on compliant contacts
+        only.
+
+    >>> stable_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
+    (4, 2, 2)
     """
     r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
     contact = Contact(np.atleast_1d(ratios), damping_ratio(r)[:, np.newaxis], release)
@@ -255,35 +285,37 @@ def stable_orbits(
 
 
 def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
-    """The orbits of `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
+    """Orbits as in `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
     r = family.contact.restitution
     x = np.broadcast_to(restitution.saddle_node(family.n, r), amplitude.shape)
     if np.all(amplitude < x):
         raise NoOrbit(
-            f"{family.n}-T orbits exist from Λ = {x.min():.6g} on (Eq. 7 for a free impact with "
-            f"r = {np.max(r):.6g}), and the largest Λ is {amplitude.max():g}"
+            f"{family.n}-T orbits on stiff contacts need Λ >= {x.min():.6g} (Eq. 7 for a free "
+            f"impact with r = {np.max(r):.6g}), and the largest Λ is {amplitude.max():g}: "
+            "give a larger Λ"
         )
     impact_height = np.sqrt(np.where(amplitude < x, np.nan, amplitude**2 - x**2))
     return walk(family, at_amplitude(amplitude), x, impact_height)
 
 
 def bifurcations(n: Numbers, kind: str, contact: Contact) -> NDArray:
-    """The saddle-nodes, or the period doublings, that bound the stable orbits, along the frequency
-    ratios of a contact.
+    """Bifurcations that bound the range of stable orbits, along ϖ.
 
     Parameters
     ----------
     n : array_like, shape (families,)
+        Number of table periods in one cycle of each family.
     kind : str
         ``saddle-node`` or ``period doubling``.
     contact : Contact
-        With one frequency ratio or several, shape (ratios,); the damping ratio is a number or has
-        the shape (families, 1).
+        Contact with one or several frequency ratios, shape (ratios,). The damping ratio is a number
+        or has the shape (families, 1).
 
     Returns
     -------
     ndarray, shape (4, families, ratios)
-        NaN where it is not reached.
+        Orbits y at the bifurcations. NaN if the walk from stiff contacts does not reach the
+        bifurcation.
     """
     n = np.atleast_1d(n)[:, np.newaxis]
     x = restitution.saddle_node(n, contact.restitution)
@@ -297,8 +329,17 @@ def bifurcations(n: Numbers, kind: str, contact: Contact) -> NDArray:
 
 @dataclass(frozen=True)
 class Special:
-    """A special point of a branch: its kind, its orbit y, and its place, which is the length of the
-    branch up to it over the whole length.
+    """Special point of a branch.
+
+    Attributes
+    ----------
+    kind : str
+        One of SPECIAL.
+    orbit : ndarray, shape (4,)
+        Orbit y.
+    place : float
+        Position on the branch: length of the branch from its unstable end to the point, divided by
+        the length of the whole branch.
     """
 
     kind: str
@@ -330,16 +371,16 @@ MERGES = End("permanent contact", "the flight vanishes: the orbit merges with pe
 
 @dataclass(frozen=True)
 class Branch:
-    """A branch of orbits along Λ, from the unstable to the stable side.
+    """Branch of orbits along Λ, from the unstable to the stable side.
 
     Attributes
     ----------
-    orbits
-        Orbits, shape (4, points), with chords of equal length between neighbours.
-    special
-        Special points in the order of the branch.
-    ends
-        Its ends at the unstable and at the stable side.
+    orbits : ndarray, shape (4, points)
+        Orbits y. The chords between neighbours have equal lengths.
+    special : list of Special
+        Special points, in order of their position on the branch.
+    ends : tuple of End
+        Ends at the unstable side and at the stable side.
     """
 
     orbits: NDArray
@@ -348,32 +389,41 @@ class Branch:
 
 
 def branch(family: Family, amplitude_max: float, points: int, largest_step: float = 0.2) -> Branch:
-    """Follow the orbits of a family from the stable side at an amplitude round the saddle-node.
+    """Follow a family of orbits from the stable side, round the saddle-node, to the unstable side.
 
     Parameters
     ----------
     family : Family
-        With one frequency ratio.
+        Family with one frequency ratio.
     amplitude_max : float
-        Λ at which the branch begins, and at which it ends unless the flight vanishes before.
+        Amplitude Λ at which the branch begins on the stable side. The unstable side ends at the
+        same amplitude. It ends earlier if the flight vanishes, if Λ vanishes (undamped contacts
+        only), or if the steps become too small.
     points : int
-        The number of orbits.
+        Number of orbits.
     largest_step : float
-        The largest step of the pseudo-arclength continuation in (Λ, φ, z′_i, θ).
+        Maximum step of the pseudo-arclength continuation in (Λ, φ, z′_i, θ).
 
     Raises
     ------
     NoOrbit
-        If there is no orbit to begin with, or the continuation fails.
+        If no orbit is found at `amplitude_max`, or the corrector fails at an end of the branch or
+        at one of its points.
     """
     ratio = float(family.contact.frequency_ratio)
     start = _upper_orbits(family, np.array([[amplitude_max]]))[:, 0, 0]
     if np.isnan(start).any():
-        raise NoOrbit(f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}")
+        raise NoOrbit(
+            f"no {family.n}-T orbit is found at Λ = {amplitude_max:g} and ϖ = {ratio:g}: "
+            "give a larger Λ or ϖ"
+        )
     reached = End("largest amplitude", f"amplitude = {amplitude_max:g} is reached")
     path, end = _follow(family, start, amplitude_max, largest_step)
     if np.isnan(path).any():
-        raise NoOrbit(f"the end of a {family.n}-T branch is not found at ϖ = {ratio:g}")
+        raise NoOrbit(
+            f"the end of a {family.n}-T branch is not found at ϖ = {ratio:g}: "
+            "give a smaller largest_step"
+        )
     path = path[:, ::-1]
     orbits = _equal_chords(family, path, points)
     found = []
@@ -385,13 +435,13 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
 
 
 def _tests(family: Family) -> dict[str, Callable[[NDArray], NDArray]]:
-    """The functions that vanish at each kind of special point."""
+    """Test function of each kind of special point, which vanishes there."""
     functions = (family.saddle_node_test, family.period_doubling_test, family.clearance)
     return dict(zip(SPECIAL, functions, strict=True))
 
 
 def _tangent(family: Family, y: NDArray) -> NDArray:
-    """Unit tangent of the family at an orbit, the null vector of its 3 × 4 derivative."""
+    """Unit tangent of the family at an orbit: null vector of its 3 × 4 Jacobian matrix."""
     return np.linalg.svd(family.jacobian(y))[2][3]
 
 
@@ -400,9 +450,11 @@ def _follow(
 ) -> tuple[NDArray, End | None]:
     """Pseudo-arclength continuation from an orbit towards smaller Λ, and round the saddle-node.
 
-    A step is halved if the corrector fails or the tangent turns by more than about 14 degrees, and
-    grows otherwise. Returns the orbits, shape (4, steps), and the end of the branch unless it is at
-    the largest amplitude.
+    A step is halved if the corrector fails or if the tangent turns by more than about 14 degrees.
+    Otherwise the next step is longer by a factor of 1.5, up to the largest step.
+
+    Returns the orbits, shape (4, steps), and the end of the branch, or None if it ends at
+    `amplitude_max`.
     """
     path = [start]
     y = start
@@ -412,7 +464,8 @@ def _follow(
     while step > SMALLEST_STEP:
         guess = y + step * direction
         new = correct(family, guess, on_plane(guess, direction), iterations=5)
-        # Near Λ = 0 a step can jump over a sharp turn of φ to the same orbits with Λ < 0.
+        # Near Λ = 0 the branch turns sharply in φ. A long step can cross to Λ < 0, where the branch
+        # describes the same orbits again.
         if np.isnan(new).any() or np.linalg.norm(new - y) > 1.5 * step or new[0] < 0:
             step = step / 2
             continue
@@ -436,11 +489,11 @@ def _follow(
 
 
 def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
-    """Orbits along a path at equal distances between neighbours, shape (4, points).
+    """Orbits along a path with equal distances between neighbours, shape (4, points).
 
-    A spline through the path is sampled, and the samples are corrected to orbits. The places of the
-    samples are moved until the distances are equal: then the orbits depend on the branch alone, and
-    not on the steps by which it was followed.
+    Samples of a spline through the path are corrected to orbits. The samples are moved until the
+    distances are equal. The orbits then depend on the branch only, and not on the steps of the
+    continuation.
     """
     length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path), axis=0))])
     curve = CubicSpline(length, path, axis=1)
@@ -450,20 +503,29 @@ def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
         orbits = correct(family, guess, on_plane(guess, curve(places, 1)))
         orbits[:, [0, -1]] = path[:, [0, -1]]
         if np.isnan(orbits).any():
-            raise NoOrbit(f"a {family.n}-T branch cannot be sampled at {points} points")
+            raise NoOrbit(
+                f"a {family.n}-T branch cannot be sampled at {points} points: "
+                "give a smaller largest_step"
+            )
         chords = np.linalg.norm(np.diff(orbits), axis=0)
-        # Rounding errors of orbits are some 1e-14, and chords are differences of them.
+        # Chords are differences of orbits, whose rounding errors are about 1e-14.
         if np.ptp(chords) < 1e-12 * max(chords.mean(), 0.1):
             break
         passed = np.concatenate([[0], np.cumsum(chords)])
         places = np.interp(np.linspace(0, passed[-1], points), passed, places)
     else:
-        raise NoOrbit(f"the {points} points of a {family.n}-T branch do not become equidistant")
+        raise NoOrbit(
+            f"the {points} points of a {family.n}-T branch do not become equidistant: "
+            "give another number of points"
+        )
     return orbits
 
 
 def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) -> list[NDArray]:
-    """The orbits of a path at which a test function vanishes, by bracketing between its points."""
+    """Orbits of a path at which a test function vanishes.
+
+    Each change of sign between two points of the path brackets one zero.
+    """
     values = test(path)
     found = []
     for i in np.flatnonzero(values[:-1] * values[1:] < 0):
@@ -476,15 +538,15 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
             return guess if np.isnan(found).any() else found
 
         zero = orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15))
-        # At a pole of the test function its sign changes, too, but its value does not become small;
-        # at Λ = 0 the phase is not defined.
+        # Skip poles of the test function, where its sign changes but its value is large. Skip
+        # Λ = 0, where the phase is undefined.
         if zero[0] > 1e-6 and abs(test(zero)) < 1e-3 * np.abs(values[i : i + 2]).max():
             found.append(zero)
     return found
 
 
 def _place(orbit: NDArray, orbits: NDArray) -> float:
-    """Where an orbit lies on a branch of equal chords, as a part of its length."""
+    """Position of an orbit on a branch of equal chords, as a fraction of its length."""
     start = orbits[:, :-1]
     chords = np.diff(orbits)
     part = np.sum((orbit[:, np.newaxis] - start) * chords, axis=0) / np.sum(chords**2, axis=0)

@@ -272,9 +272,9 @@ def stable_orbits(
     Raises
     ------
     NoOrbit
-        If all amplitudes are below the saddle-node of the restitution model (Eq. 7), which is the
-        limit of stiff contacts. The search does not find orbits that exist on compliant contacts
-        only.
+        If all amplitudes are below the saddle-node of stiff contacts (Eq. 7, with the restitution
+        coefficient of a free impact). The search does not find orbits that exist on compliant
+        contacts only.
 
     >>> stable_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
     (4, 2, 2)

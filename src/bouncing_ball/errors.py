@@ -1,7 +1,8 @@
-"""How wrong the restitution model is, and from which stiffness on it is right (Eqs. 37 and 38).
+"""Errors of the restitution model, and the stiffness that keeps them small (Eqs. 37 and 38).
 
-The relative error of a quantity is |spring-damper - restitution| / |restitution|, as the paper has
-it. The threshold of a tolerance is the frequency ratio ϖ from which on the error stays within it.
+The relative error of a quantity is |spring-damper - restitution| / |restitution|, as the paper
+defines it. The threshold for a tolerance is the frequency ratio ϖ above which the error stays
+within the tolerance.
 """
 
 from collections.abc import Callable, Sequence
@@ -63,7 +64,9 @@ class Threshold(NamedTuple):
 
 
 def relative_error(value: Numbers, reference: Numbers) -> NDArray:
-    """Relative error of the restitution model, whose value is the reference (Eqs. 37 and 38).
+    """Relative error |value - reference| / |reference| (Eqs. 37 and 38).
+
+    The reference is the value of the restitution model.
 
     >>> float(relative_error(0.99, 1.0).round(12))
     0.01
@@ -74,8 +77,18 @@ def relative_error(value: Numbers, reference: Numbers) -> NDArray:
 def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
     """Find the frequency ratios above which errors stay within a tolerance.
 
-    The last ratio of the scan whose error exceeds the tolerance begins the interval in which the
-    threshold is located. Two crossings between two neighbours are not noticed.
+    The search starts from the last ratio of the scan whose error exceeds the tolerance. The
+    threshold is between this ratio and the next. If the error crosses the tolerance twice between
+    two neighbours, the search misses both crossings.
+
+    Parameters
+    ----------
+    ratios : ndarray, shape (ratios,)
+        Frequency ratios of the scan, in ascending order.
+    error : Error
+        Errors at these ratios, of one or several curves.
+    tolerance : float
+        Maximum relative error.
 
     >>> grid = np.geomspace(1, 1000, 7)
     >>> error = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
@@ -108,7 +121,7 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
 
 
 def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Error:
-    """The error of the threshold of permanent contact (Eq. 38)."""
+    """Relative error of the threshold of permanent contact along ϖ (Eq. 38)."""
 
     def error(ratio):
         found = permanent_contact(ratio, zeta, release)
@@ -118,7 +131,22 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
 
 
 def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) -> dict[str, Error]:
-    """The errors of quantities of n-T orbits at an amplitude along ϖ (Eq. 37), by their names."""
+    """Relative errors of the quantities of n-T orbits, along ϖ at one amplitude (Eq. 37).
+
+    Parameters
+    ----------
+    family : Family
+        Family with the frequency ratios of a scan, shape (ratios,).
+    orbits : ndarray, shape (4, ratios)
+        Orbits at these ratios, NaN if an orbit does not exist.
+    r, amplitude : float
+        Restitution coefficient and amplitude Λ of the orbits.
+
+    Returns
+    -------
+    dict
+        Errors by the name of the quantity. An error is infinite if the orbit does not exist.
+    """
     n = family.n
     phase = restitution.impact_phase(n, r, amplitude)
     quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers]] = {
@@ -135,7 +163,7 @@ def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) ->
 
 
 def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
-    """The errors of the amplitudes of both bifurcations, by their names."""
+    """Relative errors of the amplitudes of the saddle-node and of the period doubling, by name."""
     kinds = {
         "saddle_node": ("saddle-node", Family.saddle_node_test, restitution.saddle_node(n, r)),
         "period_doubling": (
@@ -161,9 +189,10 @@ def _along(
     value: Callable[[Family, NDArray], NDArray],
     reference: Numbers,
 ) -> Error:
-    """The error of a quantity of the orbits of a scan, shape (4, ratios).
+    """Relative error of a quantity along a scan.
 
-    The ratios of the scan are those of the family's contact.
+    The contact of the family contains the ratios of the scan. The orbits have the shape
+    (4, ratios).
     """
     ratios = np.asarray(family.contact.frequency_ratio)
 
@@ -176,7 +205,7 @@ def _along(
         one = replace(family, contact=replace(family.contact, frequency_ratio=ratio))
         return error(one, correct(one, guess, condition))
 
-    # Where there is no orbit, the restitution model is as wrong as can be.
+    # The restitution model predicts an orbit that does not exist: count its error as infinite.
     values = error(family, orbits)
     return Error(np.where(np.isnan(values), np.inf, values), between)
 
@@ -184,7 +213,35 @@ def _along(
 def errors(
     quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
 ) -> dict[str, Error]:
-    """The errors of the quantities with these names, of all that can be compared."""
+    """Relative errors of the named quantities, along ϖ.
+
+    Parameters
+    ----------
+    quantities : sequence of str
+        Any of ``max_height``, ``bounce_velocity``, ``phase``, ``apparent_restitution``,
+        ``saddle_node``, ``period_doubling`` and ``permanent_contact``.
+    n : int
+        Number of table periods in one cycle.
+    r, amplitude : float
+        Restitution coefficient and amplitude Λ.
+    ratios : ndarray, shape (ratios,)
+        Frequency ratios ϖ, in ascending order.
+    release : str
+        Release condition, ``displacement`` or ``force``.
+
+    Raises
+    ------
+    NoOrbit
+        If a quantity of orbits is named, and the amplitude is below the saddle-node of the
+        restitution model (Eq. 7).
+    KeyError
+        If a name is unknown.
+
+    >>> scan = np.array([10.0, 100.0])
+    >>> found = errors(["bounce_velocity"], 1, 0.65, 1.0, scan, "displacement")
+    >>> found["bounce_velocity"].values.round(3).tolist()
+    [0.061, 0.006]
+    """
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
         family = Family(n, Contact(ratios, damping_ratio(r), release))
@@ -197,14 +254,15 @@ def errors(
 
 
 COMPARED = ("max_height", "bounce_velocity", "apparent_restitution", "phase_in_periods")
-"""The quantities of an orbit in the first axis of `errors_of_orbits`."""
+"""Quantities of an orbit, along the first axis of `errors_of_orbits`."""
 
 
 def errors_of_orbits(family: Family, y: NDArray, r: Numbers, amplitude: Numbers) -> NDArray:
-    """The errors of the quantities `COMPARED` on orbits y at amplitudes Λ, shape (4, ...).
+    """Errors of the quantities `COMPARED` on orbits y at amplitudes Λ, shape (4, ...).
 
-    They are relative to the restitution model with r, but for the phase, whose error is a share of
-    a period of the table. The greatest height is that of the flight.
+    The errors are relative to the restitution model with r, except the error of the phase. The
+    error of the phase is a fraction of the period of the table. The maximum height is taken in the
+    flight only.
     """
     n = family.n
     phase = restitution.impact_phase(n, r, amplitude)
@@ -218,15 +276,21 @@ def errors_of_orbits(family: Family, y: NDArray, r: Numbers, amplitude: Numbers)
 
 
 def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
-    """Stable orbits at amplitudes, shape (orbits, 1), along the ϖ of the family's contact.
+    """Stable orbits at amplitudes of the shape (orbits, 1), along the ϖ of the family's contact.
 
-    Here Λ may be that of the saddle-node of the restitution model (Eq. 7). A stiff contact has its
-    saddle-node at a lower Λ, by a share of 1/ϖ, so that the height Λ sin φ of its impact
-    is there of the order of √(X/ϖ). See `continuation.walk` for what is returned.
+    The amplitude may equal the saddle-node of the restitution model (Eq. 7). The saddle-node of a
+    stiff contact is at a lower amplitude; the relative difference is of the order of 1/ϖ. At the
+    amplitude of Eq. 7, the impact height Λ sin φ on a stiff contact is therefore of the order of
+    √(X/ϖ).
+
+    Returns
+    -------
+    ndarray, shape (4, orbits, ratios)
+        NaN if the walk does not reach the orbit (`continuation.walk`).
     """
     ratios = np.asarray(family.contact.frequency_ratio)
     x = restitution.saddle_node(family.n, family.contact.restitution)
-    # A guess, somewhat too large, with the ϖ at which the walk starts.
+    # Guess of Y for the ϖ at which the walk starts. It is larger than the Y of the orbit.
     impact_height = np.sqrt(amplitude**2 - x**2 + 8 * x / max(WALK_START, 2 * ratios.max()))
     return walk(family, at_amplitude(amplitude), x, impact_height)
 
@@ -234,24 +298,32 @@ def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
 def enough_from(
     family: Family, orbits: NDArray, r: NDArray, amplitude: NDArray, tolerance: float
 ) -> NDArray:
-    """The frequency ratios from which on the errors of orbits stay within a tolerance.
+    """Frequency ratios above which the errors of orbits stay within a tolerance.
+
+    If an error crosses the tolerance twice between two neighbours of the scan, the search misses
+    both crossings.
 
     Parameters
     ----------
     family : Family
-        With n and ζ of the shape (orbits, 1), and the ascending frequency ratios of a scan. Two
-        crossings of the tolerance between two neighbours are not noticed.
+        Family with n and ζ of the shape (orbits, 1), and with the frequency ratios of a scan in
+        ascending order.
     orbits : ndarray, shape (4, orbits, ratios)
-        Those of `orbits_along`.
+        Result of `orbits_along`.
     r, amplitude : ndarray, shape (orbits, 1)
+        Restitution coefficient and amplitude Λ of each orbit.
     tolerance : float
+        Maximum error.
 
     Returns
     -------
     ndarray, shape (quantities, orbits)
-        The quantities are `COMPARED`. Where the error is within the tolerance at all ratios, it is
-        the lowest of them. Where it is not so at the largest one, or where there is no orbit at the
-        ratio below the first that is enough, it is NaN.
+        Frequency ratios for the quantities `COMPARED`:
+
+        - the smallest ratio of the scan, if the error is within the tolerance at all ratios;
+        - NaN, if the error exceeds the tolerance at the largest ratio;
+        - NaN, if no orbit exists at the last ratio before the crossing;
+        - otherwise the ratio at which the error crosses the tolerance for the last time.
     """
     ratios = np.asarray(family.contact.frequency_ratio)
     n = np.asarray(family.n)
@@ -275,10 +347,11 @@ def enough_from(
 def lowest_period_doublings(
     n: Numbers, r: float, ratios: NDArray, release: str
 ) -> tuple[NDArray, NDArray]:
-    """The frequency ratio at which the period doubling of each family is lowest, and its amplitude.
+    """Minimum over ϖ of the amplitude of the period doubling, for each family.
 
-    Both are NaN if it is lowest at an end of the ratios. The place of a minimum has half of the
-    digits of its value.
+    Returns the frequency ratios of the minima and the amplitudes there, both of the shape
+    (families,). Both are NaN if the smallest amplitude is at the first or last ratio. A frequency
+    ratio has half as many exact digits as the amplitude, because the minimum is flat.
     """
     contact = Contact(ratios, damping_ratio(r), release)
     orbits = bifurcations(n, "period doubling", contact)

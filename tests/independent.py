@@ -1,8 +1,11 @@
-"""The two models once more, sharing no code with the package: references for its tests.
+"""Independent implementation of both models, as a reference for the tests.
 
-The motion in contact comes from `scipy.integrate.solve_ivp`, or from the exponential of the matrix
-of its linear equation, which has no special case at resonance. In both, the time is θ = ϖ s and the
-displacement q = ϖδ, so that the numbers are of order one for a contact of any stiffness:
+It shares no code with the package. The motion in contact is computed in two ways: by
+`scipy.integrate.solve_ivp`, and by the exponential of the matrix of its linear equation. The
+exponential needs no special case at resonance.
+
+The equation of motion is scaled with the time θ = ϖ s and the displacement q = ϖδ. All terms are
+then of order one for any stiffness of the contact:
 
     dq/dθ = δ′,  dδ′/dθ = -q - 2ζδ′ + (Λ sin(s + φ) - 1)/ϖ.
 """
@@ -17,25 +20,28 @@ ACCURACY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
 
 
 def restitution_to_damping(r):
-    """Eq. 16, from the logarithmic decrement of half an oscillation, ln r = -πζ/√(1 - ζ²)."""
+    """Damping ratio ζ (Eq. 16), from the logarithmic decrement of half an oscillation.
+
+    The decrement is ln r = -πζ/√(1 - ζ²).
+    """
     return np.sin(np.arctan(-np.log(r) / np.pi))
 
 
 def lag(ratio, zeta, release):
-    """κ of the condition δ + κδ′ = 0 that ends a contact."""
+    """Coefficient κ of the release condition δ + κδ′ = 0."""
     return 2 * zeta / ratio if release == "force" else 0.0
 
 
 def transfer(ratio, zeta, duration):
-    """The matrices that take (ϖδ, δ′, w, w′, 1) from the start of the contact to times after it."""
+    """Matrices that map (ϖδ, δ′, w, w′, 1) at the start of a contact to given times after it."""
     duration = np.asarray(duration, dtype=float)
     rates = np.zeros((5, 5))
     rates[0, 1] = 1
     rates[1] = -1, -2 * zeta, 1 / ratio, 0, -1 / ratio
     rates[2, 3] = 1 / ratio
     rates[3, 2] = -1 / ratio
-    # Scaling and squaring: the series of the exponential, for a matrix of norm below 1/4, has the
-    # remainder 0.25¹³/13! < 1e-17. `scipy.linalg.expm` takes its matrices one by one.
+    # Scaling and squaring: for a matrix of norm below 1/4, the series of the exponential has a
+    # remainder 0.25¹³/13! < 1e-17. `scipy.linalg.expm` computes its matrices one by one.
     norm = np.abs(rates).sum(axis=1).max() * ratio * np.max(duration)
     halvings = max(0, int(np.ceil(np.log2(4 * norm + 1))))
     step = rates * (ratio * duration / 2**halvings)[..., np.newaxis, np.newaxis]
@@ -48,14 +54,14 @@ def transfer(ratio, zeta, duration):
 
 
 def orbit(n, ratio, zeta, release, duration):
-    """The n-T orbits whose contact has a given duration, as (Λ, φ, z′_i, ϖτ_b), shape (4, ...).
+    """n-T orbits (Λ, φ, z′_i, ϖτ_b) with given durations of the contact, shape (4, ...).
 
-    Release, landing and velocity are three linear equations for X = Λ cos φ, Y = Λ sin φ and
-    u = δ′_i.
+    For a given duration, the conditions of release, landing and velocity are three linear equations
+    for X = Λ cos φ, Y = Λ sin φ and u = δ′_i.
     """
     duration = np.asarray(duration, dtype=float)
     flight = 2 * np.pi * n - duration
-    # The start (ϖδ, δ′, w, w′, 1) = (0, u, Y, X, 1) by X, Y, u and 1.
+    # Columns: coefficients of X, Y, u and 1 in the start (ϖδ, δ′, w, w′, 1) = (0, u, Y, X, 1).
     start = np.zeros((5, 4))
     start[3, 0] = start[2, 1] = start[1, 2] = start[4, 3] = 1
     end = transfer(ratio, zeta, duration) @ start
@@ -75,12 +81,15 @@ def orbit(n, ratio, zeta, release, duration):
 
 
 def monodromy(n, ratio, zeta, release, duration):
-    """The change of (z, z′) over a cycle, shape (..., 2, 2); it has the multipliers of the orbit.
+    """Monodromy matrix of the state (z, z′) over one cycle, shape (..., 2, 2).
 
-    It is the product of the free motions in contact and flight, and of the saltation matrices
-    1 + (jump of the rates)(gradient of the event)ᵀ/(rate of the event) at the events between them.
-    At the landing z″ jumps by -2ζϖδ′, and δ has the rate δ′. At a release at δ = 0 it jumps back;
-    where the force vanishes it does not jump.
+    Its eigenvalues are the Floquet multipliers of the orbit. It is the product of the transition
+    matrices of contact and flight, and of the saltation matrices of landing and release. A
+    saltation matrix is 1 + (jump of the rates)(gradient of the event)ᵀ/(rate of the event).
+
+    - Landing: z″ jumps by -2ζϖδ′, and the rate of the event δ = 0 is δ′.
+    - Displacement release: z″ jumps back.
+    - Force release: z″ does not jump, because the force vanishes.
     """
     duration = np.asarray(duration, dtype=float)
     scale = np.array([[1, ratio], [1 / ratio, 1]])
@@ -95,7 +104,11 @@ def monodromy(n, ratio, zeta, release, duration):
 
 
 def test_functions(n, ratio, zeta, release, duration):
-    """1 - trace + determinant and 1 + trace + determinant, which vanish at the bifurcations."""
+    """Test functions of the bifurcations, for the monodromy matrix.
+
+    1 - trace + determinant vanishes at a saddle-node, and 1 + trace + determinant vanishes at a
+    period doubling.
+    """
     trace = np.trace(monodromy(n, ratio, zeta, release, duration), axis1=-2, axis2=-1)
     determinant = np.exp(-2 * zeta * ratio * np.asarray(duration))
     return 1 - trace + determinant, 1 + trace + determinant
@@ -105,15 +118,17 @@ test_functions.__test__ = False
 
 
 def roots(function, grid):
-    """The zeros of a function of an array, bracketed by the points of a grid."""
+    """Zeros of a vectorised function, bracketed by the points of a grid."""
     values = function(grid)
     brackets = np.flatnonzero(values[:-1] * values[1:] < 0)
     return [brentq(function, grid[i], grid[i + 1], xtol=1e-16) for i in brackets]
 
 
 def lowest(function):
-    """The lowest value of a function on the open interval from 0 to 1, without a hundredth at each
-    end, from samples and further samples round the lowest.
+    """Minimum of a function on the interval [0.01, 0.99].
+
+    The interval is sampled at 201 points. It is then reduced twice to the interval between the
+    neighbours of the smallest sample, and sampled again.
     """
     part = np.linspace(0.01, 0.99, 201)
     for _ in range(2):
@@ -124,7 +139,17 @@ def lowest(function):
 
 @dataclass
 class Contact:
-    """A contact by integration: its duration, δ and δ′ at its end, and samples of δ and δ′."""
+    """Contact computed by integration.
+
+    Attributes
+    ----------
+    duration
+        Duration of the contact.
+    gap, rate
+        δ and δ′ at its end.
+    times, gaps, rates
+        400 samples: time since the start, ϖδ and δ′.
+    """
 
     duration: float
     gap: float
@@ -135,7 +160,7 @@ class Contact:
 
 
 def integrate_contact(ratio, zeta, release, amplitude, phase, u, weight=1.0, duration=None):
-    """Integrate Eq. 11 from δ = 0, δ′ = u to the release, or over a given duration."""
+    """Integrate Eq. 11 from δ = 0, δ′ = u until the release, or for a given duration."""
     kappa = lag(ratio, zeta, release) * ratio
 
     def rates(theta, state):
@@ -155,8 +180,8 @@ def integrate_contact(ratio, zeta, release, amplitude, phase, u, weight=1.0, dur
     theta = path.t[-1]
     state = path.y[:, -1]
     if duration is None:
-        # The event lies on an interpolant, which is less accurate than the steps. Integrate to its
-        # time once more; a step of Newton's method takes the rest away.
+        # The event is located on the interpolant, which is less accurate than the steps. Integrate
+        # again to its time, and correct the remaining error by one Newton step.
         state = solve_ivp(rates, (0, theta), [0.0, u], **ACCURACY).y[:, -1]
         speed = np.array(rates(theta, state))
         late = released(theta, state) / (speed[0] + kappa * speed[1])
@@ -171,9 +196,18 @@ def integrate_contact(ratio, zeta, release, amplitude, phase, u, weight=1.0, dur
 class Cycle:
     """A contact and the flight after it.
 
-    ``contact`` is the contact, ``bounce`` the velocity at its end, ``time`` the duration of both,
-    and ``velocity`` that of the ball at the next landing. ``times``, ``heights`` and ``velocities``
-    are 400 samples in contact and 400 in flight.
+    Attributes
+    ----------
+    contact
+        The contact.
+    bounce
+        Velocity of the ball at the end of the contact.
+    time
+        Duration of contact and flight together.
+    velocity
+        Velocity of the ball at the next landing.
+    times, heights, velocities
+        400 samples in contact, followed by 400 samples in flight.
     """
 
     contact: Contact
@@ -185,7 +219,7 @@ class Cycle:
     velocities: np.ndarray
 
     def greatest_height(self):
-        """The greatest height, by a parabola through the three samples round the largest."""
+        """Maximum height, from a parabola through the largest sample and its two neighbours."""
         greatest = self.heights.max()
         for part in np.split(self.heights, 2):
             middle = np.clip(np.argmax(part), 1, 398)
@@ -197,7 +231,7 @@ class Cycle:
 
 
 def cycle(ratio, zeta, release, amplitude, phase, velocity):
-    """Integrate a contact from its start to its release, and fly to the next landing."""
+    """Integrate a contact from its start to its release, and follow the flight to its landing."""
     u = velocity - amplitude * np.cos(phase)
     contact = integrate_contact(ratio, zeta, release, amplitude, phase, u)
     height = contact.gap + amplitude * np.sin(phase + contact.duration)
@@ -223,11 +257,11 @@ def cycle(ratio, zeta, release, amplitude, phase, velocity):
 
 
 def first_landing(amplitude, phase, height, velocity, kappa=0.0):
-    """Duration of a flight from a height until it ends, looked for in steps of about 2e-3.
+    """Duration of a flight that starts at a height, found in steps of about 2e-3.
 
-    It ends where δ falls through zero. After a force release δ is negative at first; if δ + κδ′
-    falls through zero before the ball has left the table, the contact presses the ball again, which
-    is an end, too.
+    The flight ends when δ decreases through zero. After a force release δ is negative at first. The
+    flight then also ends if δ + κδ′ decreases through zero while δ is negative, because the contact
+    presses the ball again.
     """
 
     def gap(s):
@@ -240,6 +274,6 @@ def first_landing(amplitude, phase, height, velocity, kappa=0.0):
     last = velocity + np.sqrt(velocity**2 + 2 * (height + amplitude)) + 1
     grid = np.linspace(0, last, 2 + int(last / 2e-3))
     values = outside(grid)
-    # The first point is the release itself, where rounding errors decide.
+    # Skip the first point. It is the release, where rounding errors decide the sign.
     first = 1 + np.flatnonzero((values[1:-1] > 0) & (values[2:] <= 0))[0]
     return brentq(outside, grid[first], grid[first + 1], xtol=1e-15)

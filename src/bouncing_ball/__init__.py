@@ -17,16 +17,16 @@ Read the modules in this order:
     search for these orbits, and continuation of families of orbits
 `errors`
     relative errors of the restitution model, and the stiffness that keeps them within a tolerance
-`datasets`
-    saved variables: their meaning, their units, and the code that computed them
+`datasets`, `variables`
+    netCDF files, and the meaning, the units and the tolerance of their variables
 `drawing`, `figures`
     figures of the article
-`paper`, `verdicts`, `claims`
-    contents and printed numbers of the paper, its claims, and the verdict on each claim
-`tables`, `article`
-    texts and tables that report the results
-`differences`, `compare`
-    differences between files, and the comparison of results with the reference
+`paper`, `measures`, `verdicts`, `claims`
+    printed numbers of the paper, numbers that follow from datasets, and the verdict on each claim
+`tables`, `article`, `pages`
+    tables, texts and pages that report the results
+`configuration`, `provenance`, `compare`
+    judgement of a configuration, origin of a result, and comparison with the reference
 
 Equations of the paper and the functions that implement them:
 

@@ -228,7 +228,7 @@ def test_a_contact_without_orbits_has_a_row_of_nan_with_the_reason():
     compute = stage("continuation").STAGE["fig08"]
     with np.errstate(invalid="ignore"):
         data = compute(given | {"frequency_ratio": [3.0, 1.0]}, "displacement", 0.2)
-    reason = "no 5-T orbit is found at Λ = 3.5 and ϖ = 1"
+    reason = "no 5-T orbit is found at Λ = 3.5 and ϖ = 1: give a larger Λ or ϖ"
     assert set(data.end_reason.sel(frequency_ratio=1).values) == {reason}
     assert data.end_kind.values.tolist() == [["largest amplitude"] * 2, ["inside"] * 2]
     assert np.isnan(data.amplitude.sel(frequency_ratio=1)).all()

@@ -975,8 +975,9 @@ def judge(datasets: Datasets) -> xr.Dataset:
         }
         for equations, text, members in FORMULAS
     ]
-    columns = {name: ("claim", [row[name] for row in rows]) for name in rows[0]}
     most = max(len(row["condition"]) for row in rows)
     padded = [[*row["condition"], *[""] * (most - len(row["condition"]))] for row in rows]
-    columns["condition"] = (("claim", "sense"), padded)
-    return xr.Dataset(columns).set_coords("claim")
+    names = [name for name in NOTHING if name != "condition"]
+    columns = {name: ("claim", [row[name] for row in rows]) for name in names}
+    dataset = xr.Dataset(columns).assign(condition=(("claim", "sense"), padded))
+    return dataset.set_coords("claim")

@@ -36,8 +36,9 @@ from bouncing_ball_contacts.units import (
 )
 
 _WITH_DRAG = ("flights", "heights", "drops", "track")
-# ρ C A/(2 m) of a tennis ball in 1/m.
-_TENNIS = 0.017
+# Mass in kg and diameter in m of the balls that the drag changes little and much.
+_GOLF_BALL = (0.0459, 0.0427)
+_TABLE_TENNIS_BALL = (0.0027, 0.040)
 
 
 @dataclass(frozen=True, repr=False)
@@ -225,8 +226,12 @@ def fit(
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
-    middle = math.exp(float(np.mean(np.log(v))))
-    at = middle if speed is None else positive("speed", speed, "m/s")
+
+    def speed_of(found: Impacts) -> float:
+        middle = math.exp(float(np.mean(np.log(found.speed))))
+        return middle if speed is None else positive("speed", speed, "m/s")
+
+    at = speed_of(impacts)
     error = rounding / math.sqrt(12) if known is None else known
     refuse(
         [
@@ -254,8 +259,24 @@ def fit(
     lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
     judged = tuple(judge(impacts, curves, at)) if laws and len(v) > 2 else ()
-    # Of a flight to a height h, drag takes about r D v²/g; a tennis ball has D = 0.017/m.
-    by_drag = (drag or _TENNIS) * r * float(np.mean(v**2)) / STANDARD_GRAVITY
+
+    def by_drag_of(mass: float, diameter: float) -> float:
+        """Return the difference of r with the drag of a ball, and without drag."""
+        r_with, r_without = (
+            estimates(each, curves_of(each, known, speed_of(each), rounding))[0].of_r[0]
+            for each in (impacts_of(recording, drag_of(mass, diameter)), impacts_of(recording))
+        )
+        return r_with - r_without
+
+    if kilograms and metres:
+        by_drag = by_drag_of(kilograms, metres)
+        drag_note = f"the drag of the air is removed, which raises r by {by_drag:.2g}"
+    else:
+        by_golf, by_drag = by_drag_of(*_GOLF_BALL), by_drag_of(*_TABLE_TENNIS_BALL)
+        drag_note = (
+            f"the drag of the air is not removed: r is too low by {by_golf:.2g} if it is a golf "
+            f"ball, by {by_drag:.2g} if it is a table tennis ball; give --mass and --diameter"
+        )
     does_drag = recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
     is_height = recording.kind in ("drops", "heights") and read_at is None
     size = metres or 0.04
@@ -283,11 +304,7 @@ def fit(
             f"of {show(size, 'm')} has an r that is too high by {by_size:.2g} (--read-at bottom or "
             "top)",
         ),
-        (
-            does_drag and not drag,
-            "the drag of the air is not removed: with as much as a tennis ball has it would be "
-            f"{by_drag:.2g} of r; give the mass and the diameter of this one",
-        ),
+        (does_drag, drag_note),
         # Contacts of rubber, the longest ones, last for 10 ms.
         (
             is_heard and not lasts and matters < 0.01,
@@ -304,7 +321,6 @@ def fit(
             is_heard and lasts,
             f"the contact, {show(lasts, 's')}, is taken off each time between two impacts",
         ),
-        (does_drag and drag, f"the drag of the air is removed, {by_drag:.2g} of r"),
         (
             rounding > impacts.usual,
             f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded",

@@ -72,6 +72,23 @@ FILES = {
     "one line of heights, the last one missing": "h0 (m),h1 (m),h2 (m),h3 (m)\n1,0.6724,0.4521,",
     "trials": "drop height (cm),trial 1 (cm),trial 2 (cm)\n" + pairs("{0},{1},{1}"),
     "a text with a comma": "note,drop (cm),rebound (cm)\n" + pairs('"ball, old",{},{}'),
+    "drops and bounces": "drop height (cm),bounce height (cm)\n" + pairs(),
+    "h and h', in inches": "h (inches),h′ (inches)\n" + pairs(),
+    "drops and bounces, the unit in words": "Drop Height in cm,Bounce Height in cm\n" + pairs(),
+    "numbers of trials": "trial,drop height (cm),bounce height (cm)\n"
+    + "\n".join(f"{i},{h},{h * 0.6724}" for i, h in enumerate(DROPS, 1)),
+    "trials and their average": "drop (cm),trial 1 (cm),trial 2 (cm),average (cm)\n"
+    + pairs("{0},{1},{1},{1}"),
+    "averages alone": "drop (cm),average (cm)\n" + pairs(),
+    "trials of intervals": "trial,interval [s]\n"
+    + "\n".join(f"{i},{x}" for i in (1, 2) for x in FLIGHTS),
+    "times since 1970": "time\n" + column(TIMES + 1717171717.1),
+    "nanoseconds since 1970": "time (ns)\n" + column(1e9 * (TIMES + 1717171717.1), "{:.0f}"),
+    "a track since 1970": "t,y\n"
+    + "\n".join(f"{t + 1717171717:.4f},{position(t):.5f}" for t in FRAMES),
+    "frames of a film": "# frame rate: 240 Hz\nframe\n" + column(np.round(240 * TIMES), "{:.0f}"),
+    "a track by frames": "# frame rate: 60\nframe,y\n"
+    + "\n".join(f"{60 * t:.0f},{position(t):.5f}" for t in FRAMES),
     "a count with a gap": "n,interval (s)\n"
     + "\n".join(f"{i},{x}" for i, x in enumerate(FLIGHTS) if i != 3),
 }
@@ -196,6 +213,15 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("time [s]\n0.1\n0.9", "no impact lies between"),
         (TWO + "\n\ndrop (in),rebound (in)\n5,3.2", "'drop .in.' below 'drop' is no number"),
         ("time (s)\n" + column(np.delete(TIMES, 1)), "an impact is missing within it"),
+        ("time (s)\n" + column(np.delete(TIMES, [2, 3])), "line 4: a flight of 1.8.* is missing"),
+        (
+            "drop (cm),rebound (cm),second rebound (cm)\n100,67,45\n80,53,36",
+            "'second rebound' looks like a measurement, but drop height and rebound height are",
+        ),
+        ("interval (s),height (m)\n.9,.6\n.7,.4", "column 'height' looks like a measurement"),
+        ("drop (cm),trial 1 (cm),rebound (cm)\n100,60,64", "column 'trial 1' looks like"),
+        ("drop (cm),rebound (cm),time (s)\n100,60,.4", "column 'time' looks like a measurement"),
+        ("frame\n10\n200\n350", "frames are times with a line above .* # frame rate: 30"),
     ],
 )
 def test_other_files_are_refused_in_one_line(text, said, tmp_path):
@@ -204,6 +230,15 @@ def test_other_files_are_refused_in_one_line(text, said, tmp_path):
     with pytest.raises(Refused, match=said) as refused:
         fit(path)
     assert "\n" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("after", "line"), [(0, 3), (2, 5), (4, 7), (5, 8), (6, 9)])
+def test_an_echo_is_named_where_it_is(after, line, tmp_path):
+    """The touch after it was called missing, or the one before."""
+    path = tmp_path / "heard.csv"
+    path.write_text("time (s)\n" + column(np.sort([*TIMES, TIMES[after] + 0.012])))
+    with pytest.raises(Refused, match=f"line {line}: 0.012 s after the touch before it: an echo"):
+        fit(path)
 
 
 def test_what_is_no_text_is_refused(tmp_path):

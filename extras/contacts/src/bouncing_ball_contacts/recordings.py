@@ -19,11 +19,20 @@ import numpy as np
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import HEADINGS, TEXTS, Column, Lines, Table, table_of
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, holding, positive
+from bouncing_ball_contacts.units import (
+    STANDARD_GRAVITY,
+    Refused,
+    holding,
+    positive,
+    units_of,
+)
 
 LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("drops", ("drop height", "rebound height")),
     ("drops", ("drop height", "trial")),
+    ("drops", ("drop height", "height")),
+    ("drops", ("height", "rebound height")),
+    ("drops", ("drop height", "average")),
     ("speeds", ("speed before", "speed after")),
     ("speeds", ("speed", "speed after")),
     ("coefficients", ("speed", "restitution")),
@@ -36,8 +45,20 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("heights", ("height",)),
 )
 """What was measured is the first row whose columns are all there."""
+_PAIRS = ("drops", "speeds", "coefficients")
 # Without its other half such a column says that another one is missing.
 _HALVES = ("drop height", "rebound height", "trial", "speed before", "speed after", "restitution")
+# What was computed of the columns that are read.
+_COMPUTED = {
+    "drops": ("restitution", "average"),
+    "speeds": ("restitution",),
+    "track": ("restitution", "speed", ""),
+    "times": ("restitution", "interval"),
+    "flights": ("restitution",),
+    "heights": ("restitution",),
+}
+_READINGS = "height|rebound|bounce|drop|trial|speed|velocity|time"
+_ERRORS = "uncertainty|deviation|error|std"
 _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
@@ -136,6 +157,25 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
     table.refuse(flights > 9, f"{long}times of slow motion", flights, lines=lines)
 
 
+def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, remedy: str) -> None:
+    """Refuse flights in s that end with an echo, or with a touch that was counted twice.
+
+    Such a flight has less than a quarter of the middle of those beside it, and the next one is
+    longer, by more than three missing touches would make it. The last flight has less than a
+    quarter of what the two before it predict.
+    """
+    # A first flight is compared with the next one only.
+    before = np.concatenate([flights[1:2] / 4, flights[:-1]])
+    after = flights[1:]
+    is_echo = np.zeros(len(flights), bool)
+    is_short = 4 * flights[:-1] ** 2 < before[:-1] * after
+    is_echo[:-1] = is_short & (after > _GROWTH * flights[:-1] + grows)
+    if len(flights) > 2:
+        is_echo[-1] = 4 * flights[-1] * flights[-3] < flights[-2] ** 2
+    said = f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}"
+    table.refuse(is_echo, said, flights, lines=lines)
+
+
 def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) -> None:
     """Refuse flights in s within which an impact is missing, and a first one that is a fall.
 
@@ -181,10 +221,12 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     # flight by two.
     grows = 2 * rounding if kind == "times" else rounding
     film = "; times of a film need a line # frame rate: 30" if kind == "times" else ""
+    remedy = "delete this line" if kind == "times" else "add it to the next flight"
     what = "height of {} m" if kind == "heights" else "flight of {} s"
     for values, lines in runs:
         if kind != "heights":
             _refuse_durations(table, values, lines)
+            _refuse_echoes(table, values, lines, grows, remedy)
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
             f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
@@ -272,6 +314,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts; gravity gives their scale."""
     is_there = np.all([~np.isnan(each.numbers) for each in columns], axis=0)
     t = table.values(columns[0])[is_there]
+    t = t - t[:1]
     y = columns[1].numbers[is_there]
     lines = table.lines[is_there]
     if len(t) <= 2 * _FEWEST:
@@ -331,18 +374,19 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
     # An r beside times was computed of these.
     computed = {"restitution"} if {"time", "interval"} & roles else set()
     is_half = bool(roles & set(_HALVES) - computed)
-    layouts = LAYOUTS[:6] if is_half else LAYOUTS
+    layouts = [each for each in LAYOUTS if not is_half or each[0] in _PAIRS]
     kind, needed = next((each for each in layouts if roles >= set(each[1])), ("", ()))
     if not kind:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        by_rate = "divide frames by their rate, for a column t (s); "
-        film = by_rate if "'frame" in there.lower() else ""
+        by_rate = "frames are times with a line above the headings, # frame rate: 30; "
+        film = by_rate if "frame" in roles else ""
         raise Refused(f"{table.name}: no bounces, as {there}: {film}{HEADINGS}")
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        is_counted = each.role in ("trial", "height") and re.search(r"\d$", each.name + other.name)
+        counted = "height" if kind == "heights" else "trial"
+        is_counted = each.role == counted and re.search(r"\d$", each.name + other.name)
         if each.role == other.role and not is_counted:
             raise Refused(
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
@@ -350,6 +394,16 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
                 "trial 2, and of several balls one is below the other, with a column 'ball'"
             )
     return kind, columns
+
+
+def _is_reading(column: Column, kind: str) -> bool:
+    """Return whether a column that is not used may be what was measured, or a half of it."""
+    is_error = re.search(_ERRORS, column.name.lower())
+    if is_error or column.role in _COMPUTED.get(kind, ()) or np.isnan(column.numbers).all():
+        return False
+    is_of_bounce = any(column.unit in units_of(unit) for unit in ("s", "m", "m/s"))
+    named = column.role or re.search(_READINGS, column.name.lower())
+    return bool(is_of_bounce or (named and not column.is_count))
 
 
 def _contact_time(table: Table) -> float:
@@ -366,7 +420,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     kind, columns = _layout(table)
     errors = table.of("uncertainty")[:1] if kind == "coefficients" else []
     is_there = np.all([~np.isnan(each.numbers) for each in columns + errors], axis=0)
-    if kind in ("drops", "speeds", "coefficients"):
+    if kind in _PAIRS:
         recording = _of_pairs(table, kind, columns, errors)
     elif kind == "track":
         recording = _of_track(table, columns)
@@ -377,15 +431,21 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
     used = [*columns, *errors, *table.of("duration")]
     ignored = [
-        repr(each.name)
-        for each in table.columns
-        if each.name and each not in used and each.role not in TEXTS
+        each for each in table.columns if each.name and each not in used and each.role not in TEXTS
     ]
+    for each in ignored:
+        if _is_reading(each, kind):
+            raise Refused(
+                f"{table.name}: column {each.name!r} looks like a measurement, but "
+                f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
+                "delete it, or name it 'remark'"
+            )
+    unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     notes = [
         *((True, note) for note in recording.notes),
-        (ignored, f"columns not used: {', '.join(ignored)}"),
+        (unused, f"columns not used: {unused}"),
         (gaps, f"a number is missing in line {gaps}, which is left out{divides}"),
         *(
             (

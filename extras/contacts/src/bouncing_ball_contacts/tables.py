@@ -7,6 +7,7 @@ the head, in which ``# mass: 46 g`` is a quantity of the ball.
 
 import csv
 import itertools
+import math
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import LARGEST, Refused, in_si, refuse
+from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refuse
 
 Lines = NDArray[np.intp]
 
@@ -26,9 +27,12 @@ NAMES = {
     "time": "time, t, impact time",
     "interval": "interval, time between, dt, delta t",
     "flight": "flight, flight time, time of flight, air time",
-    "drop height": "drop height, drop, initial height, release height, start height, height before",
-    "rebound height": "rebound height, rebound, final height, height after, h'",
+    "drop height": "drop height, drop, initial height, release height, start height, "
+    "height before, height of drop",
+    "rebound height": "rebound height, rebound, final height, height after, h', "
+    "height of rebound, height of bounce",
     "trial": "trial",
+    "average": "average, mean",
     "height": "height, h, top, bounce height",
     "speed before": "speed before, velocity before, v before, v in, v0, initial speed",
     "speed after": "speed after, velocity after, v after, v out, final speed, rebound speed",
@@ -37,6 +41,7 @@ NAMES = {
     "uncertainty": "uncertainty, standard deviation, std, error",
     "duration": "contact time, duration",
     "position": "y, z, y position, position",
+    "frame": "frame, frames, frame number",
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
@@ -53,8 +58,22 @@ _ROLES = {
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
-TEXTS = ("ball", "recording", "remark", "count")
+TEXTS = ("ball", "recording", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
+_SPELLED = {
+    "inches": "in",
+    "feet": "ft",
+    "metres": "m",
+    "meters": "m",
+    "centimetres": "cm",
+    "centimeters": "cm",
+    "millimetres": "mm",
+    "millimeters": "mm",
+    "seconds": "s",
+    "sec": "s",
+    "milliseconds": "ms",
+}
+"""Units in words."""
 _UNITS = {
     "interval": "s",
     "flight": "s",
@@ -63,6 +82,7 @@ _UNITS = {
     "drop height": "m",
     "rebound height": "m",
     "trial": "m",
+    "average": "m",
     "height": "m",
     "speed before": "m/s",
     "speed after": "m/s",
@@ -73,7 +93,8 @@ _UNITS = {
 # By the unit: what a number is, the largest ones without and with a unit in the heading, and the
 # unit in which a larger one may have been written.
 _LARGEST = {
-    "s": ("time", 1e4, 1e4, "ms"),
+    # A time may be counted from 1970.
+    "s": ("time", math.inf, math.inf, ""),
     "m": ("height", 10.0, 100.0, "cm"),
     "m/s": ("speed", 100.0, 100.0, "cm/s"),
     # An error of its reading may let an r exceed 1.
@@ -105,6 +126,12 @@ class Column:
     def scale(self) -> float:
         """The unit of the column in SI units."""
         return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
+
+    @property
+    def is_count(self) -> bool:
+        """Whether the numbers are whole and grow by 1 at most, as those of lines or trials."""
+        steps = np.diff(self.numbers)
+        return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
 
     @property
     def digit(self) -> float:
@@ -195,11 +222,12 @@ def _columns_as_text(columns: Mapping[str, Any]) -> str:
 
 def _heading(text: str) -> tuple[str, str, str]:
     """Return the name of a heading, its unit, and what it has: '' if that is not known."""
-    plain = " ".join(text.replace("_", " ").split())
+    plain = " ".join(re.sub("[’′]", "'", text.replace("_", " ")).split())
     parts = re.fullmatch(r"(.+?) ?[(\[](.*)[)\]]", plain) or re.fullmatch(
-        r"(.+?)[ /]+(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
+        r"(.+?)(?: in |[ /]+)(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
     )
     name, unit = parts.groups() if parts else (plain, "")
+    unit = _SPELLED.get(unit.lower(), unit)
     key = re.sub(r"[ .]", "", name.lower())
     # h0, h1, h2 are counted, and v0 is a name of its own.
     return name, unit, _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
@@ -214,7 +242,8 @@ def _number(cell: str, is_decimal_comma: bool) -> float | None:
         number = float(plain or "nan")
     except ValueError:
         return None
-    return None if abs(number) > LARGEST else number
+    # Nanoseconds since 1970 are about 2e18.
+    return None if abs(number) > 10 * LARGEST else number
 
 
 def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
@@ -287,5 +316,27 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
                 f"{name}, line {lines[i]}: {cells[i]!r} below {title!r} is no number; a unit "
                 "stands in the heading, as in height (cm)"
             )
-        columns.append(Column(title, unit, role, cells, np.array(numbers, float)))
-    return Table(name, head, columns, np.array(lines))
+        column = Column(title, unit, role, cells, np.array(numbers, float))
+        # Trials by their numbers divide a table, where those of heights have a unit.
+        is_number = title.lower() == "trial" and not unit and column.is_count
+        columns.append(replace(column, role="recording") if is_number else column)
+    return Table(name, head, _with_times(head, columns), np.array(lines))
+
+
+def _with_times(head: Mapping[str, str], columns: list[Column]) -> list[Column]:
+    """Return the columns with times in place of frames, if the head has their rate and none is."""
+    if "frame rate" not in head or any(each.role == "time" for each in columns):
+        return columns
+    rate = positive("frame rate", head["frame rate"], "Hz")
+    return [
+        replace(
+            each,
+            unit="s",
+            role="time",
+            cells=[f"{number / rate:.9f}" for number in each.numbers],
+            numbers=each.numbers / rate,
+        )
+        if each.role == "frame"
+        else each
+        for each in columns
+    ]

@@ -58,6 +58,11 @@ _EXAMPLES = {
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
+def units_of(unit: str) -> list[str]:
+    """Return the units that are known of the quantities of an SI unit."""
+    return list(_UNITS[unit])
+
+
 class Refused(ValueError):
     """A question without an answer; the message is one line for whoever asked."""
 

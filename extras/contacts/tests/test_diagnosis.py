@@ -511,7 +511,7 @@ def test_mujoco_takes_the_least_solref_and_the_mean_solimp():
         ("pybullet", {"contactStiffness": -2}, "not between 0 and inf"),
         # Names that the engine has and the row has not; E was read as e, and the last one counted.
         ("gazebo", {"min_depth": 1e-3}, "min_depth above 0 lowers r"),
-        ("lammps-hertz", {"kn": 1e7, "e": 0.7, "E": 0.5}, "does not use 'E'"),
+        ("lammps-hertz", {"kn": 1e7, "e": 0.7, "E": 0.5}, "'E' is not computed here"),
         ("lammps", {"kn": 1e5, "gamma_n": 2, "Kn": 2e5}, "'Kn' gives kn twice"),
         # These were an AttributeError.
         ("mujoco", "solref", "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}"),

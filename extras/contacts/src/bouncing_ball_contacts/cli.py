@@ -63,6 +63,8 @@ def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
     return [name for name in [*ENGINES, *BY_NUMBER] if name.startswith(typed)]
 
 
+_TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
+"""What engines call the time step, as it is compared."""
 _ENGINE = click.Option(
     ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
 )
@@ -204,6 +206,15 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     return found
 
 
+def _step_of(typed: dict[str, str], time_step: str | None) -> tuple[dict[str, str], str | None]:
+    """Return the parameters without a time step among them, and the time step."""
+    steps = {name: value for name, value in typed.items() if as_compared(name) in _TIME_STEPS}
+    values = [*steps.values(), *filter(None, [time_step])]
+    if len(values) > 1:
+        raise Refused(f"the time step is given twice, as {' and as '.join(values)}")
+    return {name: typed[name] for name in typed if name not in steps}, next(iter(values), None)
+
+
 def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]:
     """Return ODE's numbers of a spring and a damper: ERP = h k/(h k + c), CFM = 1/(h k + c)."""
     if time_step is None:
@@ -244,7 +255,7 @@ def diagnose_command(
     from bouncing_ball_contacts.diagnosis import diagnose
     from bouncing_ball_contacts.rebounds import engine_by_number, falling, rebound
 
-    typed = _assigned(parameters)
+    typed, time_step = _step_of(_assigned(parameters), time_step)
     if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
         typed = _own_of_ode(typed, time_step)
     beside = _assigned(other) if other or one_body else None

@@ -261,7 +261,10 @@ def parameters_of(
             near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
             others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
             hint = "".join(near or others)
-            raise Refused(f"{engine} does not use {each!r}: it has {', '.join(names)}{hint}")
+            known_here = ", ".join(names)
+            raise Refused(
+                f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
+            )
         if name in found:
             raise Refused(f"{each!r} gives {name} twice")
         found[name] = value

@@ -75,7 +75,9 @@ class ByNumber:
     ``is_restless``, each step of gravity is thrown back, and a threshold above g h/(1 - r) lets a
     body come to rest. ``damped_by`` is the linear damping of a body with its default ``damping``,
     and ``kept`` the share of a velocity that it leaves in a step. ``pixels`` is how many of them
-    are a metre, of an engine whose lengths are pixels.
+    are a metre, of an engine whose lengths are pixels. ``relaxation`` is that of contacts of
+    cannon-es. ``others`` are rows of the engine with another ``setting``, of which the best one is
+    taken where no number keeps r.
     """
 
     name: str
@@ -98,6 +100,9 @@ class ByNumber:
     damped_by: str = ""
     damping: float = 0.0
     kept: Callable[[float, float], float] = lambda damping, step: 1.0
+    relaxation: float = 0.0
+    setting: str = ""
+    others: tuple["ByNumber", ...] = ()
     notes: tuple[str, ...] = ()
 
     @property
@@ -111,6 +116,7 @@ class ByNumber:
             "combine": modes if self.is_physx else (),
             "damping": (self.damped_by,) if self.damped_by else (),
             "pixels": ("pixels",) if self.pixels else (),
+            "relaxation": ("contactEquationRelaxation",) if self.relaxation else (),
         }
         return {as_compared(name): what for what, names in typed.items() for name in names}
 
@@ -133,6 +139,13 @@ class ByNumber:
         return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
 
 
+def _undamped(engine: ByNumber, written: str) -> ByNumber:
+    """Return the engine with a row of its own for bodies without linear damping."""
+    setting = f"{engine.damped_by} = 0"
+    undamped = replace(engine, damping=0.0, setting=setting, written=written)
+    return replace(engine, others=(*engine.others, undamped))
+
+
 # In 1/s², the default gravity of matter-js.
 _PIXELS = 1000.0
 _JOLT = ByNumber(
@@ -148,6 +161,7 @@ _JOLT = ByNumber(
     damped_by="mLinearDamping",
     damping=0.05,
     kept=lambda damping, step: max(1 - damping * step, 0.0),
+    notes=("Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m",),
 )
 _PHYSX = ByNumber(
     name="physx",
@@ -183,6 +197,48 @@ _DART = ByNumber(
     is_restless=True,
     notes=("The threshold is a constant of the library",),
 )
+_GODOT = "physics_material.bounce = {number}  # of {bodies}"
+_CANNON = ByNumber(
+    name="cannon-es",
+    rule=step_rules.cannon,
+    ran="cannon-es 0.20.0",
+    written="new ContactMaterial(a, b, {{restitution: {number}}})",
+    pair=PAIR,
+    notes=("The contactEquationStiffness is taken as 1e7, the default",),
+    relaxation=3.0,
+    damped_by="linearDamping",
+    damping=0.01,
+    kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
+)
+
+
+def _relaxed(engine: ByNumber, steps: float) -> ByNumber:
+    """Return cannon-es with contacts that relax in so many steps."""
+    setting = f"contactEquationRelaxation = {steps:g}"
+    options = f"{{{{restitution: {{number}}, {setting.replace(' =', ':')}}}}}"
+    written = f"new ContactMaterial(a, b, {options})"
+    return replace(engine, relaxation=steps, setting=setting, written=written)
+
+
+_MATTER = ByNumber(
+    name="matter-js",
+    rule=step_rules.matter,
+    ran="matter-js 0.20.0",
+    written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // of {bodies}",
+    pair=LARGER,
+    notes=(
+        "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r that is "
+        "lower by 0.02",
+        "Below the threshold a ball with a number above 0.98 may also leave faster than it came",
+    ),
+    threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
+    set_by="Resolver._restingThresh",
+    lowered="Matter.Resolver._restingThresh = {threshold};",
+    pixels=_PIXELS / STANDARD_GRAVITY,
+    damped_by="frictionAir",
+    damping=0.01,
+    kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
+)
 _RAPIER = ByNumber(
     name="rapier",
     rule=step_rules.rapier,
@@ -195,19 +251,22 @@ _RAPIER = ByNumber(
 BY_NUMBER = {
     each.name: each
     for each in (
-        _JOLT,
-        replace(
-            _JOLT,
-            name="godot-jolt",
-            written="physics_material.bounce = {number}  # of {bodies}",
-            parameter="bounce",
-            pair=_CLAMPED_SUM,
-            set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
-            lowered="physics/jolt_physics_3d/simulation/bounce_velocity_threshold={threshold}"
-            "  # project setting",
-            damped_by="default_linear_damp",
-            damping=0.1,
-            notes=("Godot was not run: its source hands these numbers to Jolt",),
+        _undamped(_JOLT, f"{_JOLT.written}\nbodySettings.mLinearDamping = 0.0f;"),
+        _undamped(
+            replace(
+                _JOLT,
+                name="godot-jolt",
+                written=_GODOT,
+                parameter="bounce",
+                pair=_CLAMPED_SUM,
+                set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
+                lowered="physics/jolt_physics_3d/simulation/bounce_velocity_threshold={threshold}"
+                "  # project setting",
+                damped_by="default_linear_damp",
+                damping=0.1,
+                notes=(*_JOLT.notes, "Godot was not run: its source hands these numbers to Jolt"),
+            ),
+            f"{_GODOT}\nphysics/3d/default_linear_damp=0.0  # project setting",
         ),
         _PHYSX,
         replace(
@@ -292,25 +351,10 @@ BY_NUMBER = {
                 "the same element is not read",
             ),
         ),
-        ByNumber(
-            name="matter-js",
-            rule=step_rules.matter,
-            ran="matter-js 0.20.0",
-            written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // of {bodies}",
-            pair=LARGER,
-            notes=(
-                "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
-                "that is lower by 0.02",
-                "Below the threshold a ball with a number above 0.98 may also leave faster than it "
-                "came",
-            ),
-            threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
-            set_by="Resolver._restingThresh",
-            lowered="Matter.Resolver._restingThresh = {threshold};",
-            pixels=_PIXELS / STANDARD_GRAVITY,
-            damped_by="frictionAir",
-            damping=0.01,
-            kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
+        _undamped(
+            _MATTER,
+            "Bodies.circle(x, y, radius, {{restitution: {number}, frictionAir: 0}})"
+            "  // of {bodies}",
         ),
         ByNumber(
             name="newton-xpbd",
@@ -319,20 +363,7 @@ BY_NUMBER = {
             written="ShapeConfig(restitution={number})  # SolverXPBD(model, "
             "enable_restitution=True)",
         ),
-        ByNumber(
-            name="cannon-es",
-            rule=step_rules.cannon,
-            ran="cannon-es 0.20.0",
-            written="new ContactMaterial(a, b, {{restitution: {number}}})",
-            pair=PAIR,
-            notes=(
-                "With contactEquationRelaxation = 3 and contactEquationStiffness = 1e7, the "
-                "defaults; r depends on where in a step the impact is",
-            ),
-            damped_by="linearDamping",
-            damping=0.01,
-            kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
-        ),
+        replace(_CANNON, others=(_relaxed(_CANNON, 10.0), _relaxed(_CANNON, 50.0))),
     )
 }
 """The engines, and products on top of one, by their names."""
@@ -620,6 +651,7 @@ class Rebound:
         row = self.source
         lowered = f" and {row.set_by} = {self.threshold / row.unit:.2g}"
         also = "" if self.threshold == row.threshold else lowered
+        also += f" and {row.setting}" if row.setting else ""
         return f"{row.parameter} = {self.written:.4g}{also} gives r = {self.restitution}"
 
     def __repr__(self) -> str:
@@ -662,6 +694,11 @@ class Rebound:
             (True, f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}."),
             *((True, f"{note}.") for note in row.notes),
             (
+                row.relaxation and not row.setting,
+                f"With contactEquationRelaxation = {row.relaxation:g}, the default, r depends on "
+                "where in a step the impact is.",
+            ),
+            (
                 row.damping and bounce.gravity,
                 f"The flights are damped by {row.damped_by} = {row.damping:g}"
                 f"{', the default' if is_default else ''}, which lowers r: it holds for this "
@@ -700,7 +737,8 @@ class Case(NamedTuple):
         keeps = self.engine.kept(self.engine.damping, self.step)
         load = self.bounce.load
         number = self.number(written)
-        at = Fall(number, self.step, load, self.threshold, self.bounce.size, keeps)
+        relaxation = self.engine.relaxation
+        at = Fall(number, self.step, load, self.threshold, self.bounce.size, keeps, relaxation)
         return restitutions(self.engine, at, speed)
 
     def rebound(self, written: float) -> Rebound:
@@ -735,6 +773,18 @@ class Case(NamedTuple):
         return self.rebound(place / 10_000)
 
     def wanted(self) -> Rebound:
+        """Return the nearest rebound, with another setting if r is not kept without it."""
+        found = self.with_threshold()
+        if found.deviation <= TOLERANCE:
+            return found
+        cases = (
+            self._replace(engine=each.scaled(self.bounce.gravity, self.engine.pixels))
+            for each in self.engine.others
+        )
+        others = [case.with_threshold() for case in cases]
+        return min([found, *others], key=lambda each: each.deviation)
+
+    def with_threshold(self) -> Rebound:
         """Return the nearest rebound, with a lower threshold if this one is in the way.
 
         It is lowered to a quarter of the speed, or to what lets the ball come to rest.
@@ -815,6 +865,8 @@ def rebound(
         damping=given.get("damping", engine.damping),
         pair=given.get("combine", engine.pair),
     )
+    if "relaxation" in given:
+        engine = _relaxed(engine, given["relaxation"])
     if "threshold in pixels" in given:
         given["threshold"] = engine.unit * given["threshold in pixels"]
     case = Case(
@@ -848,6 +900,7 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
     "threshold in pixels": lambda name, value: within(name, value, 0, math.inf),
     "damping": lambda name, value: within(name, value, 0, math.inf),
     "pixels": lambda name, value: positive(name, value, ""),
+    "relaxation": lambda name, value: positive(name, value, ""),
     "combine": lambda name, value: MODES[one_of(name, value, MODES)],
 }
 
@@ -855,6 +908,7 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
 def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     """Return the number, the threshold, the damping and how two numbers are combined, as typed."""
     combine = "combine" if engine.is_physx else ""
-    names = filter(None, [engine.parameter, engine.set_by, engine.damped_by, combine])
+    relaxation = "contactEquationRelaxation" if engine.relaxation else ""
+    names = filter(None, [engine.parameter, engine.set_by, engine.damped_by, combine, relaxation])
     found = parameters_of(engine.name, engine.names, list(names), typed)
     return {what: _READ[what](what, value) for what, value in found.items()}

@@ -18,7 +18,7 @@ class Fall:
 
     ``number`` is the restitution coefficient of both bodies together. Impacts slower than
     ``threshold`` have none. ``keeps`` is the share of its velocity that a linear damping leaves to
-    a body in a step.
+    a body in a step, and ``relaxation`` how many steps a contact of cannon-es takes to relax.
     """
 
     number: float
@@ -27,6 +27,7 @@ class Fall:
     threshold: float
     radius: float
     keeps: float = 1.0
+    relaxation: float = 3.0
 
     @property
     def added(self) -> float:
@@ -272,13 +273,14 @@ def matter(at: Fall, z: float, v: float) -> Steps:
 
 
 def cannon(at: Fall, z: float, v: float) -> Steps:
-    """A spring of 10⁷ N/m that is relaxed over three steps, with (1 + r) v beside it.
+    """A spring of 10⁷ N/m that is relaxed over d steps, with (1 + r) v beside it.
 
     The body has 1 kg; heavier ones sink deeper.
     """
-    a = 4 / (at.step * 13)
-    b = 12 / 13
-    softness = 4 / (at.step**2 * 1e7 * 13)
+    four = 4 * at.relaxation
+    a = 4 / (at.step * (1 + four))
+    b = four / (1 + four)
+    softness = 4 / (at.step**2 * 1e7 * (1 + four))
     while True:
         impulse = 0.0
         if z < 0:

@@ -132,10 +132,6 @@ def trial(one, height, step, seconds, rub):
     return engine_runs.Trial(written, "ball", float(height), 0.0, steps, G, *rubs)
 
 
-def chrono(one, other, height, step, rub):
-    return engine_runs.chrono(trial(one, height, step, 10.0, rub), other)[0]
-
-
 ODE = run_alone(engine_runs.ode, 60.0)
 GAZEBO = run_alone(engine_runs.gazebo, 20.0)
 
@@ -206,7 +202,6 @@ CASES = [
             {"restitution_coefficient": 0.9, "threshold": 0.0},
         )
     ),
-    ("chrono", chrono, {"kn": 4e4, "gn": 20.0}, {"kn": 2e5, "gn": 60.0}, SHORT),
     *(
         ("physx", physx, both, both, LONG)
         for both in ({"restitution": 0.5}, {"restitution": 0.9}, {"restitution": 0.0})
@@ -289,7 +284,7 @@ RUBBED = Rub(0.3, 1.0)
 WITH_FRICTION = (
     f"The same at a friction of {RUBBED.friction} with {RUBBED.slide:g} m/s along the table, "
     "for which SAP in Drake, and MuJoCo up to r = 0.6, have the wider range of a design. The "
-    "programs for Gazebo and Chrono have no friction."
+    "program for Gazebo has no friction."
 )
 
 
@@ -317,7 +312,7 @@ def table(cases, rub):
 
 def main():
     lines, wrong = table(CASES, Rub())
-    rubbed = [case for case in CASES if case[0] not in ("gazebo", "chrono")]
+    rubbed = [case for case in CASES if case[0] != "gazebo"]
     more, also_wrong = table(rubbed, RUBBED)
     write("pairs", ["## Diagnoses", "", PAIRS, "", *lines, "", WITH_FRICTION, "", *more])
     sys.exit(wrong + also_wrong > 0)

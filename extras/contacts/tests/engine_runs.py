@@ -392,59 +392,6 @@ def newton(trial):
     return followed(trial, advance)
 
 
-def liggghts(trial):
-    program = shutil.which("liggghts")
-    if program is None:
-        raise ModuleNotFoundError("liggghts", name="liggghts")
-    r = trial.size
-    wide = 4 * (r + trial.gap) + 1
-    model = "hertz tangential off" if "hertz" in trial.design.engine else "hooke/stiffness"
-    lines = [
-        "atom_style granular",
-        "atom_modify map array",
-        "boundary f f f",
-        "newton off",
-        "communicate single vel yes",
-        "units si",
-        f"region all block -1 1 -1 1 {-wide!r} {wide!r} units box",
-        "create_box 1 all",
-        f"pair_style gran model {model}",
-        "pair_coeff * *",
-        *trial.design.snippet.splitlines(),
-        f"create_atoms 1 single 0 0 {r + trial.gap!r} units box",
-        f"set atom 1 diameter {2 * r!r} density {trial.mass / trial.volume!r}",
-        "group up id 1",
-    ]
-    height = f"xcm(up,z)-{r!r}"
-    if trial.shape == "two":
-        lines += [
-            f"create_atoms 1 single 0 0 {-r!r} units box",
-            f"set atom 2 diameter {2 * r!r} density {trial.other / trial.volume!r}",
-            "group low id 2",
-        ]
-        height = f"xcm(up,z)-xcm(low,z)-{2 * r!r}"
-    lines += [
-        f"velocity up set 0 0 {-trial.speed!r} units box",
-        "fix move all nve/sphere",
-        f"fix down all gravity {trial.gravity!r} vector 0 0 -1",
-        f"variable height equal {height}",
-    ]
-    with tempfile.TemporaryDirectory() as folder:
-        lines += [
-            'fix heights all print 1 "${height}" file heights.txt screen no title ""',
-            f"run {trial.steps}",
-        ]
-        command = [program, "-screen", "none", "-log", "log.txt"]
-        text = "\n".join(lines)
-        ran = subprocess.run(
-            command, input=text, text=True, cwd=folder, capture_output=True, check=False
-        )
-        log = Path(folder, "log.txt")
-        if ran.returncode or "ERROR" in log.read_text():
-            raise RuntimeError(f"LIGGGHTS: {log.read_text()[-500:]}")
-        return Motion(np.loadtxt(Path(folder, "heights.txt"))[1:])
-
-
 def ode(trial):
     try:
         import odepy
@@ -737,60 +684,11 @@ def _by_program(name, trial, *values):
         return Motion(np.loadtxt(Path(folder, "heights.txt")))
 
 
-def mercurydpm(trial):
-    values = trial.design.parameters
-    return _by_program("engine_mercury", trial, values["stiffness"], values["dissipation"])
-
-
 def gazebo(trial):
     row = ENGINES["gazebo"]
     values = {**row.defaults, **trial.design.parameters}
     is_box = int(trial.shape == "box")
     return _by_program("engine_gazebo", trial, *(values[name] for name in row.defaults), is_box)
-
-
-def chrono(trial, table=None):
-    import pychrono
-
-    system = pychrono.ChSystemSMC()
-    system.SetCollisionSystemType(pychrono.ChCollisionSystem.Type_BULLET)
-    system.SetGravitationalAcceleration(pychrono.ChVector3d(0, 0, -trial.gravity))
-    system.UseMaterialProperties(False)
-    system.SetContactForceModel(pychrono.ChSystemSMC.Hooke)
-    materials = []
-    for values in (trial.design.parameters, table or trial.design.parameters):
-        material = pychrono.ChContactMaterialSMC()
-        material.SetKn(values["kn"])
-        material.SetGn(values["gn"])
-        materials.append(material)
-    r = trial.size
-    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
-    bodies = []
-    for mass, place in zip(masses, (r + trial.gap, -r), strict=False):
-        density = mass / trial.volume
-        if trial.shape == "box":
-            sides = (2 * r, 2 * r, 2 * r)
-            body = pychrono.ChBodyEasyBox(*sides, density, False, True, materials[0])
-        else:
-            body = pychrono.ChBodyEasySphere(r, density, False, True, materials[0])
-        body.SetMass(mass)
-        body.SetPos(pychrono.ChVector3d(0, 0, place))
-        bodies.append(body)
-    bodies[0].SetPosDt(pychrono.ChVector3d(0, 0, -trial.speed))
-    if trial.shape != "two":
-        floor = pychrono.ChBodyEasyBox(20 * r, 20 * r, 20 * r, 1.0, False, True, materials[1])
-        floor.SetMass(1000 * trial.mass)
-        floor.SetPos(pychrono.ChVector3d(0, 0, -10 * r))
-        floor.SetFixed(True)
-        bodies.append(floor)
-    for body in bodies:
-        system.AddBody(body)
-    heights = []
-    for _ in range(trial.steps):
-        system.DoStepDynamics(trial.step)
-        lower = bodies[1].GetPos().z + r if trial.shape == "two" else 0.0
-        heights.append(bodies[0].GetPos().z - r - lower)
-    return Motion(np.array(heights))
 
 
 RUNS = {
@@ -802,17 +700,12 @@ RUNS = {
     "lammps": lammps,
     "lammps-limit-damping": lammps,
     "lammps-hertz": lammps,
-    "liggghts": liggghts,
-    "liggghts-limit-force": liggghts,
-    "liggghts-hertz": liggghts,
     "newton": newton,
     "newton-mujoco": newton,
     "genesis": genesis,
     "physx": physx,
-    "mercurydpm": mercurydpm,
     "ode": ode,
     "gazebo": gazebo,
-    "chrono": chrono,
 }
 
 

@@ -272,7 +272,7 @@ def summary():
     return lines
 
 
-ALONE = ("liggghts", "liggghts-limit-force", "liggghts-hertz", "mercurydpm", "gazebo", "chrono")
+ALONE = ("gazebo",)
 """Engines that are run for drops only."""
 
 

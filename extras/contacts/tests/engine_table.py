@@ -120,22 +120,6 @@ CASES = [
     ("newton", "box", BOX, "1 ms", {}),
     ("newton-mujoco", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("newton-mujoco", "box", BOX, "1 ms", {}),
-    ("liggghts", "ball", dict(mass="50 g", restitution=0.8, radius="30 mm"), "1 ms", {}),
-    ("liggghts", "two", UNEQUAL, None, {}),
-    (
-        "liggghts-limit-force",
-        "ball",
-        dict(mass="50 g", restitution=0.5, radius="30 mm"),
-        "200 us",
-        {},
-    ),
-    (
-        "liggghts-hertz",
-        "ball",
-        dict(mass="50 g", restitution=0.8, penetration="3 mm", radius="30 mm"),
-        None,
-        {},
-    ),
     ("physx", "ball", dict(mass="500 g", restitution=0.8, radius="10 cm"), "1 ms", {}),
     (
         "physx",
@@ -145,10 +129,6 @@ CASES = [
         {},
     ),
     ("physx", "box", BOX, "1 ms", {}),
-    ("mercurydpm", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
-    ("mercurydpm", "ball", dict(mass="2 mg", restitution=0.99, drop_height="5 cm"), "20 us", {}),
-    ("mercurydpm", "ball", dict(mass="1 kg", restitution=0.05, radius="5 cm"), "200 us", {}),
-    ("mercurydpm", "two", UNEQUAL, None, {}),
     ("ode", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("ode", "box", BOX, "1 ms", {}),
     (
@@ -169,18 +149,6 @@ CASES = [
         None,
         {},
     ),
-    ("chrono", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
-    ("chrono", "ball", dict(mass="5 g", restitution=0.99, density="rubber"), "20 us", {}),
-    ("chrono", "ball", dict(mass="1 kg", restitution=0.02, radius="5 cm"), "1 ms", {}),
-    (
-        "chrono",
-        "ball",
-        dict(mass="1 kg", restitution=0.5, penetration="5 mm", density="rubber"),
-        None,
-        {},
-    ),
-    ("chrono", "box", BOX, "1 ms", {}),
-    ("chrono", "two", UNEQUAL, None, {}),
     ("genesis", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("genesis", "box", BOX, "1 ms", {}),
 ]
@@ -193,10 +161,10 @@ FRICTION = 0.3
 RUBBED = (
     f"The same at a friction of {FRICTION}; balls that are dropped move along the table with half "
     "the speed of their impact as well. Of SAP in Drake, and of MuJoCo up to r = 0.6, the r of the "
-    "engine is within the range that the answer has for bodies that slide. The programs for "
-    "LIGGGHTS, MercuryDPM, Gazebo and Chrono have no friction."
+    "engine is within the range that the answer has for bodies that slide. The program for "
+    "Gazebo has no friction."
 )
-SMOOTH = ("liggghts", "liggghts-limit-force", "liggghts-hertz", "mercurydpm", "gazebo", "chrono")
+SMOOTH = ("gazebo",)
 """Engines that are run without friction only."""
 HEAD = [
     "engine, shape",

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball_contacts.scripts import FAMILIES
-
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SHOWN = [
@@ -31,16 +29,6 @@ def test_a_page_shows_what_the_command_prints(typed, page, command, shown):
         assert float(printed) == pytest.approx(float(expected), rel=0.03, abs=2e-3), shlex.quote(
             out
         )
-
-
-def test_the_engines_with_scripts_are_listed():
-    page = (ROOT / "docs" / "design.md").read_text("utf-8")
-    listed = re.findall(r"^\| `--script FILE`.*", page, re.MULTILINE)[0]
-    assert set(re.findall(r"`([a-z-]+)`", listed)) - {
-        "--script",
-        "--points",
-        "--other-mass",
-    } == set(FAMILIES)
 
 
 def test_the_examples_in_python():

@@ -2,16 +2,13 @@
 
 import dataclasses
 import json
-import re
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bouncing_ball_contacts.designs import TOLERANCE, Bounce, Design, design
+from bouncing_ball_contacts.designs import Bounce, Design, design
 from bouncing_ball_contacts.engines import ENGINES, as_compared, engine_named
-from bouncing_ball_contacts.scripts import drop_script
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
@@ -50,9 +47,7 @@ _CONTACT = [
     click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
     click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
     _FRICTION,
-    click.Option(["--tolerance"], help="Largest deviation of r; 0.02 if not given."),
     click.Option(["--pick"], help="Row that is written, such as 'what you want' or impulse."),
-    click.Option(["--script"], type=click.Path(dir_okay=False), help="File for a script to run."),
 ]
 _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
@@ -121,30 +116,12 @@ def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None)
     click.echo("\n\n".join([*answers, *([] if written is None else [str(written)])]))
 
 
-def _write_script(found: Design, path: Path) -> None:
-    text = drop_script(found)
-    imports = re.findall(r"^(?:import|from) .*", text, re.MULTILINE)
-    modules = re.findall(r"\w+", " ".join([found.engine, *imports]))
-    refuse(
-        [
-            (
-                path.stem in modules,
-                f"a script named {path.name} hides the module of the engine: rename it",
-            ),
-            (path.exists(), f"{path} exists, and is not overwritten"),
-        ]
-    )
-    path.write_text(text, "utf-8")
-
-
 def _written_for(
     engine: str,
     body: dict[str, Any],
     contact: dict[str, Any],
     time_step: str | None,
-    tolerance: str | None,
     pick: str | None,
-    script: str | None,
 ) -> "Design | Rebound":
     """Return what is written into an engine; the contact is for one with springs."""
     # Other names than those of springs may be known where the restitution is a number.
@@ -153,25 +130,18 @@ def _written_for(
 
         row = engine_by_number(engine)
         if row is not None and row.name not in ENGINES:
-            for option, value in {"pick": pick, "script": script}.items():
-                if value:
-                    raise Refused(f"--{option} has no place where the restitution is a number")
+            if pick:
+                raise Refused("--pick has no place where the restitution is a number")
             return number_for(falling(**body), row, time_step)
         engine = row.name if row else engine
-    bounce = Bounce(**body, **contact)
-    found = design(bounce, engine, time_step, tolerance=tolerance or TOLERANCE, pick=pick)
-    if script is not None:
-        _write_script(found, Path(script))
-    return found
+    return design(Bounce(**body, **contact), engine, time_step, pick=pick)
 
 
 @main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _JSON])
 def design_command(
     engine: str,
     time_step: str | None,
-    tolerance: str | None,
     pick: str | None,
-    script: str | None,
     as_json: bool,
     **bounce: Any,
 ) -> None:
@@ -181,9 +151,7 @@ def design_command(
         body=bounce,
         contact={},
         time_step=time_step,
-        tolerance=tolerance,
         pick=pick,
-        script=script,
     )
     _print(found, as_json)
 
@@ -290,7 +258,6 @@ def diagnose_command(
         ),
         click.Option(["--ball"], help="One of several in the file."),
         click.Option(["--read-at"], help="Of rebound heights, off the ball: bottom or top."),
-        click.Option(["--laws"], is_flag=True, help="Judge contact laws by r over the speed."),
         click.Option(
             ["--engine"], help="For which the contact is written.", shell_complete=_engines
         ),
@@ -306,9 +273,7 @@ def fit_command(
     ball: str | None,
     engine: str | None,
     time_step: str | None,
-    tolerance: str | None,
     pick: str | None,
-    script: str | None,
     density: str | None,
     penetration: str | None,
     stiffness: str | None,
@@ -316,7 +281,7 @@ def fit_command(
     as_json: bool,
     **of_fit: Any,
 ) -> None:
-    """Read a recording of bounces: r over the speed, the laws it allows, and an engine's contact.
+    """Read a recording of bounces: r over the speed, and an engine's contact.
 
     RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
     """
@@ -331,7 +296,7 @@ def fit_command(
         "stiffness": stiffness,
         "friction": friction,
     }
-    of_design = {"time_step": time_step, "tolerance": tolerance, "pick": pick, "script": script}
+    of_design = {"time_step": time_step, "pick": pick}
     given = {name: value for name, value in (contact | of_design).items() if value is not None}
     if engine is None:
         for name in given:

@@ -65,7 +65,7 @@ Quantity = Any
 """A number in SI units, or a text with a unit."""
 
 TOLERANCE = 0.02
-"""Of r, if none is given."""
+"""Largest deviation of r."""
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
 
@@ -675,7 +675,6 @@ def design(
     engine: str | Engine = "generic",
     time_step: Quantity = None,
     *,
-    tolerance: Quantity = TOLERANCE,
     pick: str | None = None,
 ) -> "Design":
     """Return the contacts of an engine with which a body bounces as wanted, and what they do.
@@ -688,8 +687,6 @@ def design(
     time_step : Quantity, optional
         Of the engine. The second row is the contact that is wanted at this step; if its r is not
         within the tolerance, it is the stiffest contact whose r is.
-    tolerance : Quantity
-        The largest deviation of r.
     pick : str, optional
         The row that is written, by default the one that keeps what was given.
 
@@ -700,7 +697,7 @@ def design(
     """
     if not isinstance(bounce, Bounce):
         raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
-    problem = Problem(bounce, engine_named(engine), within("tolerance", tolerance, 1e-4, 1))
+    problem = Problem(bounce, engine_named(engine))
     known = problem.engine
     refuse(
         [
@@ -971,7 +968,6 @@ class Design:
                 "r is along the line of their centres, which turns while they slide past each "
                 "other: no contact keeps r then",
             ),
-            (bounce.other_mass is None and engine.floor, engine.floor),
         ]
         return [f"{text}." for text in holding(said)]
 

@@ -58,7 +58,6 @@ from bouncing_ball_contacts.units import Refused, holding, in_si, refuse, show, 
 
 _SHARES = (
     "bounce",
-    "coefficientRestitution",
     "contactERP",
     "e",
     "restitution",
@@ -538,7 +537,6 @@ def _facts(contact: Contact, found: Diagnosis) -> list[str]:
         ),
         (row.caution, row.caution),
         (bounce.points > 1 and row.box, row.box),
-        (bounce.other_mass is None and row.floor, row.floor),
     ]
     return holding(facts)
 

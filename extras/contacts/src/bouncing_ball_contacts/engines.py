@@ -126,8 +126,6 @@ class Engine:
         What a user has to know.
     box : str
         What a user has to know of a body with several points.
-    floor : str
-        What a user has to know of a fixed table.
     flat_only : bool
         Whether r is that of a box which falls flat on a plane and does not slide; `box` says so.
     friction : str
@@ -166,7 +164,6 @@ class Engine:
     notes: tuple[str, ...] = ()
     box: str = ""
     flat_only: bool = False
-    floor: str = ""
     sliding: Sliding = Sliding()
     rubs: tuple[str, str] = ("", "")
     friction: str = "friction acts along the surface only, and leaves r as it is"
@@ -478,41 +475,26 @@ def _read_dissipation(p: Parameters, at: Setting) -> Law:
 
 
 def _damping_ratio(e: float) -> float:
-    """Return Tsuji's β of a restitution coefficient; engines divide by the logarithm of it."""
+    """Return Tsuji's β of a restitution coefficient; LAMMPS divides by the logarithm of it."""
     log = math.log(max(e, 1e-12))
     return -log / math.hypot(math.pi, log)
 
 
-def _hertz(
-    names: tuple[str, str], stiffness: float = 1.0, least: float = -math.inf
-) -> dict[str, Any]:
-    """Return what a row has of Hertz with Tsuji: a modulus, and an e that is above `least`.
-
-    The modulus is `stiffness` times k/√R = (4/3) E*.
-    """
-
-    def write(law: Law, at: Setting) -> dict[str, Any]:
-        modulus = stiffness * float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius)
-        beta = float(law.damping)
-        e = math.exp(-math.pi * beta / math.sqrt(1 - beta**2))
-        if e <= least:
-            raise Refused(f"LIGGGHTS takes no {names[1]} below {least:g}, as here {e:.3g}")
-        return {names[0]: modulus, names[1]: e}
-
-    def read(p: Parameters, at: Setting) -> Law:
-        k = p[names[0]] / stiffness * math.sqrt(at.radius) * at.points / at.mass
-        return Hertz(np.asarray(k), np.asarray(_damping_ratio(p[names[1]])))
-
-    def of_depth(depth: Array, ratio: Array, speed: float) -> Hertz:
-        return Hertz.of_depth(depth, np.minimum(ratio, _damping_ratio(0.0)), speed)
-
+def _write_hertz(law: Law, at: Setting) -> dict[str, Any]:
+    beta = float(law.damping)
     return {
-        "names": names,
-        "units": {names[0]: "Pa"},
-        "write": write,
-        "read": read,
-        "of_depth": of_depth,
+        "kn": float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius),
+        "e": math.exp(-math.pi * beta / math.sqrt(1 - beta**2)),
     }
+
+
+def _read_hertz(p: Parameters, at: Setting) -> Law:
+    k = p["kn"] * math.sqrt(at.radius) * at.points / at.mass
+    return Hertz(np.asarray(k), np.asarray(_damping_ratio(p["e"])))
+
+
+def _hertz_of_depth(depth: Array, ratio: Array, speed: float) -> Hertz:
+    return Hertz.of_depth(depth, np.minimum(ratio, _damping_ratio(0.0)), speed)
 
 
 def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
@@ -579,7 +561,6 @@ _DRAKE_BOX = (
     "A pair of shapes has one contact: r is that of a box which falls flat on a HalfSpace and does "
     "not slide; on a Box, on an edge or sliding it had 0.77 to 0.84 for 0.80"
 )
-_LIGGGHTS_DELAY = "Without neigh_modify delay 0 LIGGGHTS finds a contact some steps late"
 _VERLET = SemiImplicit(pulls=True)
 # A depth is the difference of two rounded numbers: below ten of their spacings no digit is certain.
 _SINGLE = 10 * float(np.finfo(np.float32).eps)
@@ -722,7 +703,11 @@ ENGINES: Mapping[str, Engine] = {
         Engine(
             name="lammps-hertz",
             scheme=_VERLET,
-            **_hertz(("kn", "e")),
+            names=("kn", "e"),
+            write=_write_hertz,
+            read=_read_hertz,
+            of_depth=_hertz_of_depth,
+            units={"kn": "Pa"},
             meaning="kn = (4/3) E* in Pa, e = r",
             rules={"kn": PAIR, "e": PAIR},
             sets_pair=True,
@@ -730,42 +715,6 @@ ENGINES: Mapping[str, Engine] = {
             unit="N/m^1.5",
             ran="LAMMPS 2025.7.22",
             notes=("The modulus kn is for this radius; e is the same at every speed",),
-        ),
-        Engine(
-            name="liggghts",
-            scheme=_VERLET,
-            **_forces(("kn", "gamman"), per_mass=True),
-            meaning="kn = k, gamman = c/m (absolute_damping off)",
-            ran="LIGGGHTS 3.8.0",
-            rules={"kn": PAIR, "gamman": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            notes=(_LIGGGHTS_DELAY,),
-        ),
-        Engine(
-            name="liggghts-limit-force",
-            scheme=SemiImplicit(),
-            **_forces(("kn", "gamman"), per_mass=True),
-            meaning="kn = k, gamman = c/m, with limitForce on",
-            ran="LIGGGHTS 3.8.0",
-            rules={"kn": PAIR, "gamman": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            notes=(_LIGGGHTS_DELAY,),
-        ),
-        Engine(
-            name="liggghts-hertz",
-            scheme=_VERLET,
-            # Two alike bodies have 1/E* = 2 (1 - ν²)/E.
-            **_hertz(("youngsModulus", "coefficientRestitution"), 1.5 * (1 - 0.3**2), 0.05),
-            meaning="youngsModulus = E of both, ν = 0.3, coefficientRestitution = r",
-            ran="LIGGGHTS 3.8.0",
-            rules={"youngsModulus": PAIR, "coefficientRestitution": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            notes=(_LIGGGHTS_DELAY,),
-            unit="N/m^1.5",
-            caution="the Poisson ratio is taken as 0.3",
         ),
         Engine(
             name="newton",
@@ -856,15 +805,6 @@ ENGINES: Mapping[str, Engine] = {
             caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
-            name="mercurydpm",
-            scheme=_VERLET,
-            **_forces(("stiffness", "dissipation")),
-            meaning="stiffness = k, dissipation = c",
-            ran="MercuryDPM 1.0",
-            rules={"stiffness": PAIR, "dissipation": PAIR},
-            sets_pair=True,
-        ),
-        Engine(
             name="ode",
             names=("soft_cfm", "soft_erp"),
             scheme=Implicit(),
@@ -924,18 +864,6 @@ ENGINES: Mapping[str, Engine] = {
             undisturbed={"threshold": 0.0, **_UNCAPPED, "kd": 1e12},
         ),
         Engine(
-            name="chrono",
-            scheme=SemiImplicit(),
-            **_forces(("kn", "gn"), per_mass=True),
-            meaning="kn = k, gn = c/m, in ChSystemSMC with Hooke and without material properties",
-            ran="Chrono 10.0.0",
-            rules={"kn": MEAN, "gn": MEAN},
-            deepest=1.0,
-            notes=("The damping gn is per unit of the effective mass, and holds for it only",),
-            floor="Chrono counts the mass of a fixed floor, which is taken as infinite here: give "
-            "the floor 1000 times the mass of the body, because an equal mass halves the damping",
-        ),
-        Engine(
             name="generic",
             scheme=SemiImplicit(),
             **_forces(("stiffness", "damping")),
@@ -959,13 +887,11 @@ _ALIASES = {
     "isaac": "physx",
     "isaac-sim": "physx",
     "isaac-lab": "physx",
-    "mercury": "mercurydpm",
     "omniverse": "physx",
     "ovphysx": "physx",
     "newton-semi-implicit": "newton",
     "newton-featherstone": "newton",
     "gazebo-classic": "gazebo",
-    "chrono-smc": "chrono",
 }
 
 

@@ -8,22 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.designs import (
-    Bounce,
-    Quantity,
-    aligned,
-)
+from bouncing_ball_contacts.designs import Bounce, Quantity
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
     Impacts,
     curves_of,
-    estimates,
+    estimate,
     impacts_of,
     misread,
     without_contacts,
 )
-from bouncing_ball_contacts.laws import LINEAR, REJECTED, Judged, judge
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
@@ -43,11 +38,26 @@ _TABLE_TENNIS_BALL = (0.0027, 0.040)
 
 @dataclass(frozen=True, repr=False)
 class Fit:
-    """r at a speed with its 95 % interval, the laws, and what else is known of the recording.
+    """Restitution coefficient of a recording at a speed.
 
-    ``without_scatter`` has r and the ends of its interval if impacts do not scatter; it is None if
-    that is not known, if it is the same, or if the impacts contradict it. ``scatter`` is the root
-    mean square of the deviations of single impacts, and ``contact_time`` is in s, 0 if not known.
+    Attributes
+    ----------
+    recording, impacts
+        What was measured, and the impacts of it.
+    speed
+        Speed in m/s of the restitution coefficient.
+    restitution, interval
+        Restitution coefficient, and both ends of its 95 % interval.
+    scatter
+        Root mean square of the deviations of single impacts from the curve.
+    slope
+        Exponent of the speed in r.
+    contact_time
+        In s; 0 if it is not known.
+    mass, diameter
+        Of the ball in kg and m; None if they are not known.
+    notes
+        What a user has to know, the severest first.
     """
 
     recording: Recording
@@ -55,29 +65,12 @@ class Fit:
     speed: float
     restitution: float
     interval: tuple[float, float]
-    without_scatter: tuple[float, float, float] | None
     scatter: float
     slope: float
-    laws: tuple[Judged, ...]
     contact_time: float
     mass: float | None
     diameter: float | None
     notes: tuple[str, ...]
-
-    @property
-    def table(self) -> list[list[str]]:
-        """The cells of the table of laws, the headings first."""
-        return [
-            ["law", f"r at {self.speed:.3g} m/s", "rms", "errors needed", "verdict"],
-            *(
-                [
-                    each.law,
-                    *(f"{x:.4f}" for x in (each.restitution, each.rms, each.needed)),
-                    each.verdict,
-                ]
-                for each in self.laws
-            ),
-        ]
 
     def __repr__(self) -> str:
         v = self.impacts.speed
@@ -91,8 +84,6 @@ class Fit:
             return f"r = {r:.{len(ends.split()[0]) - 2}f} {at} {ends}"
 
         found = line(self.restitution, *self.interval)
-        if self.without_scatter is not None:
-            found += f" if impacts scatter\n{line(*self.without_scatter)} if they do not"
         return (
             f"{title}: {count} at {v.min():.3g} to {v.max():.3g} m/s, "
             f"from {self.recording.kind}\n"
@@ -101,8 +92,7 @@ class Fit:
         )
 
     def __str__(self) -> str:
-        laws = ["", *aligned(self.table)] if self.laws else []
-        return "\n".join([repr(self), *(f"! {note}" for note in self.notes), *laws])
+        return "\n".join([repr(self), *(f"! {note}" for note in self.notes)])
 
     def wanted(self, given: Mapping[str, Quantity]) -> tuple[dict[str, Any], dict[str, Any]]:
         """Return the quantities of the bounce at this speed, and the contact time if it was read.
@@ -115,13 +105,22 @@ class Fit:
         if not self.contact_time or given.keys() & {"penetration", "stiffness", "contact_time"}:
             return body, {}
         # √(k/m) times the contact time, which would be π without damping.
-        phase = float(LINEAR.duration(LINEAR.damping(self.restitution), np.array(1.0)))
-        return body, {"contact_time": math.pi * self.contact_time / phase}
+        return body, {"contact_time": math.pi * self.contact_time / _phase(self.restitution)}
 
     def bounce(self, **given: Quantity) -> Bounce:
         """Return the bounce at this speed."""
         body, contact = self.wanted(given)
         return Bounce(**body, **contact)
+
+
+def _phase(restitution: float) -> float:
+    """Return √(k/m) times the contact time of a spring and a damper that never pull.
+
+    With the damping ratio ζ it is 2 arccos(ζ)/√(1 - ζ²), and r = exp(-ζ times it).
+    """
+    ratios = np.geomspace(1e-6, 1.1e3, 4000)
+    phases = np.abs(2 * np.emath.arccos(ratios) / np.emath.sqrt(1 - ratios**2))
+    return float(np.interp(-math.log(max(restitution, 1e-3)), ratios * phases, phases))
 
 
 def lowest_points(recording: Recording, diameter: Any) -> Recording:
@@ -164,9 +163,8 @@ def fit(
     leave_out: tuple[int, ...] = (),
     ball: str | None = None,
     read_at: str | None = None,
-    laws: bool = False,
 ) -> Fit:
-    """Return r of a recording at a speed with its 95 % interval, and the laws that it allows.
+    """Return r of a recording at a speed with its 95 % interval.
 
     Parameters
     ----------
@@ -188,8 +186,6 @@ def fit(
         The name of one, if the file has a column of several.
     read_at : {"bottom", "top"}, optional
         Where rebound heights were read off the ball.
-    laws : bool
-        Whether contact laws are judged.
 
     Raises
     ------
@@ -200,10 +196,10 @@ def fit(
     if isinstance(source, Recording):
         recording = source
     else:
-        found = read(source, leave_out, ball)
-        if len(found) > 1:
-            raise Refused(f"the recording has {', '.join(found)}: name one, --ball")
-        recording = next(iter(found.values()))
+        balls = read(source, leave_out, ball)
+        if len(balls) > 1:
+            raise Refused(f"the recording has {', '.join(balls)}: name one, --ball")
+        recording = next(iter(balls.values()))
 
     def given(name: str, value: Quantity, unit: str) -> float | None:
         said = recording.head.get(name) if value is None else value
@@ -249,21 +245,20 @@ def fit(
         ]
     )
     curves = curves_of(impacts, known, at, rounding)
-    scattering, still = estimates(impacts, curves)
-    r = math.exp(scattering.value)
+    found = estimate(curves)
+    r = math.exp(found.value)
     wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
-    if scattering.low > 0:
+    if found.low > 0:
         raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
-    _, low, high = (still or scattering).of_r
+    _, low, high = found.of_r
     # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
     lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
-    judged = tuple(judge(impacts, curves, at)) if laws and len(v) > 2 else ()
 
     def by_drag_of(mass: float, diameter: float) -> float:
         """Return the difference of r with the drag of a ball, and without drag."""
         r_with, r_without = (
-            estimates(each, curves_of(each, known, speed_of(each), rounding))[0].of_r[0]
+            estimate(curves_of(each, known, speed_of(each), rounding)).of_r[0]
             for each in (impacts_of(recording, drag_of(mass, diameter)), impacts_of(recording))
         )
         return r_with - r_without
@@ -313,11 +308,6 @@ def fit(
         ),
         (len(v) < 3, "too few impacts for an interval of their own: it is wide"),
         (
-            judged and all(each.probability < REJECTED for each in judged),
-            "no law fits: r is that of a smooth curve",
-        ),
-        (judged and known is None, "no errors are given: a law can only be said to deviate"),
-        (
             is_heard and lasts,
             f"the contact, {show(lasts, 's')}, is taken off each time between two impacts",
         ),
@@ -331,11 +321,9 @@ def fit(
         impacts=impacts,
         speed=at,
         restitution=min(r, 1.0),
-        interval=scattering.of_r[1:],
-        without_scatter=None if still is None else still.of_r,
+        interval=(low, high),
         scatter=curves.scatter,
-        slope=scattering.slope,
-        laws=judged,
+        slope=found.slope,
         contact_time=lasts,
         mass=kilograms,
         diameter=metres,

@@ -20,18 +20,14 @@ The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M M
 covariance is a row of variances, and every question below is one of weighted sums of squares.
 
 Few impacts do not tell errors of readings, which hardly change r in the middle, from scatter, which
-does. So there are two intervals of 95 %. If impacts do not scatter, it is that of the posterior of
-β for s = 0. If they do, a posterior would hold r too often where scatter is hidden below the
-errors, and too seldom where it is large. In its place, τ and q have their posterior, but for each
-of these s has its confidence distribution: the squares of the deviations, over their variances and
-weighted by the share of scatter in these, have a sum whose distribution is known for each s, and
-the probability of a scatter below s is that of a larger sum than the one at s (`_below`). So s = 0
-has a probability of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004)
-1060, have such intervals for laboratories that measure the same.) Above its middle the prior of
-scatter multiplies this distribution. Two impacts leave no deviation, and have the posterior for all
-s > 0. The interval without scatter is left out if the errors of the readings are not given, because
-few impacts do not tell then whether they scatter, if both are alike, or if a test of s = 0 at 5 %
-rejects it (`without_scatter`).
+does. A posterior would hold r too often where scatter is hidden below the errors, and too seldom
+where it is large. In its place, τ and q have their posterior, and for each of these s has its
+confidence distribution: the squares of the deviations, over their variances and weighted by the
+share of scatter in these, have a sum whose distribution is known for each s, and the probability of
+a scatter below s is that of a larger sum than the one at s (`_below`). So s = 0 has a probability
+of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004) 1060, have such
+intervals for laboratories that measure the same.) Above its middle the prior of scatter multiplies
+this distribution. Two impacts leave no deviation, and have the posterior for all s > 0.
 """
 
 import math
@@ -45,9 +41,6 @@ from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import Lines
 from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
-
-ACCEPTED = 0.05
-"""The probability above which a law is compatible, and an absence of scatter possible."""
 
 # Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
 # the readings with which the speeds before and after an impact go. Those of series are alike; of a
@@ -186,22 +179,18 @@ def without_contacts(recording: Recording, lasts: float) -> Recording:
 class Curves:
     """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 
-    ``basis`` has the eigenvectors of M Mᵀ, in which ``columns`` (exponent, n, 2) are the ones and
-    the bends of which curves are the sums, and ``variances`` (ratio, n) those of ln r over τ²;
-    ``sizes`` are the τ, and ``rounded`` is what rounding has of them. The logarithm of the
-    posterior, the weights by the confidence distribution of the scatter, the means of β, ``value``,
-    and of c, ``slope``, and the standard deviation of β, ``spread``, have the shape (ratio, size,
-    exponent). ``scatter`` is the root mean square of the errors of r about the mean curve.
-    ``is_known`` says whether the errors of readings are given.
+    Attributes
+    ----------
+    confidence, value, slope, spread
+        Weights by the confidence distribution of the scatter, means of β and of c, and standard
+        deviation of β, shape (ratio, size, exponent).
+    scatter_sizes
+        Sizes of the scatter s, shape (ratio, size).
+    scatter
+        Root mean square of the errors of r about the mean curve.
     """
 
-    is_known: bool
-    basis: Array
-    columns: Array
-    variances: Array
-    sizes: Array
-    rounded: float
-    posterior: Array
+    scatter_sizes: Array
     confidence: Array
     value: Array
     slope: Array
@@ -330,13 +319,7 @@ def curves_of(
     if n > 2:
         confidence = _confidence(confidence, _below(weights, columns, y, sizes), scatter)
     return Curves(
-        is_known=known is not None,
-        basis=basis,
-        columns=columns,
-        variances=variances,
-        sizes=sizes,
-        rounded=error * rounded,
-        posterior=posterior,
+        scatter_sizes=np.concatenate([np.zeros_like(scatter[:1]), scatter]),
         confidence=confidence,
         value=middle + value,
         slope=slope,
@@ -346,14 +329,13 @@ def curves_of(
     )
 
 
-def _estimate(curves: Curves, weights: Array) -> Estimate:
-    """Return what a recording says; the weights begin with the first ratio."""
-    n = len(weights)
+def estimate(curves: Curves) -> Estimate:
+    """Return what a recording says."""
     # What is left out changes probabilities by less than 1e-6.
-    matters = weights > 1e-6 / weights.size
-    weights = weights[matters]
-    value = curves.value[:n][matters]
-    spread = curves.spread[:n][matters]
+    matters = curves.confidence > 1e-6 / curves.confidence.size
+    weights = curves.confidence[matters]
+    value = curves.value[matters]
+    spread = curves.spread[matters]
     ends = np.min(value - 9 * spread), np.max(value + 9 * spread)
     low, middle, high = (
         optimize.brentq(
@@ -361,33 +343,4 @@ def _estimate(curves: Curves, weights: Array) -> Estimate:
         )
         for level in (0.025, 0.5, 0.975)
     )
-    slope = np.sum(curves.slope[:n][matters] * weights)
-    return Estimate(middle, low, high, float(slope))
-
-
-def without_scatter(impacts: Impacts, curves: Curves) -> float:
-    """Return the probability of deviations that are at least as unlikely if impacts do not scatter.
-
-    The sum of the squares of the deviations from the nearest curve, over their known variances, has
-    a χ² distribution then.
-    """
-    y = impacts.log_r @ curves.basis
-    left, _ = deviations(1 / curves.variances[:1], curves.columns, y)
-    squares = np.sum(left**2, axis=(2, 3)) / curves.sizes[0] ** 2
-    # Two impacts leave no deviations, which any number of degrees of freedom allows.
-    return float(special.chdtrc(max(len(y) - 2, 1), squares.min()))
-
-
-def estimates(impacts: Impacts, curves: Curves) -> tuple[Estimate, Estimate | None]:
-    """Return what a recording says if impacts scatter, and if they do not.
-
-    The second one is None if the errors of the readings are not given, if the impacts contradict
-    it, or if it says the same.
-    """
-    scattering = _estimate(curves, curves.confidence)
-    if not curves.is_known or without_scatter(impacts, curves) < ACCEPTED:
-        return scattering, None
-    still = _estimate(curves, special.softmax(curves.posterior[:1]))
-    # An interval of nearly the same width says the same.
-    says_more = still.high - still.low < 0.8 * (scattering.high - scattering.low)
-    return scattering, still if says_more and still.low <= 0 else None
+    return Estimate(middle, low, high, float(np.sum(curves.slope[matters] * weights)))

@@ -6,17 +6,17 @@ import sys
 
 import pytest
 
-from bouncing_ball_contacts import Bounce, cli, design
+from bouncing_ball_contacts import ENGINES, Bounce, cli, design
 
 
 @pytest.fixture(scope="session")
 def of_ball():
-    """Return a function that gives the design of an engine for one ball, at 0.5 ms."""
+    """Return a function that gives the springs of an engine for one ball, at 0.5 ms."""
     ball = Bounce(mass="50 g", restitution=0.8, drop_height="1 m", radius="30 mm")
 
     @functools.cache
     def designed(name):
-        return design(ball, name, "0.5 ms")
+        return design(ball, ENGINES[name], "0.5 ms")
 
     return designed
 

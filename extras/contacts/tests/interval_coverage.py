@@ -22,11 +22,11 @@ def power(e, slope, v):
 
 
 def lossy(e, exponent, v):
-    """Return r = e at 2 m/s whose loss 1 - r goes as a power of the speed.
+    """Return r = e at 2 m/s whose loss 1/r - 1 goes as a power of the speed.
 
-    The power is 1/5 for a weak damping of Kuwabara and Kono, and 1 for one of Hunt and Crossley.
+    The power is 1/5 as of a damping of Kuwabara and Kono, and 1 as of one of Hunt and Crossley.
     """
-    return 1 - (1 - e) * (np.asarray(v, float) / 2.0) ** exponent
+    return 1 / (1 + (1 / e - 1) * (np.asarray(v, float) / 2.0) ** exponent)
 
 
 def flights(rng, r, impacts, error, scatter, recordings=1, start=3.6):
@@ -167,7 +167,7 @@ KINDS = [
         partial(drops, heights=np.array([0.2, 0.5, 1.0, 1.8]), each=3, error=4e-3, scatter=0),
     ),
     (
-        "20 drops read to 3 mm, scatter 0.015, 1 - b v",
+        "20 drops read to 3 mm, scatter 0.015, 1/(1 + b v)",
         steep(0.7),
         partial(drops, heights=np.geomspace(0.1, 2, 5), each=4, error=3e-3, scatter=0.015),
     ),
@@ -197,7 +197,7 @@ KINDS = [
         partial(coefficients, v=np.linspace(1, 5, 12), error=4e-3, scatter=0.012, stated=True),
     ),
     (
-        "15 pairs of speeds to 0.01 m/s, scatter 0.01, 1 - b v",
+        "15 pairs of speeds to 0.01 m/s, scatter 0.01, 1/(1 + b v)",
         steep(0.6),
         partial(speeds, v=np.linspace(0.8, 4, 15), error=0.01, scatter=0.01),
     ),
@@ -385,7 +385,7 @@ KINDS = [
         partial(speeds, v=np.linspace(1, 4, 6), error=0.02, scatter=None),
     ),
     (
-        "15 pairs of speeds to 0.05 m/s, any scatter, 1 - b v",
+        "15 pairs of speeds to 0.05 m/s, any scatter, 1/(1 + b v)",
         steep(0.65),
         partial(speeds, v=np.linspace(1, 5, 15), error=0.05, scatter=None),
     ),

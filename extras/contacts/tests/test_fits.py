@@ -174,7 +174,7 @@ def test_a_fit_is_a_bounce_for_an_engine():
     other = fit("bouncy_ball", mass="20 g", diameter="30 mm").bounce()
     assert (other.mass, other.radius) == (0.02, 0.015)
     with pytest.raises(Refused, match="mass is missing"):
-        fit("bouncy_ball").bounce()
+        design(fit("bouncy_ball").bounce(), "mujoco")
     # Without its damping the same contact lasts longer.
     assert 7.314e-4 < fit("croquet").bounce().contact_time < 1.06 * 7.314e-4
     short = fit("croquet", contact_time="0.3657 ms").bounce()

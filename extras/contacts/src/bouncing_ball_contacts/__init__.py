@@ -3,19 +3,19 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from bouncing_ball_contacts.designs import Bounce, Design, design
+from bouncing_ball_contacts.answers import Answer
+from bouncing_ball_contacts.bounces import Bounce
 from bouncing_ball_contacts.engines import ENGINES
+from bouncing_ball_contacts.questions import design, diagnose
 from bouncing_ball_contacts.units import Refused
 
 if TYPE_CHECKING:
-    from bouncing_ball_contacts.diagnosis import Diagnosis, diagnose
     from bouncing_ball_contacts.fits import Fit, fit
 
 __all__ = [
     "ENGINES",
+    "Answer",
     "Bounce",
-    "Design",
-    "Diagnosis",
     "Fit",
     "Refused",
     "design",
@@ -24,11 +24,8 @@ __all__ = [
 ]
 
 
-# Fits need SciPy, whose import takes longer than a design, which needs neither.
-_ELSEWHERE = {"Fit": "fits", "fit": "fits", "Diagnosis": "diagnosis", "diagnose": "diagnosis"}
-
-
 def __getattr__(name: str) -> Any:
-    if name in _ELSEWHERE:
-        return getattr(import_module(f"{__name__}.{_ELSEWHERE[name]}"), name)
+    # Fits need SciPy, whose import takes longer than a design, which does not need it.
+    if name in ("Fit", "fit"):
+        return getattr(import_module(f"{__name__}.fits"), name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -3,12 +3,15 @@
 import dataclasses
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from bouncing_ball_contacts.designs import Bounce, Design, design
-from bouncing_ball_contacts.engines import ENGINES, as_compared, engine_named
+from bouncing_ball_contacts.answers import Answer
+from bouncing_ball_contacts.bounces import Bounce
+from bouncing_ball_contacts.engines import ENGINES, as_compared
+from bouncing_ball_contacts.questions import design, diagnose
+from bouncing_ball_contacts.rebounds import BY_NUMBER, rows_of
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
@@ -17,9 +20,6 @@ from bouncing_ball_contacts.units import (
     refuse,
     step_in_si,
 )
-
-if TYPE_CHECKING:
-    from bouncing_ball_contacts.rebounds import Rebound
 
 _DENSITY = click.Option(
     ["--density"], help="In place of the size or the mass; also steel, rubber, …"
@@ -47,15 +47,12 @@ _CONTACT = [
     click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
     click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
     _FRICTION,
-    click.Option(["--pick"], help="Row that is written, such as 'what you want' or impulse."),
 ]
 _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
 
 def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
-    from bouncing_ball_contacts.rebounds import BY_NUMBER
-
-    return [name for name in [*ENGINES, *BY_NUMBER] if name.startswith(typed)]
+    return [name for name in {**ENGINES, **BY_NUMBER} if name.startswith(typed)]
 
 
 _TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
@@ -63,6 +60,7 @@ _TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize
 _ENGINE = click.Option(
     ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
 )
+_EXPLAIN = click.Option(["--explain"], is_flag=True, help="All remarks.")
 _JSON = click.Option(["--json", "as_json"], is_flag=True, help="All numbers, in SI units.")
 
 
@@ -88,72 +86,36 @@ def main(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-def _without_source(fields: list[tuple[str, Any]]) -> dict[str, Any]:
-    """Return the fields of an answer without the row of its engine, which has functions."""
-    return {name: value for name, value in fields if name != "source"}
-
-
-def _values(found: Any) -> dict[str, Any]:
-    """Return the numbers and texts of an answer, or of several."""
+def _plain(found: Any) -> Any:
+    """Return the numbers and texts of an answer, or of several, as those of JSON."""
     if isinstance(found, dict):
-        return {name: _values(each) for name, each in found.items()}
-    values = dataclasses.asdict(found, dict_factory=_without_source)
-    texts = ("parameters", "snippet", "notes")
-    values |= {name: getattr(found, name) for name in texts if hasattr(found, name)}
-    return values
+        return {name: _plain(each) for name, each in found.items()}
+    return dataclasses.asdict(found)
 
 
-def _print(found: Any, as_json: bool, written: "Design | Rebound | None" = None) -> None:
+def _print(found: Any, as_json: bool, explain: bool, written: Answer | None = None) -> None:
+    """Print answers, those of several balls by their names, and what is written for an engine."""
     if as_json:
-        values = _values(found) | ({} if written is None else {"design": _values(written)})
+        values = _plain(found) | ({} if written is None else {"design": _plain(written)})
         # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
         text = json.dumps(values, default=lambda array: array.tolist())
         plain = json.loads(text, parse_constant=lambda _: None)
         click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
     several = found.items() if isinstance(found, dict) else [("", found)]
-    answers = [f"{name}\n{each}".lstrip("\n") for name, each in several]
-    click.echo("\n\n".join([*answers, *([] if written is None else [str(written)])]))
+    answers = [(name, each) for name, each in several] + [("", written)] * (written is not None)
+    texts = [
+        f"{name}\n{each.explained if explain else each}".lstrip("\n") for name, each in answers
+    ]
+    click.echo("\n\n".join(texts))
 
 
-def _written_for(
-    engine: str,
-    body: dict[str, Any],
-    contact: dict[str, Any],
-    time_step: str | None,
-    pick: str | None,
-) -> "Design | Rebound":
-    """Return what is written into an engine; the contact is for one with springs."""
-    # Other names than those of springs may be known where the restitution is a number.
-    if engine not in ENGINES:
-        from bouncing_ball_contacts.rebounds import engine_by_number, falling, number_for
-
-        row = engine_by_number(engine)
-        if row is not None and row.name not in ENGINES:
-            if pick:
-                raise Refused("--pick has no place where the restitution is a number")
-            return number_for(falling(**body), row, time_step)
-        engine = row.name if row else engine
-    return design(Bounce(**body, **contact), engine, time_step, pick=pick)
-
-
-@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _JSON])
+@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _EXPLAIN, _JSON])
 def design_command(
-    engine: str,
-    time_step: str | None,
-    pick: str | None,
-    as_json: bool,
-    **bounce: Any,
+    engine: str, time_step: str | None, explain: bool, as_json: bool, **bounce: Any
 ) -> None:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    found = _written_for(
-        engine,
-        body=bounce,
-        contact={},
-        time_step=time_step,
-        pick=pick,
-    )
-    _print(found, as_json)
+    _print(design(Bounce(**bounce), engine, time_step), as_json, explain)
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
@@ -201,6 +163,7 @@ def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]
         _ENGINE,
         _STEP,
         click.Option(["--one-body"], is_flag=True, help="The other body keeps its defaults."),
+        _EXPLAIN,
         _JSON,
         click.Option(
             ["--other"], multiple=True, help="NAME=VALUE of the other body, if it differs."
@@ -213,40 +176,25 @@ def diagnose_command(
     engine: str,
     time_step: str | None,
     one_body: bool,
+    explain: bool,
     as_json: bool,
     **bounce: Any,
 ) -> None:
-    """Say what bounce the numbers of an engine give, why, and the least change for yours.
+    """Print what bounce the numbers of an engine give, why, and the least change for yours.
 
     Without numbers they are the engine's defaults, if it has some.
     """
-    from bouncing_ball_contacts.diagnosis import diagnose
-    from bouncing_ball_contacts.rebounds import engine_by_number, falling, rebound
-
     typed, time_step = _step_of(_assigned(parameters), time_step)
     if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
         typed = _own_of_ode(typed, time_step)
     beside = _assigned(other) if other or one_body else None
-    row = engine_by_number(engine)
-    # An engine with both has springs, unless all names are those of its number.
-    by_number = row and typed and set(map(as_compared, typed)) <= row.names.keys()
-    if row is not None and row.springs and not by_number:
-        engine = row.springs
-        row = None
-    if row is not None:
-        _print(rebound(falling(**bounce), row, typed, time_step, beside), as_json)
-        return
-    known = engine_named(engine)
-    # Where the rebound is by a number, r does not depend on the mass.
-    needs_no_mass = known.number in typed and not typed.keys() & set(known.names)
-    body = falling(**bounce) if needs_no_mass and not bounce["mass"] else Bounce(**bounce)
-    _print(diagnose(body, known, typed, time_step, other=beside), as_json)
+    _print(diagnose(Bounce(**bounce), engine, typed, time_step, other=beside), as_json, explain)
 
 
 @main.command(
     "fit",
     params=[
-        click.Argument(["recording"], type=click.Path(allow_dash=True)),
+        click.Argument(["recording"], type=click.Path(allow_dash=True), nargs=-1, required=True),
         click.Option(
             ["--speed"], help="At which r is wanted; the middle of the impacts if not given."
         ),
@@ -264,31 +212,34 @@ def diagnose_command(
         _STEP,
         _DENSITY,
         *_CONTACT,
+        _EXPLAIN,
         _JSON,
     ],
 )
 def fit_command(
-    recording: str,
+    recording: tuple[str, ...],
     leave_out: tuple[int, ...],
     ball: str | None,
     engine: str | None,
     time_step: str | None,
-    pick: str | None,
     density: str | None,
     penetration: str | None,
     stiffness: str | None,
     friction: str | None,
+    explain: bool,
     as_json: bool,
     **of_fit: Any,
 ) -> None:
     """Read a recording of bounces: r over the speed, and an engine's contact.
 
-    RECORDING is a file, - for what is piped, or a published experiment, such as croquet.
+    RECORDING is a file, - for what is piped, a published experiment, such as croquet, or numbers
+    and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms.
     """
     from bouncing_ball_contacts.fits import fit
-    from bouncing_ball_contacts.recordings import read
+    from bouncing_ball_contacts.recordings import read, typed_readings
 
-    balls = read("/dev/stdin" if recording == "-" else recording, leave_out, ball)
+    source = typed_readings(recording) if len(recording) > 1 else recording[0]
+    balls = read("/dev/stdin" if source == "-" else source, leave_out, ball)
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     contact = {
         "density": density,
@@ -296,34 +247,32 @@ def fit_command(
         "stiffness": stiffness,
         "friction": friction,
     }
-    of_design = {"time_step": time_step, "pick": pick}
-    given = {name: value for name, value in (contact | of_design).items() if value is not None}
+    given = {name: value for name, value in contact.items() if value is not None}
     if engine is None:
-        for name in given:
+        for name in [*given, *(["time_step"] * (time_step is not None))]:
             option = name.replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
-        _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json)
+        _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain)
         return
     if len(fits) > 1:
         raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
     (found,) = fits.values()
-    body, by_time = found.wanted({name: value for name, value in contact.items() if value})
-    _print(found, as_json, _written_for(engine, body, by_time, **of_design))
+    # The contact time of a recording is for springs.
+    bounce = found.bounce(is_spring=rows_of(engine)[1] is None, **given)
+    _print(found, as_json, explain, design(bounce, engine, time_step))
 
 
 @main.command("engines")
 def engines_command() -> None:
     """List the engines, their parameters and the versions in which they were run."""
-    from bouncing_ball_contacts.rebounds import BY_NUMBER
-
     click.echo("With a stiffness; the parameters are of both bodies alike:")
     for row in ENGINES.values():
         combined = ", ".join(dict.fromkeys(row.rules[name].text for name in row.names))
         click.echo(f"{row.name}: {row.meaning}")
         click.echo(f"    two bodies: {combined}; run in {row.ran}")
-    click.echo("\nWith a restitution by number, which counts from the threshold on:")
+    click.echo("\nWith a restitution by number, which counts above the threshold:")
     for each in BY_NUMBER.values():
-        click.echo(f"{each.name}: {each.parameter}, threshold {each.limit}")
+        click.echo(f"{each.name}: {each.parameter}, threshold {each.limit(each.threshold)}")
         click.echo(f"    two bodies: {each.pair.text}; run in {each.ran}")
 
 

@@ -4,11 +4,11 @@ The parameters of two bodies at a time step are a contact (:class:`Contact`), wh
 reads and which bounces as a design does. Three questions are asked of it.
 
 * *What changes r?* One thing after another is taken away: the parameters that a design sets
-  otherwise, the steps, and gravity. What remains is r of the spring and the damper alone, or the
-  restitution that is given as a number. Each thing that changes r visibly is named.
+  otherwise, the steps, and gravity. What remains is r of the spring and the damper alone. Each
+  thing that changes r visibly is named.
 * *What may have been meant?* Where r would be the wanted one if the numbers stood for something
   else, this is said.
-* *What is the least change?* The damping, or the number, with which r is the wanted one: at the
+* *What is the least change?* The damping with which r is the wanted one: at the
   given step if it keeps the tolerance there, and else at a half, a quarter, … of it.
 """
 
@@ -21,15 +21,9 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.designs import (
-    LEAST_RESTITUTION,
-    TOLERANCE,
-    VAGUE,
-    Bounce,
-    Outcome,
-    Problem,
-    Quantity,
-)
+from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome
+from bouncing_ball_contacts.bounces import Bounce, Quantity
+from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem, not_for
 from bouncing_ball_contacts.engines import (
     CONES,
     ENGINES,
@@ -37,7 +31,6 @@ from bouncing_ball_contacts.engines import (
     Engine,
     Parameters,
     as_compared,
-    engine_named,
     one_of,
     parameters_of,
 )
@@ -48,7 +41,6 @@ from bouncing_ball_contacts.schemes import (
     Law,
     Linear,
     SemiImplicit,
-    Solved,
     Trials,
     drop,
     exact,
@@ -56,15 +48,8 @@ from bouncing_ball_contacts.schemes import (
 )
 from bouncing_ball_contacts.units import Refused, holding, in_si, refuse, show, within
 
-_SHARES = (
-    "bounce",
-    "contactERP",
-    "e",
-    "restitution",
-    "restitution_coefficient",
-    "soft_erp",
-)
-"""Parameters from 0 to 1. Those of them that set r raise it, where a damping lowers it."""
+_SHARES = ("e", "soft_erp")
+"""Parameters from 0 to 1, which raise r where a damping lowers it."""
 _DIVISORS = ("dampratio", "soft_erp")
 """Parameters that cannot be 0, besides the stiffness of each engine."""
 _VECTORS = {
@@ -72,7 +57,7 @@ _VECTORS = {
     "solimp": (1, 5, "up to five numbers"),
     "friction": (1, 3, "up to three numbers"),
 }
-"""The least and the most numbers of parameters that have several, in figures and in words."""
+"""Minimum and maximum count of the numbers of parameters, and both as text."""
 _WORDS = {"restitutionCombineMode": MODES, "cone": CONES, "condim": ("1", "3", "4", "6")}
 """Parameters that are one of several words."""
 _WHY = {
@@ -113,14 +98,13 @@ class Contact:
 
     @property
     def steps(self) -> float:
-        """How many steps a contact takes; 0 of an impulse."""
+        """Number of steps of a contact."""
         return float(self.law.duration(self.problem.bounce.impact_speed)) / self.step
 
     @property
     def damper(self) -> str:
         """The parameter by which r is changed."""
-        engine = self.problem.engine
-        return engine.number if self.law.is_number else engine.names[1]
+        return self.problem.engine.names[1]
 
     @property
     def is_ratio(self) -> bool:
@@ -147,149 +131,50 @@ class Contact:
 
 
 @dataclass(frozen=True)
-class Change:
-    """One parameter, and the step in s, with which r is the wanted one, or the nearest to it."""
+class Found:
+    """What a contact does.
 
-    name: str
-    value: Any
-    step: float
-    outcome: Outcome
-
-    def __str__(self) -> str:
-        return _gives({self.name: self.value}, self.step, self.outcome)
-
-
-@dataclass(frozen=True, repr=False)
-class Diagnosis:
-    """What the parameters of an engine do.
-
-    ``limit`` is r in the limit of short steps and ``free`` the same without gravity; ``stiffness``
-    in N/m and ``damping_ratio`` are those of all points together, NaN if the contact is none of a
-    spring and a damper. Where the rebound is by a number, ``limit`` and ``free`` are this number.
-    ``given`` are those of the ``parameters`` that are no defaults, and ``other`` the same of
-    another body that differs.
+    Attributes
+    ----------
+    outcome : Outcome
+    limit, free
+        r in the limit of short steps, and the same without gravity.
+    stiffness, damping_ratio
+        Of all points together, in N/m; NaN if the contact has no spring with a constant k.
     """
 
-    engine: str
-    source: Engine
-    bounce: Bounce
-    time_step: float
-    parameters: Parameters
-    given: Parameters
-    other: Parameters | None
     outcome: Outcome
     limit: float
     free: float
     stiffness: float
     damping_ratio: float
-    reasons: tuple[str, ...] = ()
-    change: Change | None = None
-    lost: str = ""
-    """Why the body is lost; empty if it is not."""
-
-    def __str__(self) -> str:
-        row = self.source
-        r = self.outcome.restitution
-        wanted = self.bounce.restitution
-        goal = "" if wanted is None else f"; {wanted:g} is wanted"
-        if wanted is not None and r.deviation(wanted) <= TOLERANCE and not self.lost:
-            goal += f", and kept within {TOLERANCE:g}"
-        lies = self.bounce.load > 0 and math.isfinite(self.outcome.rest) and not self.lost
-        others = {} if self.other is None else self.other
-        defaults = {name: row.defaults[name] for name in row.defaults if name not in self.given}
-        rest = {name: row.defaults[name] for name in row.defaults if name not in others}
-        given = [
-            (self.given, _assigned(self.given)),
-            (
-                self.other is not None,
-                f"of the other body {_assigned(others) or 'the defaults'}",
-            ),
-            (True, ", ".join(f"{name} {value}" for name, value in self.bounce.given.items())),
-        ]
-        assumed = holding(
-            [
-                (defaults, f"the defaults {_assigned(defaults)}"),
-                (others and rest, f"of the other body the defaults {_assigned(rest)}"),
-                *((True, each) for each in self.bounce.assumed),
-                (not self.bounce.given.keys() & {"mass", "density"}, "a mass of 1 kg (--mass)"),
-            ]
-        )
-        lines = [
-            (
-                True,
-                f"{row.name} at a step of {show(self.time_step, 's')}: "
-                f"{f'lost, because {self.lost}' if self.lost else f'r = {r}'}{goal}",
-            ),
-            (
-                True,
-                f"It sinks {show(self.outcome.depth[1], 'm')} under at most "
-                + show(self.outcome.force[1], "N")
-                + (f", and lies {show(self.outcome.rest, 'm')} deep." if lies else "."),
-            ),
-            (
-                math.isfinite(self.stiffness),
-                f"The contact has k = {show(self.stiffness, 'N/m')} and a damping ratio of "
-                f"{self.damping_ratio:.3g}; in short steps r is {self.limit:.3f}.",
-            ),
-            *((True, f"! {reason}") for reason in self.reasons),
-            (self.change, f"Least change: {self.change}."),
-            (
-                wanted is None,
-                "With --restitution there is a least change, for the r that is wanted.",
-            ),
-            (True, f"Given: {'; '.join(holding(given))}."),
-            (assumed, f"Assumed: {'; '.join(assumed)}."),
-            (not row.ran, f"The row of {row.name} was never run in its engine."),
-        ]
-        return "\n".join(holding(lines))
-
-    __repr__ = __str__
 
 
-def diagnose(
+def diagnose_spring(
     bounce: Bounce,
-    engine: str | Engine,
-    parameters: Mapping[str, Any] | None = None,
-    time_step: Quantity = None,
-    *,
+    engine: Engine,
+    parameters: Mapping[str, Any],
+    time_step: Quantity,
     other: Mapping[str, Any] | None = None,
-) -> Diagnosis:
-    """Return the bounce that parameters give at a step, and the least change for the one wanted.
-
-    Parameters
-    ----------
-    bounce : Bounce
-        Its restitution is the one that is wanted, and may be left out.
-    engine : str or Engine
-    parameters : mapping
-        Those of one body by their names; without any, the engine's defaults.
-    time_step : Quantity
-        Of the engine.
-    other : mapping, optional
-        Those of the other body beside the engine's defaults; if it is left out, both are alike.
+) -> Answer:
+    """Return the bounce of a stiffness and a damping, and the least change for the one wanted.
 
     Raises
     ------
     Refused
         If a parameter or the step is missing, unknown or out of its range.
     """
-    if not isinstance(bounce, Bounce) or not all(
-        isinstance(body or {}, Mapping) for body in (parameters, other)
-    ):
-        raise Refused(
-            "give a bounce, an engine and parameters by their names: "
-            "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}, '2 ms')"
-        )
-    row = engine_named(engine)
-    is_told = bounce.friction is not None and "friction" in row.rules
+    # The mass is looked at first.
+    problem = Problem(bounce, engine)
+    is_told = bounce.friction is not None and "friction" in engine.rules
     rubs = {"friction": bounce.friction} if is_told else {}
-    given = _given(row, {**rubs, **(parameters or {})})
-    differs = None if other is None else _given(row, other)
+    given = _given(engine, {**rubs, **parameters})
+    differs = None if other is None else _given(engine, other)
     refuse(
         [
             (
-                row.sets_pair and other is not None,
-                f"{row.name} sets the contact of a pair: no body has one of its own",
+                engine.sets_pair and other is not None,
+                f"{engine.name} sets the contact of a pair: no body has one of its own",
             ),
             (
                 time_step is None,
@@ -298,20 +183,13 @@ def diagnose(
         ]
     )
     contact = Contact(
-        problem=Problem(bounce, row),
-        one={**row.defaults, **given},
-        other=None if differs is None else {**row.defaults, **differs},
+        problem=problem,
+        one={**engine.defaults, **given},
+        other=None if differs is None else {**engine.defaults, **differs},
         step=bounce.step(time_step),
     )
     spring = _spring(contact.law)
-    found = Diagnosis(
-        engine=row.name,
-        source=row,
-        bounce=bounce,
-        time_step=contact.step,
-        parameters=contact.one,
-        given=given,
-        other=differs,
+    found = Found(
         outcome=contact.outcome(),
         limit=_in_short_steps(contact, bounce.load),
         free=_in_short_steps(contact, 0.0),
@@ -319,20 +197,86 @@ def diagnose(
         damping_ratio=float(spring.damping / spring.stiffness**0.5 / 2),
     )
     wanted = bounce.restitution
-    if found.outcome.depth[1] > contact.problem.deepest:
-        return replace(found, lost=contact.problem.lost, reasons=tuple(_facts(contact, found)))
-    reasons = [*_dangers(found), *_causes(contact, found), *_facts(contact, found)]
-    if wanted is None or found.outcome.restitution.deviation(wanted) <= TOLERANCE:
-        return replace(found, reasons=tuple(reasons))
-    reasons += _guesses(contact, found)
-    change = _least_change(contact)
-    if change is None or change.step != contact.step:
-        what = row.number if contact.law.is_number else "damping of this contact"
-        reasons.append(
-            f"no {what} keeps r within {TOLERANCE:g} at this step, but 'bounce design' may have a "
-            f"contact that does; the nearest: {_nearest(contact)}"
-        )
-    return replace(found, reasons=tuple(reasons), change=change)
+    lost = problem.lost * (found.outcome.depth[1] > problem.deepest)
+    change = None
+    is_off = wanted is not None and found.outcome.restitution.deviation(wanted) > TOLERANCE
+    meant = _guesses(contact, found) if is_off and not lost else []
+    causes = [] if lost else [*_friction(contact, found), *_causes(contact, found)]
+    of_r = [*_dangers(contact, found), *meant, *causes]
+    if is_off and not lost:
+        change = _least_change(contact)
+        if change is None or change.time_step != contact.step:
+            of_r.append(
+                f"no damping of this contact keeps r within {TOLERANCE:g} at this step, but "
+                f"'bounce design' may have a contact that does; the nearest: "
+                f"{_nearest(contact).gives}"
+            )
+    return Answer(
+        engine=engine.name,
+        bounce=bounce,
+        time_step=contact.step,
+        parameters=contact.one,
+        outcome=found.outcome,
+        warnings=(*of_r, *_facts(contact, found)),
+        not_for=not_for(replace(problem, bounce=_known(bounce, found)), found.outcome),
+        remarks=tuple(_remarks(contact, found, given, differs)),
+        change=change,
+        lost=lost,
+        numbers={
+            "stiffness": found.stiffness,
+            "damping_ratio": found.damping_ratio,
+            "limit": found.limit,
+            "free": found.free,
+        },
+    )
+
+
+def _known(bounce: Bounce, found: Found) -> Bounce:
+    """Return the bounce with the r that the contact has."""
+    return replace(bounce, restitution=min(max(found.outcome.restitution.mean, 0.0), 1.0))
+
+
+def _remarks(
+    contact: Contact, found: Found, given: Parameters, differs: Parameters | None
+) -> list[str]:
+    """Return what was given and assumed, and what else is known of a contact."""
+    engine = contact.problem.engine
+    bounce = contact.problem.bounce
+    defaults = {name: engine.defaults[name] for name in engine.defaults if name not in given}
+    others = differs or {}
+    rest = {name: engine.defaults[name] for name in engine.defaults if name not in others}
+    of_body = ", ".join(f"{name} {value}" for name, value in bounce.given.items())
+    of_other = f"of the other body {_assigned(others) or 'the defaults'}"
+    known = [_assigned(given), of_other * (differs is not None), of_body]
+    assumed = holding(
+        [
+            (defaults, f"the defaults {_assigned(defaults)}"),
+            (others and rest, f"of the other body the defaults {_assigned(rest)}"),
+            *((True, each) for each in bounce.assumed),
+        ]
+    )
+    law = contact.law
+    lies = bounce.load > 0 and math.isfinite(found.outcome.rest)
+    return holding(
+        [
+            (
+                math.isfinite(found.stiffness),
+                f"The contact has k = {show(found.stiffness, 'N/m')} and a damping ratio of "
+                f"{found.damping_ratio:.3g}; in short steps r is {found.limit:.3f}",
+            ),
+            (lies, f"At rest it lies {show(found.outcome.rest, 'm')} deep"),
+            (math.isnan(found.outcome.rest) and not isinstance(law, Impedance), VAGUE),
+            (engine.caution, engine.caution[:1].upper() + engine.caution[1:]),
+            (bounce.points > 1 and engine.box, engine.box),
+            (
+                bounce.restitution is None,
+                "With --restitution there is a least change, for the r that is wanted",
+            ),
+            (not engine.ran, f"The row of {engine.name} was never run in its engine"),
+            (True, f"Given: {'; '.join(filter(None, known))}"),
+            (assumed, f"Assumed: {'; '.join(assumed)}"),
+        ]
+    )
 
 
 def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
@@ -356,8 +300,7 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
                 "has no default",
             ),
             (
-                # PyBullet's -1 stands for a spring and a damper that are off.
-                len({body.get(name) == -1 for name in engine.names}) > 1,
+                engine.name == "pybullet" and len(found.keys() & set(engine.names)) == 1,
                 f"{engine.name} refuses {' or '.join(engine.names)} alone: give both",
             ),
         ]
@@ -416,15 +359,11 @@ def _assigned(values: Parameters) -> str:
     return ", ".join(f"{name} = {_spelled(value)}" for name, value in values.items())
 
 
-def _gives(parameters: Parameters, step: float, found: Outcome) -> str:
-    return f"{_assigned(parameters)} at a step of {show(step, 's')} gives r = {found.restitution}"
-
-
 def _spring(law: Law) -> Law:
     """Return the spring and the damper of a law; they are NaN if it has others."""
     if isinstance(law, Impedance):
         return law.deep
-    if law.is_number or not isinstance(law, Linear | Solved):
+    if not isinstance(law, Linear):
         return Linear(np.asarray(math.nan), np.asarray(math.nan))
     return Linear(law.stiffness, law.damping)
 
@@ -436,9 +375,7 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     are semi-implicit also where the engine's are implicit: they come nearer to the limit.
     """
     law = contact.law
-    if law.is_number:
-        return float(contact.combined[contact.problem.engine.number])
-    law = _spring(law) if isinstance(law, Solved) else law
+    law = _spring(law) if isinstance(law, Linear) else law
     speed = contact.problem.bounce.impact_speed
     step = np.minimum(law.duration(speed) / SHORT_STEPS, contact.step)
     scheme = contact.problem.engine.scheme
@@ -451,13 +388,11 @@ def _in_short_steps(contact: Contact, gravity: float) -> float:
     return max(float(2 * half.mean() - whole.mean()), 0.0)
 
 
-def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
+def _causes(contact: Contact, found: Found) -> Iterator[str]:
     """Yield what changes r visibly, by taking away one thing after another."""
     row = contact.problem.engine
     # MuJoCo's impedance is a part of its spring, and stays.
     designed = {name: value for name, value in row.beside.items() if name != "solimp"}
-    if contact.law.is_number:
-        designed = {**{name: row.defaults[name] for name in row.names}, **row.undisturbed}
     without = []
     for name, value in designed.items():
         what = _assigned({name: contact.one[name]})
@@ -474,9 +409,9 @@ def _causes(contact: Contact, found: Diagnosis) -> Iterator[str]:
         r = less
 
 
-def _dangers(found: Diagnosis) -> list[str]:
+def _dangers(contact: Contact, found: Found) -> list[str]:
     """Return what makes a contact useless in a scene."""
-    bounce = found.bounce
+    bounce = contact.problem.bounce
     high = found.outcome.restitution.high
     return holding(
         [
@@ -492,63 +427,62 @@ def _dangers(found: Diagnosis) -> list[str]:
     )
 
 
-def _facts(contact: Contact, found: Diagnosis) -> list[str]:
-    """Return what else a user has to know of a contact."""
-    row = contact.problem.engine
-    bounce = found.bounce
+def _friction(contact: Contact, found: Found) -> list[str]:
+    """Return by how much friction changes r in MuJoCo."""
     law = contact.law
-    r = found.outcome.restitution.mean
-    hops = contact.problem.hops(law, contact.step, found.outcome)
+    if not isinstance(law, Impedance):
+        return []
     # Of a friction pyramid without friction, and of an elliptic cone.
     smooth, cone = (
         contact.problem.outcome(replace(law, edges=edges), contact.step, _MEAN).restitution.mean
-        if isinstance(law, Impedance)
-        else r
         for edges in (0.0, 1.0)
     )
+    solimp = _spelled(contact.problem.engine.beside.get("solimp", ""))
+    changes = max(abs(smooth - cone), abs(smooth - found.outcome.restitution.mean))
+    return [
+        f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
+        f"with the elliptic cone {cone:.3f} at every friction; at solimp = {solimp}, as designs "
+        "have, none changes it"
+    ] * (changes > _VISIBLE)
+
+
+def _facts(contact: Contact, found: Found) -> list[str]:
+    """Return what else changes r, or the depth."""
+    row = contact.problem.engine
+    law = contact.law
+    hops = contact.problem.hops(law, contact.step, found.outcome)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
-    facts = [
-        (
-            law.is_number,
-            f"the rebound is by the number {row.number}"
-            + (f", {row.rules[row.number].text}: {found.limit:.3g}" if law.is_number else ""),
-        ),
-        (
-            not law.is_number and contact.steps < _FEW,
-            f"a contact takes {contact.steps:.2g} steps: r depends on where in a step it begins",
-        ),
-        (
-            0 < time < raised and contact.combined.get("refsafe", True),
-            f"{row.name} raises the time constant of {time:g} s to {raised:g} s, two steps",
-        ),
-        (
-            found.damping_ratio >= 1,
-            f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
-            "oscillation",
-        ),
-        (hops, hops),
-        (math.isnan(found.outcome.rest) and not isinstance(law, Impedance | Solved), VAGUE),
-        (
-            max(abs(smooth - cone), abs(smooth - r)) > _VISIBLE,
-            f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
-            f"with the elliptic cone {cone:.3f} at every friction; at solimp = "
-            f"{_spelled(row.beside.get('solimp', ''))}, as designs have, none changes it",
-        ),
-        (row.caution, row.caution),
-        (bounce.points > 1 and row.box, row.box),
-    ]
-    return holding(facts)
+    return holding(
+        [
+            (
+                contact.steps < _FEW,
+                f"a contact takes {contact.steps:.2g} steps: r depends on where in a step it "
+                "begins",
+            ),
+            (
+                0 < time < raised and contact.combined.get("refsafe", True),
+                f"{row.name} raises the time constant of {time:g} s to {raised:g} s, two steps",
+            ),
+            (
+                found.damping_ratio >= 1,
+                f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
+                "oscillation",
+            ),
+            (hops, hops),
+        ]
+    )
 
 
-def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
+def _guesses(contact: Contact, found: Found) -> list[str]:
     """Return what the numbers may have been meant to be, where r would then be the wanted one."""
     row = contact.problem.engine
-    wanted = found.bounce.restitution
+    bounce = contact.problem.bounce
+    wanted = bounce.restitution
     # The numbers of solref are 1/s² and 1/s, if they are not a time constant and a ratio.
     units_of = {**row.units, "solref": "" if contact.is_ratio else "1/s"}
     divided = {
-        name: np.divide(contact.one[name], found.bounce.mass)
+        name: np.divide(contact.one[name], bounce.mass)
         for name in row.names
         if units_of.get(name) in ("1/s", "1/s^2")
     }
@@ -559,7 +493,7 @@ def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
         (
             abs(r - wanted) < TOLERANCE <= abs(found.outcome.restitution.mean - wanted),
             f"{' and '.join(divided)} is per unit of mass in {row.name}: divided by "
-            f"{found.bounce.mass:g} kg, r is {r:.3f}",
+            f"{bounce.mass:g} kg, r is {r:.3f}",
         ),
         (
             # A formula is followed to two digits.
@@ -571,13 +505,14 @@ def _guesses(contact: Contact, found: Diagnosis) -> list[str]:
     return holding(guesses)
 
 
-def _nearest(contact: Contact) -> Change:
+def _nearest(contact: Contact) -> Answer:
     """Return the change with which the mean r is the wanted one at this step, or the nearest one.
 
-    It is found by bisection: a damping lowers r, and a number raises it.
+    It is found by bisection: a damping lowers r, and a share raises it.
     """
     raises = contact.damper in _SHARES
-    target = max(contact.problem.bounce.restitution, LEAST_RESTITUTION)
+    bounce = contact.problem.bounce
+    target = max(bounce.restitution, LEAST_RESTITUTION)
     # Ratios beyond these are springs that throw the body away, or hardly act.
     low, high = (1e-3, 1e2) if contact.is_ratio else (1e-12, 1.0 if raises else 1e12)
 
@@ -592,10 +527,20 @@ def _nearest(contact: Contact) -> Change:
     # The least damping is as good as none, but no ratio is 0.
     is_some = place > 0 or contact.is_ratio
     found = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
-    return Change(contact.damper, found.one[contact.damper], contact.step, found.outcome())
+    value = found.one[contact.damper]
+    outcome = found.outcome()
+    return Answer(
+        engine=contact.problem.engine.name,
+        bounce=bounce,
+        time_step=contact.step,
+        parameters={contact.damper: value},
+        outcome=outcome,
+        gives=f"{_assigned({contact.damper: value})} at {show(contact.step, 's')} gives r = "
+        f"{outcome.restitution}",
+    )
 
 
-def _least_change(contact: Contact) -> Change | None:
+def _least_change(contact: Contact) -> Answer | None:
     """Return the change with which r keeps the tolerance, at the longest step that has one."""
     deviations: list[float] = []
     for halvings in range(12):
@@ -605,7 +550,7 @@ def _least_change(contact: Contact) -> Change | None:
         if deviations[-1] <= TOLERANCE:
             return change
         # If a quarter of a step that is short does not help, shorter ones do not.
-        is_short = contact.law.is_number or contact.steps * 2**halvings > _FEW
+        is_short = contact.steps * 2**halvings > _FEW
         if halvings > 1 and is_short and deviations[-1] > 0.9 * deviations[-3]:
             break
     return None

@@ -18,8 +18,7 @@ import numpy as np
 from bouncing_ball_contacts.schemes import (
     Array,
     Bullet,
-    ContactJoint,
-    FoundAhead,
+    Capped,
     Hertz,
     HuntCrossley,
     Impedance,
@@ -135,14 +134,10 @@ class Engine:
         those of two bodies are multiplied.
     sliding : Sliding
         By how much r of a body that slides may leave the range of one that does not.
-    number : str
-        The parameter that is a restitution coefficient, if the engine has one.
-    threshold : str
-        The parameter of the speed below which nothing is thrown back by this coefficient.
-    undisturbed : mapping
-        What the coefficient needs beside it, for bounces that are alike at all instants and speeds.
     caution : str
         What a diagnosis takes for granted.
+    not_for : tuple of str
+        Scenes in which r is another one.
     """
 
     name: str
@@ -167,10 +162,8 @@ class Engine:
     sliding: Sliding = Sliding()
     rubs: tuple[str, str] = ("", "")
     friction: str = "friction acts along the surface only, and leaves r as it is"
-    number: str = ""
-    threshold: str = ""
-    undisturbed: Parameters = field(default_factory=dict)
     caution: str = ""
+    not_for: tuple[str, ...] = ()
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         """Return the parameters of the contact of two bodies."""
@@ -202,7 +195,7 @@ MODES = {"average": MEAN, "min": LEAST, "multiply": PRODUCT, "max": LARGER}
 
 @dataclass(frozen=True)
 class PhysX(Engine):
-    """PhysX combines restitutions by a mode of the materials.
+    """PhysX combines stiffnesses and dampings by the mode of the restitutions.
 
     A stiffness is a negative restitution there, so that "min" takes the larger one. Of a compliant
     and a rigid material the stiffness is that of the former, and the damping the larger one.
@@ -211,8 +204,7 @@ class PhysX(Engine):
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         modes = [body["restitutionCombineMode"] for body in (one, other)]
         of_mode = MODES[max(modes, key=list(MODES).index)].of
-        restitution = of_mode(one["restitution"], other["restitution"])
-        found = super().combined(one, other) | {"restitution": restitution}
+        found = super().combined(one, other)
         stiffness, damping = self.names
         if min(one[stiffness], other[stiffness]) > 0:
             return found | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
@@ -415,39 +407,33 @@ def _if_set(rule: Rule, default: float) -> Rule:
 
 
 _BULLET = _forces(("contactStiffness", "contactDamping"))
-_BULLET_DEFAULTS = {
-    "contactStiffness": -1.0,
-    "contactDamping": -1.0,
-    "restitution": 0.0,
+_BULLET_BESIDE = {
     "linearDamping": 0.04,
-    "contactERP": 0.08,
-    "restitutionVelocityThreshold": 0.2,
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
     "contactBreakingThreshold": 0.02,
 }
-UNDISTURBED = dict.fromkeys(list(_BULLET_DEFAULTS)[3:-1], 0.0)
-"""What PyBullet needs beside a restitution for bounces that are alike at all instants."""
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    # A ball is found within a share of half the diagonal of the box around it, 2 % by default; two
-    # balls, or two boxes, when they touch.
-    share = 0.0 if at.both_free or at.points > 1 else p["contactBreakingThreshold"]
-    seen = share * math.sqrt(3) * at.radius
-    law = Bullet(
-        restitution=np.asarray(p["restitution"]),
-        threshold=p["restitutionVelocityThreshold"],
-        erp=p["contactERP"],
-        slop=p["contactSlop"],
-        ahead=min(seen, p["contactProcessingThreshold"]),
-        drag=p["linearDamping"],
-        step=at.step,
-    )
-    if p["contactStiffness"] < 0:
-        return law
     spring = _BULLET["read"](p, at)
-    return replace(law, stiffness=spring.stiffness, damping=spring.damping)
+    return Bullet(
+        stiffness=spring.stiffness,
+        damping=spring.damping,
+        slop=p["contactSlop"],
+        ahead=found_ahead(p, at.radius, at.both_free or at.points > 1),
+        drag=p["linearDamping"],
+    )
+
+
+def found_ahead(p: Parameters, radius: float, when_touching: bool) -> float:
+    """Return the height in m below which PyBullet finds a contact.
+
+    A ball is found within a share of half the diagonal of the box around it, 2 % by default; two
+    balls, or two boxes, when they touch.
+    """
+    share = 0.0 if when_touching else p["contactBreakingThreshold"]
+    return float(min(share * math.sqrt(3) * radius, p["contactProcessingThreshold"]))
 
 
 def _write_drake(law: Law, at: Setting) -> dict[str, Any]:
@@ -505,13 +491,7 @@ def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
 
 def _read_ode(p: Parameters, at: Setting) -> Law:
     kp = p["soft_erp"] / (p["soft_cfm"] * at.step)
-    kd = (1 - p["soft_erp"]) / p["soft_cfm"]
-    return ContactJoint(
-        restitution=np.asarray(p["bounce"]),
-        stiffness=np.asarray(kp * at.points / at.mass),
-        damping=np.asarray(kd * at.points / at.mass),
-        threshold=p["bounce_vel"],
-    )
+    return _GAZEBO["read"]({"kp": kp, "kd": (1 - p["soft_erp"]) / p["soft_cfm"]}, at)
 
 
 _GAZEBO = _forces(("kp", "kd"))
@@ -520,27 +500,11 @@ _UNCAPPED = {"max_vel": 1e9, "contact_max_correcting_vel": 1e9}
 
 def _read_gazebo(p: Parameters, at: Setting) -> Law:
     linear = _GAZEBO["read"](p, at)
-    return ContactJoint(
-        restitution=np.asarray(p["restitution_coefficient"]),
-        stiffness=linear.stiffness,
-        damping=linear.damping,
-        threshold=p["threshold"],
-        fastest=min(p["max_vel"], p["contact_max_correcting_vel"]),
-        step=at.step,
-    )
+    fastest = min(p["max_vel"], p["contact_max_correcting_vel"])
+    return Capped(linear.stiffness, linear.damping, fastest, at.step)
 
 
 _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
-
-
-def _read_physx(p: Parameters, at: Setting) -> Law:
-    if p["compliantContactStiffness"] > 0:
-        return _PHYSX["read"](p, at)
-    return FoundAhead(
-        restitution=np.asarray(p["restitution"]),
-        threshold=p["bounceThresholdVelocity"],
-        step=at.step,
-    )
 
 
 _WEIGHTLESS = (
@@ -564,6 +528,11 @@ _DRAKE_BOX = (
 _VERLET = SemiImplicit(pulls=True)
 # A depth is the difference of two rounded numbers: below ten of their spacings no digit is certain.
 _SINGLE = 10 * float(np.finfo(np.float32).eps)
+_NOT_MUJOCO = (
+    "three bodies in touch",
+    "heightfield cells under a tenth of the radius",
+    "tilted capsules",
+)
 _MUJOCO = Engine(
     name="mujoco",
     names=("solref", "solref"),
@@ -593,6 +562,7 @@ _MUJOCO = Engine(
     friction=f"{_EVERY_FRICTION}; a pair of geoms with a solreffriction of its own grips more",
     rubs=("", ' friction="{mu:g} 0.005 0.0001"'),
     sliding=_PUSHED_UP,
+    not_for=_NOT_MUJOCO,
 )
 ENGINES: Mapping[str, Engine] = {
     engine.name: engine
@@ -618,26 +588,18 @@ ENGINES: Mapping[str, Engine] = {
             },
             read=_read_pybullet,
             units=_BULLET["units"]
-            | {
-                "linearDamping": "1/s",
-                "restitutionVelocityThreshold": "m/s",
-                "contactSlop": "m",
-                "contactProcessingThreshold": "m",
-            },
+            | {"linearDamping": "1/s", "contactSlop": "m", "contactProcessingThreshold": "m"},
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
-                "contactStiffness": _if_set(SERIES, 1e18),
-                "contactDamping": _if_set(SUM, 0.1),
-                "restitution": PRODUCT,
-                **dict.fromkeys([*UNDISTURBED, "contactBreakingThreshold"], PAIR),
+                "contactStiffness": SERIES,
+                "contactDamping": SUM,
+                **dict.fromkeys(_BULLET_BESIDE, PAIR),
             },
-            defaults=_BULLET_DEFAULTS,
+            # A body for which no spring is set.
+            defaults={"contactStiffness": 1e18, "contactDamping": 0.1, **_BULLET_BESIDE},
             ran="PyBullet 3.2.7",
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.20 to 0.79 for 0.80); on springs a box that slides gains energy",
-            number="restitution",
-            threshold="restitutionVelocityThreshold",
-            undisturbed=UNDISTURBED,
             friction=_MANIFOLD,
             rubs=("", ", lateralFriction={root:.6g}"),
         ),
@@ -772,23 +734,19 @@ ENGINES: Mapping[str, Engine] = {
             scheme=Implicit(ahead=True),
             names=_PHYSX["names"],
             write=_PHYSX["write"],
-            read=_read_physx,
-            units=_PHYSX["units"] | {"bounceThresholdVelocity": "m/s"},
+            read=_PHYSX["read"],
+            units=_PHYSX["units"],
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={
                 "compliantContactStiffness": MEAN,
                 "compliantContactDamping": MEAN,
-                "restitution": replace(MEAN, text="combined by the mode of both"),
                 "restitutionCombineMode": PAIR,
-                "bounceThresholdVelocity": PAIR,
             },
             defaults={
                 "compliantContactStiffness": 0.0,
                 "compliantContactDamping": 0.0,
-                "restitution": 0.0,
                 "restitutionCombineMode": "average",
-                "bounceThresholdVelocity": 0.5,
             },
             resolution=_SINGLE,
             notes=(
@@ -796,12 +754,8 @@ ENGINES: Mapping[str, Engine] = {
                 "The contactOffset has to be longer than the way of the body in a step",
             ),
             box="r is that of a box which falls flat on a plane and does not slide; on springs, "
-            "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding, "
-            "and with the impulse 0.81 to 0.82 for 0.80 while it slides",
+            "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
             flat_only=True,
-            number="restitution",
-            threshold="bounceThresholdVelocity",
-            undisturbed={"bounceThresholdVelocity": 0.0},
             caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
@@ -812,17 +766,14 @@ ENGINES: Mapping[str, Engine] = {
             read=_read_ode,
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
-            units={"soft_cfm": "m/N/s", "bounce_vel": "m/s"},
-            rules=dict.fromkeys(("soft_cfm", "soft_erp", "bounce", "bounce_vel"), PAIR),
-            defaults={"soft_cfm": 1e-10, "soft_erp": 0.2, "bounce": 0.0, "bounce_vel": 0.0},
+            units={"soft_cfm": "m/N/s"},
+            rules=dict.fromkeys(("soft_cfm", "soft_erp"), PAIR),
+            defaults={"soft_cfm": 1e-10, "soft_erp": 0.2},
             sets_pair=True,
             notes=("These are numbers of a contact joint",),
             box="dCollide has to be asked for at least 4 contacts: with 1, 2 or 3 a box on a plane "
             "tilts, and r is wrong (0.89, 0.85 and 0.83 for 0.80); on springs a box on an edge or "
             "sliding had 0.84 to 1.10 for 0.80",
-            number="bounce",
-            threshold="bounce_vel",
-            undisturbed={"bounce_vel": 0.0},
         ),
         Engine(
             name="gazebo",
@@ -831,23 +782,17 @@ ENGINES: Mapping[str, Engine] = {
             write=_GAZEBO["write"],
             beside=_UNCAPPED,
             read=_read_gazebo,
-            units=_GAZEBO["units"]
-            | dict.fromkeys(("threshold", *_UNCAPPED), "m/s")
-            | {"min_depth": "m"},
+            units=_GAZEBO["units"] | dict.fromkeys(_UNCAPPED, "m/s") | {"min_depth": "m"},
             meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
             ran="the ODE of Gazebo 11.10.2",
             rules={
                 "kp": SERIES,
                 "kd": SUM,
-                "restitution_coefficient": LEAST,
-                "threshold": LEAST,
                 **dict.fromkeys((*_UNCAPPED, "min_depth"), PAIR),
             },
             defaults={
                 "kp": 1e12,
                 "kd": 1.0,
-                "restitution_coefficient": 0.0,
-                "threshold": 1e5,
                 "max_vel": 0.01,
                 "contact_max_correcting_vel": 100.0,
                 "min_depth": 0.0,
@@ -858,10 +803,6 @@ ENGINES: Mapping[str, Engine] = {
             ),
             box="max_contacts has to be at least 4, as by default: with 1, 2 or 3 a box on a plane "
             "tilts, and r is wrong (0.91, 0.85 and 0.82 for 0.80)",
-            number="restitution_coefficient",
-            threshold="threshold",
-            # With such a damper the default spring takes nothing of the penetration back.
-            undisturbed={"threshold": 0.0, **_UNCAPPED, "kd": 1e12},
         ),
         Engine(
             name="generic",
@@ -875,49 +816,3 @@ ENGINES: Mapping[str, Engine] = {
     )
 }
 """The engines by name."""
-
-_ALIASES = {
-    "mjwarp": "mujoco-warp",
-    "mjx": "mujoco",
-    "mujoco-mjx": "mujoco",
-    "bullet": "pybullet",
-    "bullet3": "pybullet",
-    "drake-lagged": "drake",
-    "genesis-world": "genesis",
-    "isaac": "physx",
-    "isaac-sim": "physx",
-    "isaac-lab": "physx",
-    "omniverse": "physx",
-    "ovphysx": "physx",
-    "newton-semi-implicit": "newton",
-    "newton-featherstone": "newton",
-    "gazebo-classic": "gazebo",
-}
-
-
-def engine_named(name: str | Engine) -> Engine:
-    """Return the engine with this name or one of its other names, or an engine itself.
-
-    Raises
-    ------
-    Refused
-        If there is none; the message has the nearest names, or all of them.
-    """
-    if isinstance(name, Engine):
-        return name
-    wanted = str(name).strip().lower().replace("_", "-").replace(" ", "-")
-    wanted = _ALIASES.get(wanted, wanted)
-    if wanted in ENGINES:
-        return ENGINES[wanted]
-    # Its rows are made of the rules of this module.
-    from bouncing_ball_contacts.rebounds import engine_by_number
-
-    if engine_by_number(wanted) is not None:
-        raise Refused(
-            f"engine {name!r} has a restitution number: in Python number_for and rebound of "
-            "bouncing_ball_contacts.rebounds answer for it, in place of design and diagnose"
-        )
-    near = difflib.get_close_matches(wanted, [*ENGINES, *_ALIASES], 3)
-    meant = f"did you mean {' or '.join(near)}? " if near else ""
-    known = f"{meant}'bounce engines' lists those with a stiffness and those with a number"
-    raise Refused(f"engine {name!r} is not known; {known}")

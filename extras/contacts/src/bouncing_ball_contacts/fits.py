@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.designs import Bounce, Quantity
+from bouncing_ball_contacts.answers import MOST_WARNINGS
+from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
@@ -72,45 +73,51 @@ class Fit:
     diameter: float | None
     notes: tuple[str, ...]
 
-    def __repr__(self) -> str:
-        v = self.impacts.speed
+    @property
+    def result(self) -> str:
+        """The title, and r with its interval."""
         title = self.recording.head.get("title", self.recording.name)
+        ends = span(*self.interval, 4)
+        # r has the digits of its interval, in which it would not lie with fewer.
+        r = f"{self.restitution:.{len(ends.split()[0]) - 2}f}"
+        return f"{title}: r = {r} ({ends}) at {self.speed:.3g} m/s"
+
+    def _lines(self, most: int) -> list[str]:
+        v = self.impacts.speed
         count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
-        at = f"at {self.speed:.3g} m/s, 95 %:"
+        return [
+            self.result,
+            f"{count} at {span(v.min(), v.max(), form='g')} m/s, from {self.recording.kind}; r "
+            f"goes as v^{self.slope:+.3f}, single impacts deviate by {self.scatter:.4f}",
+            *(f"! {note}" for note in self.notes[:most]),
+        ]
 
-        def line(r: float, low: float, high: float) -> str:
-            # r has the digits of its interval, in which it would not lie with fewer.
-            ends = span(low, high, 4)
-            return f"r = {r:.{len(ends.split()[0]) - 2}f} {at} {ends}"
-
-        found = line(self.restitution, *self.interval)
-        return (
-            f"{title}: {count} at {v.min():.3g} to {v.max():.3g} m/s, "
-            f"from {self.recording.kind}\n"
-            f"{found}\n"
-            f"r goes as v^{self.slope:+.3f}; single impacts deviate from it by {self.scatter:.4f}"
-        )
+    @property
+    def explained(self) -> str:
+        """All of the answer."""
+        return "\n".join(self._lines(len(self.notes)))
 
     def __str__(self) -> str:
-        return "\n".join([repr(self), *(f"! {note}" for note in self.notes)])
+        lines = self._lines(MOST_WARNINGS)
+        count = len(self.notes) - MOST_WARNINGS
+        named = "1 more remark" if count == 1 else f"{count} more remarks"
+        return "\n".join([*lines, *([f"{named}: --explain"] * (count > 0))])
 
-    def wanted(self, given: Mapping[str, Quantity]) -> tuple[dict[str, Any], dict[str, Any]]:
-        """Return the quantities of the bounce at this speed, and the contact time if it was read.
+    __repr__ = __str__
 
-        That of a bounce is the one of a linear contact without damping.
+    def bounce(self, is_spring: bool = True, **given: Quantity) -> Bounce:
+        """Return the bounce at this speed; of a spring also its contact time, if it was read.
+
+        The contact time of a bounce is the one of a linear contact without damping.
         """
         body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
             body["radius"] = self.diameter / 2
-        if not self.contact_time or given.keys() & {"penetration", "stiffness", "contact_time"}:
-            return body, {}
-        # √(k/m) times the contact time, which would be π without damping.
-        return body, {"contact_time": math.pi * self.contact_time / _phase(self.restitution)}
-
-    def bounce(self, **given: Quantity) -> Bounce:
-        """Return the bounce at this speed."""
-        body, contact = self.wanted(given)
-        return Bounce(**body, **contact)
+        is_given = given.keys() & {"penetration", "stiffness", "contact_time"}
+        if self.contact_time and is_spring and not is_given:
+            # √(k/m) times the contact time, which would be π without damping.
+            body["contact_time"] = math.pi * self.contact_time / _phase(self.restitution)
+        return Bounce(**body)
 
 
 def _phase(restitution: float) -> float:

@@ -9,11 +9,12 @@ instants.
 """
 
 import difflib
+import itertools
 import math
 import re
 from bisect import bisect_left
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import islice
 from typing import Any, NamedTuple
@@ -21,27 +22,27 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball_contacts import step_rules
-from bouncing_ball_contacts.designs import (
-    SETTLED,
-    TOLERANCE,
-    Bounce,
-    Quantity,
-    Range,
-)
+from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
+from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.engines import (
+    ENGINES,
     LARGER,
+    LEAST,
     MEAN,
     MODES,
     PAIR,
     PRODUCT,
+    Engine,
     Rule,
     as_compared,
+    found_ahead,
     one_of,
     parameters_of,
 )
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import (
+    LONGEST_STEP,
     STANDARD_GRAVITY,
     Refused,
     holding,
@@ -53,9 +54,14 @@ from bouncing_ball_contacts.units import (
     within,
 )
 
+SETTLED = 1.1
+"""Thresholds over the least with which a body comes to rest: near it, that takes many bounces."""
 _CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
 INSTANTS = 24
-"""Of the impact within a step; a sixth of them in short steps, where r hardly depends on them."""
+"""Of the impact within a step, in a search; a sixth of them in short steps, where r hardly depends
+on them."""
+MOST_INSTANTS = 96
+"""Of the impact within a step, in an answer."""
 # Where a body flies freely: no engine finds its contact farther away, in m.
 _REACH = 0.06
 
@@ -64,46 +70,74 @@ _REACH = 0.06
 class ByNumber:
     """An engine whose restitution is a number.
 
-    ``parameter`` is its name, ``pair`` how the engine combines those of two bodies, ``default`` the
-    one of a body that has none. Impacts slower than ``threshold`` have no restitution, or, if it
-    ``is_of_rebound``, bodies that would leave more slowly; ``set_by`` is its name, if it has one.
-    ``sinks`` is by how many times g h² a body falls farther in a
-    step than with the velocity before it, and ``remembers`` how many steps before an impact matter.
-    ``springs`` is the row of the same engine in :data:`.ENGINES`, if it takes a stiffness as well.
-    ``written`` is the line to paste, and ``lowered`` the one of another threshold, empty if that is
-    a constant. If it ``is_physx``, materials say how their numbers are combined. If it
-    ``is_restless``, each step of gravity is thrown back, and a threshold above g h/(1 - r) lets a
-    body come to rest. ``damped_by`` is the linear damping of a body with its default ``damping``,
-    and ``kept`` the share of a velocity that it leaves in a step. ``pixels`` is how many of them
-    are a metre, of an engine whose lengths are pixels. ``relaxation`` is that of contacts of
-    cannon-es. ``others`` are rows of the engine with another ``setting``, of which the best one is
-    taken where no number keeps r.
+    Attributes
+    ----------
+    name, ran : str
+        Name of the row, and the version in which its rule was compared with drops.
+    rule : callable
+        Steps of a ball, see :mod:`.step_rules`.
+    parameter, pair, default
+        Name of the number, how the engine combines the numbers of two bodies, and the number of a
+        body for which none is set.
+    threshold : float
+        Speed in m/s below which an impact has no restitution; with ``is_of_rebound`` the speed of
+        the rebound counts.
+    set_by : str
+        Name of the threshold; empty if it has none.
+    lines : mapping
+        Lines to paste, by the names of the number, the threshold and the settings. A threshold
+        without a line is a constant.
+    settings : mapping
+        Other parameters that change r, with their defaults.
+    designed : tuple of mappings
+        Values of the settings that are tried, one after the other, if r is not kept without them.
+    damped_by, kept
+        Name of the linear damping, and the share of a velocity that it leaves in a step.
+    free : callable
+        Velocity after a step of free flight, if its damping is not linear.
+    springs : str
+        Row of the same engine in :data:`.ENGINES`, for a stiffness.
+    sinks, remembers
+        How many times g h² a body falls farther in a step than with the velocity before it, and how
+        many steps before an impact matter.
+    is_physx : bool
+        Whether materials say how their numbers are combined.
+    is_restless, calmed_by
+        Whether each step of gravity is thrown back, so that only a threshold above g h/(1 - r) lets
+        a body come to rest; and a setting with which it comes to rest.
+    pixels : float
+        Number of pixels in a metre, of an engine whose lengths are pixels.
     """
 
     name: str
     rule: Callable[[Fall, float, float], Steps]
     ran: str
-    written: str
+    lines: Mapping[str, str]
     parameter: str = "restitution"
     pair: Rule = MEAN
     default: float = 0.0
     threshold: float = 0.0
     is_of_rebound: bool = False
     set_by: str = ""
+    settings: Mapping[str, float] = field(default_factory=dict)
+    designed: tuple[Mapping[str, float], ...] = ()
+    damped_by: str = ""
+    kept: Callable[[float, float], float] = lambda damping, step: 1.0
+    free: Callable[[Fall, Array], Array] | None = None
+    springs: str = ""
     sinks: float = 1.0
     remembers: int = 2
-    springs: str = ""
-    lowered: str = ""
     is_physx: bool = False
     is_restless: bool = False
+    calmed_by: str = ""
     pixels: float = 0.0
-    damped_by: str = ""
-    damping: float = 0.0
-    kept: Callable[[float, float], float] = lambda damping, step: 1.0
-    relaxation: float = 0.0
-    setting: str = ""
-    others: tuple["ByNumber", ...] = ()
     notes: tuple[str, ...] = ()
+    not_for: tuple[str, ...] = ()
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the threshold cannot be set."""
+        return self.set_by not in self.lines
 
     @property
     def names(self) -> dict[str, str]:
@@ -114,22 +148,20 @@ class ByNumber:
             "threshold": ("threshold", "" if self.pixels else self.set_by) if self.set_by else (),
             "threshold in pixels": (self.set_by,) if self.pixels else (),
             "combine": modes if self.is_physx else (),
-            "damping": (self.damped_by,) if self.damped_by else (),
             "pixels": ("pixels",) if self.pixels else (),
-            "relaxation": ("contactEquationRelaxation",) if self.relaxation else (),
+            **{name: (name,) for name in self.settings},
         }
         return {as_compared(name): what for what, names in typed.items() for name in names}
 
     @property
     def unit(self) -> float:
-        """The unit of the threshold as it is set in m/s; in pixels it is one in 1/60 s."""
+        """Unit of the threshold as it is set in m/s; in pixels it is one in 1/60 s."""
         return 60 / self.pixels if self.pixels else 1.0
 
-    @property
-    def limit(self) -> str:
-        """The threshold with its name."""
-        pixels = f"{self.threshold / self.unit:.3g} pixels in 1/60 s" if self.pixels else ""
-        return ", ".join(filter(None, [show(self.threshold, "m/s"), pixels, self.set_by]))
+    def limit(self, threshold: float) -> str:
+        """Return a threshold in m/s with its name."""
+        pixels = f"{threshold / self.unit:.3g} pixels in 1/60 s" if self.pixels else ""
+        return ", ".join(filter(None, [show(threshold, "m/s"), pixels, self.set_by]))
 
     def scaled(self, gravity: float, pixels: float | None = None) -> "ByNumber":
         """Return the engine with so many pixels a metre, by default those of its own gravity."""
@@ -139,171 +171,140 @@ class ByNumber:
         return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
 
 
-def _undamped(engine: ByNumber, written: str) -> ByNumber:
-    """Return the engine with a row of its own for bodies without linear damping."""
-    setting = f"{engine.damped_by} = 0"
-    undamped = replace(engine, damping=0.0, setting=setting, written=written)
-    return replace(engine, others=(*engine.others, undamped))
-
-
 # In 1/s², the default gravity of matter-js.
 _PIXELS = 1000.0
+_OLD_JOLT = "Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m"
+_CONSTANT = "The threshold is a constant of the library"
 _JOLT = ByNumber(
     name="jolt",
     rule=step_rules.jolt,
     ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
-    written="bodySettings.mRestitution = {number}f;  // of {bodies}",
     parameter="mRestitution",
     pair=LARGER,
     threshold=1.0,
     set_by="PhysicsSettings::mMinVelocityForRestitution",
-    lowered="physicsSettings.mMinVelocityForRestitution = {threshold}f;",
+    lines={
+        "mRestitution": "bodySettings.mRestitution = {value}f;  // of {bodies}",
+        "PhysicsSettings::mMinVelocityForRestitution": "physicsSettings.mMinVelocityForRestitution "
+        "= {value}f;",
+        "mLinearDamping": "bodySettings.mLinearDamping = {value}f;",
+    },
+    settings={"mLinearDamping": 0.05},
+    designed=({"mLinearDamping": 0.0},),
     damped_by="mLinearDamping",
-    damping=0.05,
     kept=lambda damping, step: max(1 - damping * step, 0.0),
-    notes=("Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m",),
+    notes=(_OLD_JOLT,),
 )
+_GODOT = "physics/jolt_physics_3d/simulation/bounce_velocity_threshold"
 _PHYSX = ByNumber(
     name="physx",
     rule=partial(step_rules.physx, ahead=0.04),
     ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
-    written="material->setRestitution({number}f);  // of {bodies}",
     threshold=2.0,
     set_by="bounceThresholdVelocity",
+    lines={
+        "restitution": "material->setRestitution({value}f);  // of {bodies}",
+        "bounceThresholdVelocity": "sceneDesc.bounceThresholdVelocity = {value}f;",
+    },
     springs="physx",
     is_physx=True,
     is_restless=True,
-    lowered="sceneDesc.bounceThresholdVelocity = {threshold}f;",
 )
+_AHEAD = "The contact offset is taken as longer than the way of the body in a step"
 _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
     ran="Box2D 2.3.10 of Python",
-    written="fixtureDef.restitution = {number}f;  // of {bodies}",
+    lines={"restitution": "fixtureDef.restitution = {value}f;  // of {bodies}"},
     pair=LARGER,
     threshold=1.0,
     is_restless=True,
     set_by="b2_velocityThreshold",
-    notes=("The threshold is a constant of the library",),
+    notes=(_CONSTANT,),
 )
 _DART = ByNumber(
     name="dart",
     rule=step_rules.dart,
     ran="DART 6.20 (dartpy)",
-    written="dynamicsAspect->setRestitutionCoeff({number});  // of {bodies}",
+    lines={"restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}"},
     pair=PRODUCT,
     threshold=0.1,
     is_of_rebound=True,
     is_restless=True,
-    notes=("The threshold is a constant of the library",),
-)
-_GODOT = "physics_material.bounce = {number}  # of {bodies}"
-_CANNON = ByNumber(
-    name="cannon-es",
-    rule=step_rules.cannon,
-    ran="cannon-es 0.20.0",
-    written="new ContactMaterial(a, b, {{restitution: {number}}})",
-    pair=PAIR,
-    notes=("The contactEquationStiffness is taken as 1e7, the default",),
-    relaxation=3.0,
-    damped_by="linearDamping",
-    damping=0.01,
-    kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
-)
-
-
-def _relaxed(engine: ByNumber, steps: float) -> ByNumber:
-    """Return cannon-es with contacts that relax in so many steps."""
-    setting = f"contactEquationRelaxation = {steps:g}"
-    options = f"{{{{restitution: {{number}}, {setting.replace(' =', ':')}}}}}"
-    written = f"new ContactMaterial(a, b, {options})"
-    return replace(engine, relaxation=steps, setting=setting, written=written)
-
-
-_MATTER = ByNumber(
-    name="matter-js",
-    rule=step_rules.matter,
-    ran="matter-js 0.20.0",
-    written="Bodies.circle(x, y, radius, {{restitution: {number}}})  // of {bodies}",
-    pair=LARGER,
-    notes=(
-        "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r that is "
-        "lower by 0.02",
-        "Below the threshold a ball with a number above 0.98 may also leave faster than it came",
-    ),
-    threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
-    set_by="Resolver._restingThresh",
-    lowered="Matter.Resolver._restingThresh = {threshold};",
-    pixels=_PIXELS / STANDARD_GRAVITY,
-    damped_by="frictionAir",
-    damping=0.01,
-    kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
+    notes=(_CONSTANT,),
 )
 _RAPIER = ByNumber(
     name="rapier",
     rule=step_rules.rapier,
     ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
-    written="ColliderBuilder::ball(radius).restitution({number})  // of {bodies}",
+    lines={"restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}"},
     sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
     remembers=2000,
     notes=("Before 0.35 Rapier had another rule",),
 )
+_BULLET = "    pybullet.changeDynamics(body, -1, {name}={value})"
+_OF_BULLET = "pybullet.setPhysicsEngineParameter({name}={value})"
+_OF_GAZEBO = "<surface><contact><ode><{name}>{value}</{name}></ode></contact></surface>"
 BY_NUMBER = {
     each.name: each
     for each in (
-        _undamped(_JOLT, f"{_JOLT.written}\nbodySettings.mLinearDamping = 0.0f;"),
-        _undamped(
-            replace(
-                _JOLT,
-                name="godot-jolt",
-                written=_GODOT,
-                parameter="bounce",
-                pair=_CLAMPED_SUM,
-                set_by="physics/jolt_physics_3d/simulation/bounce_velocity_threshold",
-                lowered="physics/jolt_physics_3d/simulation/bounce_velocity_threshold={threshold}"
-                "  # project setting",
-                damped_by="default_linear_damp",
-                damping=0.1,
-                notes=(*_JOLT.notes, "Godot was not run: its source hands these numbers to Jolt"),
-            ),
-            f"{_GODOT}\nphysics/3d/default_linear_damp=0.0  # project setting",
+        _JOLT,
+        replace(
+            _JOLT,
+            name="godot-jolt",
+            parameter="bounce",
+            pair=_CLAMPED_SUM,
+            set_by=_GODOT,
+            lines={
+                "bounce": "physics_material.bounce = {value}  # of {bodies}",
+                _GODOT: f"{_GODOT}={{value}}  # project setting",
+                "default_linear_damp": "physics/3d/default_linear_damp={value}  # project setting",
+            },
+            settings={"default_linear_damp": 0.1},
+            designed=({"default_linear_damp": 0.0},),
+            damped_by="default_linear_damp",
+            notes=(_OLD_JOLT, "Godot was not run: its source hands these numbers to Jolt"),
         ),
         _PHYSX,
         replace(
             _PHYSX,
             name="unity",
             rule=partial(step_rules.physx, ahead=0.02),
-            written="material.bounciness = {number}f;  // of {bodies}",
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
+            lines={
+                "bounciness": "material.bounciness = {value}f;  // of {bodies}",
+                "Physics.bounceThreshold": "Physics.bounceThreshold = {value}f;",
+            },
             springs="",
-            lowered="Physics.bounceThreshold = {threshold}f;",
             notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
         ),
         replace(
             _PHYSX,
             name="isaac-lab",
-            written="RigidBodyMaterialCfg(restitution={number})  # of {bodies}",
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
-            lowered="PhysxCfg(bounce_threshold_velocity={threshold})  # of SimulationCfg(physx=…)",
-            notes=(
-                "Isaac Lab was not run: it has PhysX 5. The contact offset is taken as longer than "
-                "the way of the body in a step",
-            ),
+            lines={
+                "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}",
+                "PhysxCfg.bounce_threshold_velocity": "PhysxCfg(bounce_threshold_velocity={value})"
+                "  # of SimulationCfg(physx=…)",
+            },
+            notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD),
         ),
         replace(
             _PHYSX,
             name="isaac-sim",
-            written="PhysicsMaterial(restitution={number})  # of {bodies}",
             rule=partial(step_rules.physx, ahead=math.inf),
             threshold=0.0,
             set_by="physxScene:bounceThreshold",
-            lowered="float physxScene:bounceThreshold = {threshold}",
+            lines={
+                "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}",
+                "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
+            },
             notes=(
-                "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold. The "
-                "contact offset is taken as longer than the way of the body in a step",
+                "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold",
+                _AHEAD,
             ),
         ),
         _RAPIER,
@@ -311,11 +312,13 @@ BY_NUMBER = {
             name="box2d",
             rule=step_rules.box2d,
             ran="Box2D 3 (box2d3-wasm 5.2.0)",
-            written="shapeDef.material.restitution = {number}f;  // of {bodies}",
             pair=LARGER,
             threshold=1.0,
             set_by="b2WorldDef.restitutionThreshold",
-            lowered="worldDef.restitutionThreshold = {threshold}f;",
+            lines={
+                "restitution": "shapeDef.material.restitution = {value}f;  // of {bodies}",
+                "b2WorldDef.restitutionThreshold": "worldDef.restitutionThreshold = {value}f;",
+            },
             sinks=_RAPIER.sinks,
             notes=("Box2D 2 has another rule: --engine box2d-2",),
         ),
@@ -324,17 +327,20 @@ BY_NUMBER = {
             _BOX2D_2,
             name="planck",
             ran="planck 1.4.2",
-            written="body.createFixture({{shape, restitution: {number}}})  // of {bodies}",
             set_by="Settings.velocityThreshold",
-            lowered="Settings.velocityThreshold = {threshold};",
+            lines={
+                "restitution": "body.createFixture({{shape, restitution: {value}}})"
+                "  // of {bodies}",
+                "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
+            },
             notes=(),
         ),
         ByNumber(
             name="chipmunk",
             rule=step_rules.chipmunk,
             ran="Chipmunk 7 (pymunk 7.3.1)",
-            written="shape.elasticity = {number}  # of {bodies}",
             parameter="elasticity",
+            lines={"elasticity": "shape.elasticity = {value}  # of {bodies}"},
             pair=PRODUCT,
             sinks=0.0,
         ),
@@ -342,38 +348,158 @@ BY_NUMBER = {
         replace(
             _DART,
             name="gazebo-sim",
-            written="<bounce><restitution_coefficient>{number}</restitution_coefficient></bounce>"
-            "  <!-- of {bodies} -->",
             parameter="restitution_coefficient",
+            lines={
+                "restitution_coefficient": "<bounce><restitution_coefficient>{value}"
+                "</restitution_coefficient></bounce>  <!-- of {bodies} -->"
+            },
             ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
             notes=(
-                "With its default engine Gazebo hands this number to DART, and the threshold of "
-                "the same element is not read",
+                "With its default engine Gazebo passes this number to DART, and ignores the "
+                "threshold of the same element",
             ),
         ),
-        _undamped(
-            _MATTER,
-            "Bodies.circle(x, y, radius, {{restitution: {number}, frictionAir: 0}})"
-            "  // of {bodies}",
+        ByNumber(
+            name="matter-js",
+            rule=step_rules.matter,
+            ran="matter-js 0.20.0",
+            pair=LARGER,
+            threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
+            set_by="Resolver._restingThresh",
+            lines={
+                "restitution": "Bodies.circle(x, y, radius, {{restitution: {value}}})"
+                "  // of {bodies}",
+                "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
+                "frictionAir": "body.frictionAir = {value};",
+            },
+            pixels=_PIXELS / STANDARD_GRAVITY,
+            settings={"frictionAir": 0.01},
+            designed=({"frictionAir": 0.0},),
+            damped_by="frictionAir",
+            kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
+            notes=(
+                "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
+                "that is lower by 0.02",
+                "Below the threshold a ball with a number above 0.98 may also leave faster than "
+                "it came",
+            ),
+        ),
+        ByNumber(
+            name="pybullet",
+            rule=step_rules.pybullet,
+            ran="PyBullet 3.2.7",
+            pair=PRODUCT,
+            threshold=0.2,
+            set_by="restitutionVelocityThreshold",
+            lines={
+                "restitution": "for body in (one, other):  # {bodies}\n"
+                "    pybullet.changeDynamics(body, -1, restitution={value})",
+                "linearDamping": _BULLET,
+                "contactProcessingThreshold": _BULLET,
+                "contactERP": _OF_BULLET,
+                "contactSlop": _OF_BULLET,
+                "restitutionVelocityThreshold": _OF_BULLET,
+            },
+            settings={
+                "linearDamping": 0.04,
+                "contactERP": 0.08,
+                "contactSlop": 1e-5,
+                "contactProcessingThreshold": 1e18,
+                "contactBreakingThreshold": 0.02,
+            },
+            designed=(
+                dict.fromkeys(
+                    ("linearDamping", "contactProcessingThreshold", "contactERP", "contactSlop"),
+                    0.0,
+                ),
+            ),
+            free=step_rules.bullet_flight,
+            springs="pybullet",
+            is_restless=True,
+            calmed_by="contactProcessingThreshold",
+        ),
+        ByNumber(
+            name="ode",
+            rule=step_rules.ode,
+            ran="ODE 0.16.2",
+            parameter="bounce",
+            pair=PAIR,
+            set_by="bounce_vel",
+            lines={
+                "bounce": "contact.surface.mode = dContactBounce | dContactApprox1;\n"
+                "contact.surface.bounce = {value};",
+                "bounce_vel": "contact.surface.bounce_vel = {value};",
+                "soft_cfm": "contact.surface.soft_cfm = {value};",
+            },
+            settings={"soft_cfm": 1e-10, "soft_erp": 0.2},
+            designed=({"soft_cfm": 1e-10},),
+            springs="ode",
+            notes=("These are numbers of a contact joint",),
+        ),
+        ByNumber(
+            name="gazebo",
+            rule=step_rules.gazebo,
+            ran="the ODE of Gazebo 11.10.2",
+            parameter="restitution_coefficient",
+            pair=LEAST,
+            threshold=1e5,
+            set_by="threshold",
+            lines={
+                "restitution_coefficient": "<surface><bounce><restitution_coefficient>{value}"
+                "</restitution_coefficient></bounce></surface>  <!-- of {bodies} -->",
+                "threshold": "<surface><bounce><threshold>{value}</threshold></bounce></surface>",
+                "max_vel": _OF_GAZEBO,
+                "kd": _OF_GAZEBO,
+                "contact_max_correcting_vel": "<physics><ode><constraints>"
+                "<contact_max_correcting_vel>{value}</contact_max_correcting_vel>"
+                "</constraints></ode></physics>",
+            },
+            settings={"kp": 1e12, "kd": 1.0, "max_vel": 0.01, "contact_max_correcting_vel": 100.0},
+            # With such a damper the default spring takes nothing of the penetration back.
+            designed=({"max_vel": 1e9, "contact_max_correcting_vel": 1e9, "kd": 1e12},),
+            springs="gazebo",
+            notes=("Gazebo Classic, with ODE",),
         ),
         ByNumber(
             name="newton-xpbd",
             rule=step_rules.xpbd,
             ran="Newton 1.8.0",
-            written="ShapeConfig(restitution={number})  # SolverXPBD(model, "
-            "enable_restitution=True)",
+            lines={
+                "restitution": "ShapeConfig(restitution={value})  # SolverXPBD(model, "
+                "enable_restitution=True)"
+            },
         ),
-        replace(_CANNON, others=(_relaxed(_CANNON, 10.0), _relaxed(_CANNON, 50.0))),
+        ByNumber(
+            name="cannon-es",
+            rule=step_rules.cannon,
+            ran="cannon-es 0.20.0",
+            pair=PAIR,
+            lines={
+                "restitution": "const contact = new ContactMaterial(a, b, {{restitution: "
+                "{value}}});",
+                "contactEquationRelaxation": "contact.contactEquationRelaxation = {value};",
+                "linearDamping": "body.linearDamping = {value};",
+            },
+            settings={"contactEquationRelaxation": 3.0, "linearDamping": 0.01},
+            designed=tuple({"contactEquationRelaxation": steps} for steps in (10.0, 50.0)),
+            damped_by="linearDamping",
+            kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
+            notes=("The contactEquationStiffness is taken as 1e7, the default",),
+        ),
     )
 }
-"""The engines, and products on top of one, by their names."""
-_OTHER_NAMES = {
+"""Engines whose restitution is a number, and products on top of one, by their names."""
+NAMES = {
     "bevyrapier": "rapier",
-    "box2d3": "box2d",
+    "bullet": "pybullet",
+    "bullet3": "pybullet",
     "cannon": "cannon-es",
     "dartpy": "dart",
     "dartsim": "dart",
+    "drakelagged": "drake",
+    "gazeboclassic": "gazebo",
     "gazeboharmonic": "gazebo-sim",
+    "genesisworld": "genesis",
     "gz": "gazebo-sim",
     "gzsim": "gazebo-sim",
     "ignition": "gazebo-sim",
@@ -381,72 +507,95 @@ _OTHER_NAMES = {
     "isaac": "isaac-sim",
     "libgdx": "box2d-2",
     "matter": "matter-js",
+    "mjwarp": "mujoco-warp",
+    "mjx": "mujoco",
+    "mujocomjx": "mujoco",
+    "newtonsemiimplicit": "newton",
+    "newtonfeatherstone": "newton",
     "nvidiaphysx": "physx",
+    "omniverse": "isaac-sim",
+    "ovphysx": "physx",
     "p5play": "planck",
     "pybox2d": "box2d-2",
     "pymunk": "chipmunk",
-    "bevyxpbd": "avian",
-    "chaos": "unreal",
-    "ue": "unreal",
     "xpbd": "newton-xpbd",
+    "adams": "",
+    "avian": "",
+    "bepu": "",
+    "bevy": "has several engines: take rapier for bevy_rapier",
+    "bevyxpbd": "",
+    "blender": "has Bullet: take pybullet",
+    "ammo": "is Bullet: take pybullet",
+    "brax": "",
+    "chaos": "",
+    "chrono": "",
+    "construct": "has Box2D: take box2d-2, or box2d for Box2D 3",
+    "coppeliasim": "has several engines: take pybullet, ode or mujoco",
+    "gdevelop": "has Box2D: take box2d-2",
+    "godot": "has two engines: take godot-jolt for Jolt Physics",
+    "gymnasium": "has no engine of its own: take mujoco, or box2d-2",
+    "havok": "",
+    "isaacgym": "has a PhysX of its own: take physx for PhysX 5",
+    "liggghts": "",
+    "maniskill": "has PhysX: take physx for PhysX 5",
+    "mercurydpm": "",
+    "p2": "",
+    "phaser": "has two engines: take matter-js for Matter",
+    "physijs": "is Bullet: take pybullet",
+    "physx3": "",
+    "sapien": "has PhysX: take physx for PhysX 5",
+    "simscape": "",
+    "siconos": "",
+    "three": "has no physics: take the engine beside it, such as cannon-es or rapier",
+    "unity2d": "has Box2D: take box2d-2, or box2d for Box2D 3",
+    "unreal": "",
+    "ue": "",
+    "warp": "has no contacts of its own: take mujoco-warp or newton",
+    "webots": "has an ODE of its own: take ode",
+    "yade": "",
 }
-WITHOUT_ANSWER = {
-    "ammo": "ammo.js is Bullet, and was not run; for the Bullet of Python take pybullet",
-    "avian": "Avian has a solver of its own, which was not run",
-    "adams": "Adams was not run, and its source cannot be read",
-    "bepu": "BepuPhysics 2 has no restitution: a contact is a spring with a frequency and a "
-    "damping ratio, which was not run",
-    "blender": "Blender has Bullet, and was not run; for the Bullet of Python take pybullet",
-    "brax": "Brax has four pipelines, of which none was run; for the one of MJX take mujoco",
-    "construct": "Construct has Box2D, of a version that was not run: take box2d-2, or box2d for "
-    "Box2D 3",
-    "coppeliasim": "CoppeliaSim has several engines: take the one that is chosen there, such as "
-    "pybullet, ode or mujoco",
-    "gdevelop": "GDevelop has Box2D in two dimensions, of a version that was not run: take box2d-2",
-    "godot": "Godot has two engines: take godot-jolt for Jolt Physics; Godot Physics was not run",
-    "havok": "Havok was not run, and its source cannot be read",
-    "isaac-gym": "Isaac Gym has a PhysX of its own, and was not run; for PhysX 5 take physx",
-    "phaser": "Phaser has two engines: for Matter take matter-js; Arcade Physics was not run",
-    "physx-3": "PhysX 3 was not run; unity and physx have the rule of PhysX 4 and 5",
-    "sapien": "SAPIEN has PhysX, and was not run; for PhysX 5 take physx",
-    "simscape": "Simscape was not run, and its source cannot be read",
-    "three": "three.js has no physics: take the engine beside it, such as cannon-es or rapier",
-    "unity-2d": "Unity has a Box2D in 2D, which was not run: take box2d-2, or box2d for Box2D 3",
-    "unreal": "Unreal 5 has Chaos, which was not run, and Unreal 4 has PhysX 3.4",
-    "warp": "Warp has no contacts of its own: take mujoco-warp, or newton",
-    "webots": "Webots has an ODE of its own, which was not run; for ODE take ode",
-}
-"""Names that people type, and why there is no answer."""
+"""Other names of rows; and products that were not run, with what may stand for them."""
 
 
-def engine_by_number(name: str) -> ByNumber | None:
-    """Return the engine of this name whose restitution is a number; None if it has another row.
+def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
+    """Return the rows of an engine: that of its springs, and that of its number.
 
     Raises
     ------
     Refused
-        If the name is known, but nothing is known of its bounce.
+        If there is none; the message has the nearest name.
     """
-    known = {re.sub(r"\W", "", each): each for each in (*BY_NUMBER, *WITHOUT_ANSWER)} | _OTHER_NAMES
-    plain = re.sub(r"[\W_]", "", name.lower())
+    rows = {re.sub(r"\W", "", each): each for each in (*ENGINES, *BY_NUMBER)}
+    known = rows | NAMES
+    plain = re.sub(r"[\W_]", "", str(name).lower())
     # A version at the end, and words such as "engine", belong to no name.
     bare = re.sub(r"(physics|engine|js)*(v?\d+d?)?$", "", plain)
-    found = known.get(plain) or known.get(bare)
-    if found in WITHOUT_ANSWER:
-        raise Refused(f"{name}: {WITHOUT_ANSWER[found]}")
+    key = next((each for each in (plain, bare) if each in known), "")
+    found = known.get(key, "")
     near = difflib.get_close_matches(plain, known, 1, 0.85)
-    if found is None and near:
-        raise Refused(f"engine {name!r} is not known; did you mean {known[near[0]]}?")
-    return BY_NUMBER.get(found or "")
+    meant = f"did you mean {known[near[0]] or near[0]}? " if near else ""
+    refuse(
+        [
+            (not key, f"engine {name!r} is not known; {meant}'bounce engines' lists the engines"),
+            (found not in rows.values(), f"{name} was not run{f', but {found}' * bool(found)}"),
+        ]
+    )
+    row = BY_NUMBER.get(found)
+    return ENGINES.get(row.springs if row else found), row
 
 
 def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, Array]:
     """Return the ways upwards and the velocities before and after the steps of free flights."""
-    # A step far above the surface.
-    pull = -next(engine.rule(at, 1e6, 0.0))[1]
     n = np.arange(math.ceil(steps) + 10)
-    left = at.keeps**n
-    speeds = left * v - pull * (n if at.keeps == 1 else (1 - left) / (1 - at.keeps))
+    if engine.free is None:
+        # A step far above the surface.
+        pull = -next(engine.rule(at, 1e6, 0.0))[1]
+        left = at.keeps**n
+        speeds = left * v - pull * (n if at.keeps == 1 else (1 - left) / (1 - at.keeps))
+    else:
+        free = engine.free
+        each = itertools.accumulate(n[1:], lambda u, _: free(at, u), initial=v)
+        speeds = np.concatenate([np.broadcast_to(u, v.shape) for u in each], axis=-1)
     moves = speeds + (1 - engine.sinks) * at.added
     return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
@@ -517,200 +666,23 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
 
 
-def falling(**quantities: Quantity) -> Bounce:
-    """Return the bounce of a ball, which has a radius of 0.1 m if neither mass nor size is given.
-
-    Raises
-    ------
-    Refused
-        If a quantity cannot be read, or has no place here.
-    """
-    given = {name: value for name, value in quantities.items() if value not in (None, "")}
-    place = "has no place where the restitution is a number"
-    springs = ("penetration", "stiffness", "contact_time", "other_mass")
-    refuse(
-        [
-            *((name in given, f"--{name.replace('_', '-')} {place}") for name in springs),
-            (given.get("points", 1) != 1, f"--points {place}: a ball is dropped"),
-        ]
+def _snippet(case: "Case", number: float) -> str:
+    """Return the lines to paste: the number, and each threshold and setting that is no default."""
+    row = case.engine
+    own = BY_NUMBER[row.name]
+    alike = "one of both bodies" if row.pair is LARGER else "both bodies"
+    one = f"one body, with {case.other or 0:g} of the other one"
+    bodies = alike if case.other is None else one
+    changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
+    if case.threshold != row.threshold:
+        changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
+    values = {row.parameter: float(f"{number:.4g}"), **changed}
+    # In the order of the lines. Also a whole number has a decimal point, as C++ wants before an f.
+    return "\n".join(
+        line.format(name=name, value=float(values[name]), bodies=bodies)
+        for name, line in row.lines.items()
+        if name in values
     )
-    # No rule depends on the mass, and on the radius for fast bodies only.
-    size = {} if given.keys() & {"mass", "radius"} else {"radius": 0.1}
-    mass = {} if "density" in given else {"mass": 1.0}
-    found = Bounce(**mass | size | given)
-    typed = {name: text for name, text in found.given.items() if name.replace(" ", "_") in given}
-    object.__setattr__(found, "given", typed)
-    return found
-
-
-@dataclass(frozen=True, repr=False)
-class Rebound:
-    """What a restitution number does in an engine.
-
-    ``written`` is the number of a body: of both alike, or of one if ``other`` has that of the other
-    one. ``number`` is that of both together, ``threshold`` in m/s, and ``slower`` is r at a third
-    of the speed. ``change`` is the same with r nearest to the wanted one, and ``shorter`` that at
-    the longest step at which r is within the tolerance; they are None if this one is.
-    """
-
-    engine: str
-    source: ByNumber
-    bounce: Bounce
-    time_step: float
-    written: float
-    other: float | None
-    number: float
-    threshold: float
-    restitution: Range
-    slower: Range
-    change: "Rebound | None" = None
-    shorter: "Rebound | None" = None
-    is_beyond: bool = False
-    """Whether no number keeps r at this step."""
-
-    @property
-    def deviation(self) -> float:
-        """The largest distance of r from the wanted one."""
-        return self.restitution.deviation(self.bounce.restitution)
-
-    @property
-    def snippet(self) -> str:
-        """What is pasted into the engine."""
-        row = self.source
-        alike = "one of both bodies" if row.pair is LARGER else "both bodies"
-        one = f"one body, with {self.other or 0:g} of the other one"
-        bodies = alike if self.other is None else one
-        # Also a whole number has a decimal point, which C++ wants before an f.
-        line = row.written.format(number=float(f"{self.written:.4g}"), bodies=bodies)
-        lowered = row.lowered.format(threshold=float(f"{self.threshold / row.unit:.2g}"))
-        return line if self.threshold == row.threshold else f"{line}\n{lowered}"
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What a user has to know, the severest first."""
-        row = replace(self.source, threshold=self.threshold)
-        speed = self.bounce.impact_speed
-        r = self.restitution
-        slowest = self.threshold / (max(self.number, 1e-9) if row.is_of_rebound else 1.0)
-        is_slow = 0 < speed <= slowest
-        lowest = slowest**2 / (2 * self.bounce.gravity) if self.bounce.gravity else 0.0
-        way = speed * self.time_step
-        settling = self.bounce.load * self.time_step / max(1 - self.number, 1e-9)
-        hops = row.is_restless and 0 < self.number < 1 and slowest < settling
-        height = settling**2 / (2 * self.bounce.load) if hops else 0.0
-        shorter = self.time_step * slowest / max(settling, 1e-9)
-        rests = (
-            f"above a threshold of {show(settling, 'm/s')}"
-            if row.lowered
-            else f"below a step of {show(shorter, 's')}"
-        )
-        said = [
-            (
-                self.number == 0 < self.written,
-                f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
-            ),
-            (
-                self.number > 0 and is_slow and r.high < 0.1,
-                f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of "
-                f"{row.limit}{'' if row.lowered else '; it is a constant: no number helps'}",
-            ),
-            (
-                r.low < 0.1 <= r.high and r.low < r.mean / 2 and speed < 2 * slowest,
-                f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold "
-                f"of {row.limit}",
-            ),
-            (
-                r.high >= 1.0005,
-                f"r is up to {r.high:.3f}: at some instants the ball gains energy",
-            ),
-            (
-                speed / 3 > slowest and abs(self.slower.mean - r.mean) > TOLERANCE / 2,
-                f"at a third of the speed r is {self.slower}",
-            ),
-            (
-                self.number > 0 and not is_slow and lowest > 0,
-                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is "
-                f"{row.limit}",
-            ),
-            (
-                hops,
-                f"it may hop for ever, by some {show(height, 'm', 2)}: {rests} it comes to rest",
-            ),
-            (self.is_beyond, f"no number keeps r within {TOLERANCE:g} at this step"),
-            (
-                way > self.bounce.size,
-                f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
-                "table",
-            ),
-        ]
-        return tuple(holding(said))
-
-    @property
-    def gives(self) -> str:
-        """What the number does, in words."""
-        row = self.source
-        lowered = f" and {row.set_by} = {self.threshold / row.unit:.2g}"
-        also = "" if self.threshold == row.threshold else lowered
-        also += f" and {row.setting}" if row.setting else ""
-        return f"{row.parameter} = {self.written:.4g}{also} gives r = {self.restitution}"
-
-    def __repr__(self) -> str:
-        wanted = self.bounce.restitution
-        goal = "" if wanted is None else f"; {wanted:g} is wanted"
-        head = f"{self.engine} at a step of {show(self.time_step, 's')}: {self.gives}{goal}"
-        return "\n".join([head, *(f"! {note}" for note in self.notes)])
-
-    def __str__(self) -> str:
-        row = self.source
-        change = self.change
-        bounce = self.bounce
-        given = [f"{name} {value}" for name, value in bounce.given.items()]
-        given.append(f"time step {show(self.time_step, 's', 4)}")
-        of_both = " (of both bodies)" if change and change.other is None is not self.other else ""
-        is_default = row.damping == BY_NUMBER[self.engine].damping
-        pixels = f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"
-        assumed = bounce.assumed + holding([(row.pixels, pixels)])
-        lines = [
-            (True, repr(self)),
-            (change, f"Least change: {change.gives if change else ''}{of_both}."),
-            (
-                self.shorter,
-                f"At a step of {show(self.shorter.time_step, 's', 4)} {self.shorter.gives}."
-                if self.shorter
-                else "",
-            ),
-            (
-                self.is_beyond and not self.shorter,
-                "Nor does one at a half, a quarter, … a 128th of the step.",
-            ),
-            (True, f"\n{(change or self).snippet}\n"),
-            (True, f"Given: {', '.join(given)}."),
-            (
-                True,
-                "The numbers of both bodies, "
-                + ("alike" if self.other is None else f"and {self.other:g} of the other body")
-                + f": {row.pair.text}; together {self.number:.4g}.",
-            ),
-            (True, f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}."),
-            *((True, f"{note}.") for note in row.notes),
-            (
-                row.relaxation and not row.setting,
-                f"With contactEquationRelaxation = {row.relaxation:g}, the default, r depends on "
-                "where in a step the impact is.",
-            ),
-            (
-                row.damping and bounce.gravity,
-                f"The flights are damped by {row.damped_by} = {row.damping:g}"
-                f"{', the default' if is_default else ''}, which lowers r: it holds for this "
-                "height only.",
-            ),
-            (
-                bounce.friction is not None,
-                "Friction acts along the surface only: r is computed without it.",
-            ),
-            (assumed, f"Assumed: {'; '.join(assumed)}."),
-        ]
-        return "\n".join(holding(lines))
 
 
 class Case(NamedTuple):
@@ -720,124 +692,314 @@ class Case(NamedTuple):
     bounce: Bounce
     step: float
     threshold: float
+    settings: Mapping[str, float]
     other: float | None = None
 
     @property
     def never_bounces(self) -> bool:
         """Whether no number helps, because the threshold is a constant."""
         fastest = self.bounce.impact_speed + self.bounce.load * self.step
-        return fastest <= self.threshold and not self.engine.lowered
+        return fastest <= self.threshold and self.engine.is_constant
 
     def number(self, written: float) -> float:
         """Return the number of both bodies together."""
         return self.engine.pair.of(written, written if self.other is None else self.other)
 
-    def restitutions(self, written: float, speed: float) -> Array:
+    def settling(self, written: float) -> float:
+        """Return the threshold in m/s above which every body comes to rest; 0 if each one does."""
+        row = self.engine
+        is_restless = row.is_restless and not self.settings.get(row.calmed_by)
+        return is_restless * self.bounce.gravity * self.step / max(1 - self.number(written), 1e-9)
+
+    def restitutions(self, written: float, speed: float, instants: int | None = None) -> Array:
         """Return r of impacts with a speed in m/s, at instants within a step."""
-        keeps = self.engine.kept(self.engine.damping, self.step)
-        load = self.bounce.load
-        number = self.number(written)
-        relaxation = self.engine.relaxation
-        at = Fall(number, self.step, load, self.threshold, self.bounce.size, keeps, relaxation)
-        return restitutions(self.engine, at, speed)
-
-    def rebound(self, written: float) -> Rebound:
-        """Return what a number does."""
-        speed = self.bounce.impact_speed
-        found = self.restitutions(written, speed)
-        try:
-            slower = self.restitutions(written, speed / 3)
-        except Refused:
-            slower = found
-        return Rebound(
-            engine=self.engine.name,
-            source=self.engine,
-            bounce=self.bounce,
-            time_step=self.step,
-            written=written,
-            other=self.other,
+        row = self.engine
+        bounce = self.bounce
+        settings = dict(self.settings)
+        if row.free and not bounce.load:
+            # The speeds of two free bodies are those at the impact.
+            settings["linearDamping"] = 0.0
+        if "contactProcessingThreshold" in settings:
+            touching = bounce.other_mass is not None or bounce.points > 1
+            settings["ahead"] = found_ahead(settings, bounce.size, touching)
+        at = Fall(
             number=self.number(written),
+            step=self.step,
+            gravity=bounce.load,
             threshold=self.threshold,
-            restitution=Range.of(found),
-            slower=Range.of(slower),
+            radius=bounce.size,
+            keeps=row.kept(settings.get(row.damped_by, 0.0), self.step),
+            mass=bounce.reduced_mass if bounce.mass else 1.0,
+            settings=settings,
         )
+        return restitutions(row, at, speed, instants)
 
-    def nearest(self) -> Rebound:
-        """Return the rebound whose mean r is the wanted one, or the nearest to it, by bisection."""
+    def slower(self, written: float) -> Range:
+        """Return r at a third of the speed; NaN if the step is too long for it."""
+        try:
+            return Range.of(self.restitutions(written, self.bounce.impact_speed / 3))
+        except Refused:
+            return Range(math.nan, math.nan, math.nan)
+
+    def range(self, written: float) -> Range:
+        """Return r of a number."""
+        return Range.of(self.restitutions(written, self.bounce.impact_speed, MOST_INSTANTS))
+
+    def nearest(self) -> float:
+        """Return the number whose mean r is the wanted one, or the nearest to it, by bisection."""
         speed = self.bounce.impact_speed
         place = bisect_left(
             range(10_000),
             self.bounce.restitution,
             key=lambda place: self.restitutions(place / 10_000, speed).mean(),
         )
-        return self.rebound(place / 10_000)
+        return place / 10_000
 
-    def wanted(self) -> Rebound:
-        """Return the nearest rebound, with another setting if r is not kept without it."""
-        found = self.with_threshold()
-        if found.deviation <= TOLERANCE:
-            return found
-        cases = (
-            self._replace(engine=each.scaled(self.bounce.gravity, self.engine.pixels))
-            for each in self.engine.others
-        )
-        others = [case.with_threshold() for case in cases]
-        return min([found, *others], key=lambda each: each.deviation)
+    def deviation(self, written: float) -> float:
+        """Return the largest distance of r from the wanted one."""
+        return self.range(written).deviation(self.bounce.restitution)
 
-    def with_threshold(self) -> Rebound:
-        """Return the nearest rebound, with a lower threshold if this one is in the way.
+    def with_threshold(self) -> "tuple[Case, float]":
+        """Return the case and the nearest number, with another threshold if it is in the way.
 
-        It is lowered to a quarter of the speed, or to what lets the ball come to rest.
+        It is lowered to a quarter of the speed, and raised to what lets the ball come to rest.
         """
-        found = self.nearest()
+        number = self.nearest()
+        row = self.engine
         speed = self.bounce.impact_speed
-        if found.deviation <= TOLERANCE or not self.engine.lowered or speed >= 1.5 * self.threshold:
-            return found
-        lower = self._replace(threshold=float(f"{speed / 4:.2g}")).nearest()
-        settling = SETTLED * self.bounce.load * self.step / max(1 - lower.number, 1e-9)
-        if self.engine.is_restless and speed / 4 < settling < 0.9 * speed:
-            lower = self._replace(threshold=float(f"{settling:.2g}")).nearest()
-        return min(found, lower, key=lambda each: each.deviation)
+        if row.is_constant or not row.set_by:
+            return self, number
+        tried = [(self, number)]
+        if self.deviation(number) > TOLERANCE and speed < 1.5 * self.threshold:
+            lower = self._replace(threshold=float(f"{speed / 4:.2g}"))
+            tried.append((lower, lower.nearest()))
+        best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
+        settled = SETTLED * best.settling(number)
+        if best.threshold < settled < 0.9 * speed:
+            best = best._replace(threshold=float(f"{settled:.2g}"))
+            number = best.nearest()
+        return best, number
 
-    def at_shorter_steps(self, found: Rebound) -> Rebound:
-        """Return a rebound with the one at a half, a quarter, … of the step which keeps r."""
-        if found.deviation <= TOLERANCE:
-            return found
-        steps = (self.step / 2**n for n in range(1, 8))
-        case = self._replace(threshold=found.threshold, other=found.other)
-        tried = (case._replace(step=step).wanted() for step in steps)
-        shorter = next((each for each in tried if each.deviation <= TOLERANCE), None)
-        return replace(found, shorter=shorter, is_beyond=True)
+    def wanted(self) -> "tuple[Case, float]":
+        """Return the case and the number that keep r, with other settings if need be."""
+        tried = [self.with_threshold()]
+        for settings in self.engine.designed:
+            if tried[-1][0].deviation(tried[-1][1]) <= TOLERANCE:
+                break
+            tried.append(self._replace(settings={**self.settings, **settings}).with_threshold())
+        return min(tried, key=lambda each: each[0].deviation(each[1]))
+
+    def answer(self, number: float) -> Answer:
+        """Return what a number does."""
+        row = self.engine
+        bounce = self.bounce
+        settings = {
+            name: value
+            for name, value in self.settings.items()
+            if value != BY_NUMBER[row.name].settings[name]
+        }
+        if self.threshold != row.threshold:
+            settings[row.set_by] = self.threshold / row.unit
+        r = self.range(number)
+        each = [f" and {name} = {value:.2g}" for name, value in settings.items()]
+        named = "".join(each) if len(each) < 3 else f" with {len(each)} settings"
+        step = show(self.step, "s")
+        return Answer(
+            engine=row.name,
+            bounce=bounce,
+            time_step=self.step,
+            parameters={row.parameter: number, **settings},
+            outcome=Outcome(r),
+            snippet=_snippet(self, number),
+            warnings=tuple(_warnings(self, number, r)),
+            not_for=row.not_for,
+            remarks=tuple(_remarks(self, number)),
+            gives=f"{row.parameter} = {number:.4g}{named} at {step} gives r = {r}",
+            numbers={"number": self.number(number), "threshold": self.threshold},
+        )
 
 
-def number_for(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Rebound:
+def _warnings(case: Case, written: float, r: Range) -> list[str]:
+    """Return what changes r, the severest first."""
+    row = case.engine
+    bounce = case.bounce
+    speed = bounce.impact_speed
+    number = case.number(written)
+    slower = case.slower(written)
+    slowest = case.threshold / (max(number, 1e-9) if row.is_of_rebound else 1.0)
+    is_slow = 0 < speed <= slowest
+    lowest = slowest**2 / (2 * bounce.gravity) if bounce.gravity else 0.0
+    way = speed * case.step
+    settling = case.settling(written)
+    hops = bounce.load and 0 < number < 1 and slowest < settling
+    height = settling**2 / (2 * bounce.load) if hops else 0.0
+    rests = (
+        f"below a step of {show(case.step * slowest / settling, 's')}"
+        if hops and row.is_constant
+        else f"above a threshold of {show(settling, 'm/s')}"
+    )
+    limit = row.limit(case.threshold)
+    return holding(
+        [
+            (
+                number == 0 < written,
+                f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
+            ),
+            (
+                number > 0 and is_slow and r.high < 0.1,
+                f"it does not bounce: {show(speed, 'm/s')} is not above the threshold of "
+                f"{limit}{'; it is a constant: no number helps' * row.is_constant}",
+            ),
+            (
+                r.low < 0.1 <= r.high and r.low < r.mean / 2 and speed < 2 * slowest,
+                f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold "
+                f"of {limit}",
+            ),
+            (r.high >= 1.0005, f"at some instants the ball gains energy: r is up to {r.high:.3f}"),
+            (
+                speed / 3 > slowest and abs(slower.mean - r.mean) > TOLERANCE / 2,
+                f"at a third of the speed r is {slower}",
+            ),
+            (
+                hops,
+                f"it may hop for ever, by about {show(height, 'm', 2)}: {rests} it comes to rest",
+            ),
+            (
+                number > 0 and not is_slow and lowest > 0,
+                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}",
+            ),
+            (
+                way > bounce.size,
+                f"it moves {show(way, 'm')} in a step, farther than its radius: it may pass a thin "
+                "table",
+            ),
+        ]
+    )
+
+
+def _remarks(case: Case, written: float) -> list[str]:
+    """Return what else to know, what was given and what was assumed."""
+    row = case.engine
+    bounce = case.bounce
+    damping = case.settings.get(row.damped_by, 0.0)
+    given = [f"{name} {value}" for name, value in bounce.given.items()]
+    pixels = f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"
+    assumed = bounce.assumed + holding([(row.pixels, pixels)])
+    defaults = {
+        name: value
+        for name, value in case.settings.items()
+        if value == BY_NUMBER[row.name].settings[name] and name != row.damped_by
+    }
+    defaulted = ", ".join(f"{name} = {value:g}" for name, value in defaults.items())
+    bodies = "alike" if case.other is None else f"and {case.other:g} of the other body"
+    return holding(
+        [
+            (
+                damping and bounce.gravity,
+                f"The flights are damped by {row.damped_by} = {damping:g}, which lowers r: it "
+                "holds for this height only",
+            ),
+            *((True, note) for note in row.notes),
+            (
+                True,
+                f"The numbers of both bodies, {bodies}, are combined: {row.pair.text}; together "
+                f"{case.number(written):.4g}",
+            ),
+            (True, f"r is √(h′/h) over all instants within a step, by the rule of {row.ran}"),
+            (
+                bounce.friction is not None,
+                "Friction acts along the surface only: r is computed without it, and it is not in "
+                "what is pasted",
+            ),
+            (given, f"Given: {', '.join(given)}"),
+            (assumed, f"Assumed: {'; '.join(assumed)}"),
+            (defaulted, f"The defaults: {defaulted}"),
+        ]
+    )
+
+
+def _causes(case: Case, written: float, r: float) -> Iterator[str]:
+    """Yield which settings change r visibly, by setting one after the other as designs do."""
+    designed = case.engine.designed[-1] if case.engine.designed else {}
+    for name, value in designed.items():
+        was = case.settings[name]
+        case = case._replace(settings={**case.settings, name: value})
+        less = case.range(written).mean
+        if abs(r - less) > TOLERANCE / 2:
+            how = "lowers" if r < less else "raises"
+            yield f"{name} = {was:g} {how} r from {less:.3f} to {r:.3f}; designs have {value:g}"
+        r = less
+
+
+def _refuse_springs(bounce: Bounce, engine: ByNumber) -> None:
+    """Refuse what has no meaning where the restitution is a number."""
+    springs = ("penetration", "stiffness", "contact_time")
+    place = f"has no place in {engine.name}, where the restitution is a number"
+    refuse(
+        [
+            *(
+                (getattr(bounce, name) is not None, f"--{name.replace('_', '-')} {place}")
+                for name in springs
+            ),
+            # Boxes and two free bodies were run where the engine has springs as well.
+            (bounce.points != 1 and not engine.springs, f"--points {place}: a ball is dropped"),
+            (bounce.other_mass is not None and not engine.springs, f"--other-mass {place}"),
+        ]
+    )
+
+
+def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answer:
     """Return the restitution number with which a ball bounces as wanted, for both bodies alike.
 
     Raises
     ------
     Refused
-        If the restitution or the step is missing.
+        If the restitution or the step is missing, or no number bounces.
     """
+    _refuse_springs(bounce, engine)
     if bounce.restitution is None:
         raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     engine = engine.scaled(bounce.gravity)
-    case = Case(engine, bounce, _step(time_step), engine.threshold)
+    if time_step is None and engine.springs:
+        # The body moves by less than it may sink, and gravity adds less than the tolerance.
+        speed = bounce.impact_speed
+        slow = TOLERANCE * speed / bounce.load if bounce.load else math.inf
+        asked = float(f"{min(0.9 * bounce.limit / speed, slow, LONGEST_STEP):.3g}")
+    else:
+        asked = _step(time_step)
+    step = asked
+    # A body that moves farther than its radius passes a table.
+    while engine.springs and bounce.impact_speed * step > bounce.size:
+        step /= 2
+    case = Case(engine, bounce, step, engine.threshold, engine.settings)
     if case.never_bounces:
         raise Refused(
             f"no number bounces in {engine.name} at {show(bounce.impact_speed, 'm/s')}: it has a "
-            f"threshold of {engine.limit}, a constant"
+            f"threshold of {engine.limit(engine.threshold)}, a constant"
         )
-    return case.at_shorter_steps(case.wanted())
+    best, number = case.wanted()
+    return replace(best.answer(number), asked_step=asked, also=_shorter(best, number))
 
 
-def rebound(
+def _shorter(case: Case, number: float) -> tuple[Answer, ...]:
+    """Return the answer at a half, a quarter, … of the step that keeps r, if this one does not."""
+    if case.deviation(number) <= TOLERANCE:
+        return ()
+    for halvings in range(1, 8):
+        best, number = case._replace(step=case.step / 2**halvings).wanted()
+        if best.deviation(number) <= TOLERANCE:
+            return (best.answer(number),)
+    return ()
+
+
+def diagnose_number(
     bounce: Bounce,
     engine: ByNumber,
     parameters: Mapping[str, Any],
     time_step: Quantity,
     other: Mapping[str, Any] | None = None,
-) -> Rebound:
-    """Return the bounce that a restitution number gives, and the number for the one wanted.
+) -> Answer:
+    """Return the bounce that a restitution number gives, and the least change for the one wanted.
 
     Parameters
     ----------
@@ -856,36 +1018,52 @@ def rebound(
     Refused
         If a parameter or the step is missing, unknown or out of its range.
     """
+    _refuse_springs(bounce, engine)
     given = _given(engine, parameters)
     step = _step(time_step)
-    if "number" not in given:
+    if "number" not in given and not engine.springs:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
     engine = replace(
         engine.scaled(bounce.gravity, given.get("pixels")),
-        damping=given.get("damping", engine.damping),
-        pair=given.get("combine", engine.pair),
+        pair=_later(engine, [given, {} if other is None else _given(engine, other)]),
     )
-    if "relaxation" in given:
-        engine = _relaxed(engine, given["relaxation"])
     if "threshold in pixels" in given:
         given["threshold"] = engine.unit * given["threshold in pixels"]
+    settings = {name: given.get(name, value) for name, value in engine.settings.items()}
     case = Case(
         engine=engine,
         bounce=bounce,
         step=step,
         threshold=given.get("threshold", engine.threshold),
+        settings=settings,
         other=None if other is None else _given(engine, other).get("number", engine.default),
     )
-    found = case.rebound(given["number"])
-    if bounce.restitution is None or found.deviation <= TOLERANCE or case.never_bounces:
+    number = given.get("number", engine.default)
+    found = case.answer(number)
+    causes = tuple(_causes(case, number, found.outcome.restitution.mean))
+    # Nothing is to be pasted of what is given.
+    found = replace(found, snippet="", warnings=causes + found.warnings)
+    if found.is_kept or case.never_bounces:
         return found
-    change = case.wanted()
-    if other is not None and change.deviation > TOLERANCE:
+    best, number = case.wanted()
+    if other is not None and best.deviation(number) > TOLERANCE:
         # The number of one body may not be enough.
-        alike = case._replace(other=None).wanted()
-        change = min(change, alike, key=lambda each: each.deviation)
-    further = case.at_shorter_steps(change)
-    return replace(found, change=change, shorter=further.shorter, is_beyond=further.is_beyond)
+        tried = (best, number), case._replace(other=None).wanted()
+        best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
+    change = best.answer(number)
+    if best.other is None and other is not None:
+        change = replace(change, gives=f"{change.gives} (of both bodies)")
+    is_beyond = best.deviation(number) > TOLERANCE
+    beyond = (f"no number keeps r within {TOLERANCE:g} at this step",) * is_beyond
+    shorter = _shorter(best, number)
+    return replace(found, change=change, warnings=found.warnings + beyond, also=shorter)
+
+
+def _later(engine: ByNumber, bodies: Sequence[Mapping[str, Any]]) -> Rule:
+    """Return how numbers are combined; of the modes of two materials of PhysX the later one."""
+    if not engine.is_physx:
+        return engine.pair
+    return max((body.get("combine", MEAN) for body in bodies), key=list(MODES.values()).index)
 
 
 def _step(time_step: Quantity) -> float:
@@ -897,18 +1075,25 @@ def _step(time_step: Quantity) -> float:
 _READ: Mapping[str, Callable[[str, Any], Any]] = {
     "number": lambda name, value: within(name, value, 0, 1),
     "threshold": lambda name, value: within(name, in_si(name, value, "m/s"), 0, math.inf),
-    "threshold in pixels": lambda name, value: within(name, value, 0, math.inf),
-    "damping": lambda name, value: within(name, value, 0, math.inf),
     "pixels": lambda name, value: positive(name, value, ""),
-    "relaxation": lambda name, value: positive(name, value, ""),
     "combine": lambda name, value: MODES[one_of(name, value, MODES)],
+    "contactEquationRelaxation": lambda name, value: positive(name, value, ""),
+    "soft_cfm": lambda name, value: positive(name, value, "m/N/s"),
+    "kp": lambda name, value: positive(name, value, "N/m"),
+    **{
+        name: lambda name, value: abs(in_si(name, value, "m"))
+        for name in ("contactSlop", "contactProcessingThreshold")
+    },
 }
+"""How a number that is typed is read; others are not negative."""
 
 
 def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the number, the threshold, the damping and how two numbers are combined, as typed."""
+    """Return the number, the threshold, the settings and how two numbers are combined, as typed."""
     combine = "combine" if engine.is_physx else ""
-    relaxation = "contactEquationRelaxation" if engine.relaxation else ""
-    names = filter(None, [engine.parameter, engine.set_by, engine.damped_by, combine, relaxation])
+    names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
     found = parameters_of(engine.name, engine.names, list(names), typed)
-    return {what: _READ[what](what, value) for what, value in found.items()}
+    return {
+        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(what, value)
+        for what, value in found.items()
+    }

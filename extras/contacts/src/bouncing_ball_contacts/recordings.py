@@ -23,6 +23,7 @@ from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
     holding,
+    in_si,
     positive,
     units_of,
 )
@@ -170,7 +171,7 @@ def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, rem
     is_echo = np.zeros(len(flights), bool)
     is_short = 4 * flights[:-1] ** 2 < before[:-1] * after
     is_echo[:-1] = is_short & (after > _GROWTH * flights[:-1] + grows)
-    if len(flights) > 2:
+    if len(flights) > 2 and flights[-2] <= _GROWTH * flights[-3] + grows:
         is_echo[-1] = 4 * flights[-1] * flights[-3] < flights[-2] ** 2
     said = f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}"
     table.refuse(is_echo, said, flights, lines=lines)
@@ -507,3 +508,27 @@ def read(
             return {name: _recording(part, leave_out)}
     known = ", ".join(filter(None, balls)) or "no column of balls"
     raise Refused(f"{table.name} has {known}: name one, --ball")
+
+
+def typed_readings(words: Sequence[str]) -> dict[str, Any]:
+    """Return the column of numbers that are typed with their unit, as in 1.80 1.21 0.82 m.
+
+    Lengths are successive heights. Times that grow are those of the impacts, and others are the
+    intervals between them.
+
+    Raises
+    ------
+    Refused
+        If a word is no number, or the unit is none of a length or a time.
+    """
+    *numbers, unit = words
+    values = [in_si("recording", number, "") for number in numbers]
+    if unit in units_of("m"):
+        return {f"height ({unit})": numbers}
+    if unit not in units_of("s"):
+        raise Refused(
+            f"recording: {unit!r} is no unit of heights or times: write 1.80 1.21 0.82 m, or give "
+            "one file"
+        )
+    is_time = all(later > earlier for earlier, later in itertools.pairwise(values))
+    return {f"{'time' if is_time else 'interval'} ({unit})": numbers}

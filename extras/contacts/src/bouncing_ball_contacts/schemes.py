@@ -6,7 +6,7 @@ w = -v its rate. Everything is per unit of mass. Every engine here moves a body 
     v⁺ = v - h g + h a,    z⁺ = z + h v⁺
 
 and the engines differ in the acceleration a of the contact: at which instant it is taken, when it
-ends, and by which law. Velocity Verlet (LAMMPS, LIGGGHTS, MercuryDPM) is of this form as well, if
+ends, and by which law. Velocity Verlet (LAMMPS) is of this form as well, if
 v is the velocity of half steps, by which its dampers act.
 
 A ball that starts from rest at the height H has velocities -n g h. Let -s u h be its first height
@@ -20,7 +20,7 @@ offsets for one step, and not for a step beside it.
 """
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
@@ -81,18 +81,14 @@ class Law:
 
     Laws of explicit steps have ``push``, the acceleration in m/s² at a penetration p > 0 in m and
     its rate w in m/s, and those of implicit steps ``implicit_velocity``, which is v⁺ of a step from
-    z if v is the velocity without the contact; what a solver gives is stepped by `OfSolver`.
+    z if v is the velocity without the contact.
     """
 
     stiffness: Array
     damping: Array
     drag = 0.0
-    """D in 1/s: Bullet's linear damping decelerates a body by D v (1 + |v|/(1 m/s))."""
-
-    @property
-    def is_number(self) -> bool:
-        """Whether the rebound is by a restitution coefficient, and not by a spring."""
-        return False
+    ahead = 0.0
+    """Height in m below which a contact is found."""
 
     @property
     def deep(self) -> "Law":
@@ -232,128 +228,59 @@ class Impedance(Law):
 
 
 @dataclass(frozen=True)
-class Solved(Law):
-    """A contact that a solver of velocities gives: v⁺ = (u + D C)/(1 + D), if this is above u.
+class Bullet(Linear):
+    """Bullet's spring and damper, which aim at p = `slop`, and are found below the height `ahead`.
 
-    u is the velocity without the contact, C the one that the contact aims at, and D = h (h k + c)
-    tells how strongly the spring and the damper hold it there; without them D is infinite. The
-    restitution coefficient e counts at speeds above the `threshold`. The solvers differ in C, and
-    in the heights z at which there is a contact; v is the velocity before the step. The depth at
-    rest is that at the time step `step` in s.
+    Above the surface a body is stopped at it: v⁺ = (u + D C)/(1 + D) with D = h (h k + c) and
+    C = -z/h there, and C = -k z/(h k + c) below.
     """
 
-    stiffness: Array = field(default_factory=lambda: np.asarray(np.inf))
-    damping: Array = field(default_factory=lambda: np.asarray(0.0))
-    restitution: Array = field(kw_only=True)
-    threshold: float = 0.0
-    step: float = 0.0
-
-    @property
-    def is_number(self) -> bool:
-        """Whether there is a restitution coefficient, or no spring."""
-        return bool(np.any(self.restitution) or np.any(np.isinf(self.stiffness)))
-
-    def settling(self, fall: float) -> Array:
-        """Return the threshold in m/s above which every body comes to rest.
-
-        g h, the speed that a step of gravity adds, is `fall`. A body that arrives with the speed s
-        is thrown back by w = e (s + g h). A flight keeps g z + v (v - g h)/2, and on the average it
-        ends as high as it began, so that s = w: at a threshold below u = s + g h = g h/(1 - e) a
-        body may hop for ever, and above it none does.
-        """
-        return fall / np.maximum(1 - self.restitution, 1e-12)
-
-    def rest(self, gravity: float) -> Array:
-        """Return the greatest depth at rest in m, which is NaN if the body may hop for ever."""
-        hops = (self.restitution > 0) & (self.threshold < self.settling(gravity * self.step))
-        return np.where(hops, np.nan, gravity / self.stiffness)
-
-    def thrown(self, u: Array) -> Array:
-        """Return the speed of the rebound from the velocity u."""
-        return np.where(u < -self.threshold, -self.restitution * u, 0.0)
-
-    def held(self, u: Array, aim: Array, h: Array) -> Array:
-        """Return v⁺ of an aim C."""
-        return aim + (u - aim) / (1 + h * (h * self.stiffness + self.damping))
-
-
-@dataclass(frozen=True)
-class Bullet(Solved):
-    """Bullet's contact, found below the height `ahead`: C = e (-u)₊ - E (z + s)/h.
-
-    s is the `slop`; E is 1 above the surface, and the share of the penetration that a step takes
-    back below it: h k/(h k + c), or `erp` without a spring.
-    """
-
-    erp: float = 0.0
     slop: float = 0.0
     ahead: float = 0.0
     drag: float = 0.0
-
-    def settling(self, fall: float) -> Array:
-        # A body that is stopped ahead of the surface loses more than a flight returns.
-        return np.asarray(fall) if self.ahead > 0 else super().settling(fall)
+    """D in 1/s: the linear damping decelerates a body by D v (1 + |v|/(1 m/s))."""
 
     def rest(self, gravity: float) -> Array:
-        arrives = max(self.threshold - gravity * self.step, 0.0)
-        # Without `erp` the depth of the step that stopped the body is never taken back.
-        keeps = self.erp == 0 and self.ahead == 0 and np.all(np.isinf(self.stiffness))
-        return super().rest(gravity) + self.slop + (arrives * self.step if keeps else 0.0)
+        return super().rest(gravity) + self.slop
 
-    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
         gap = z + self.slop
-        share = np.asarray(self.erp)
-        if np.all(np.isfinite(self.stiffness)):
-            share = h * self.stiffness / (h * self.stiffness + self.damping)
-        aim = self.thrown(u) - np.where(gap > 0, 1.0, share) * gap / h
-        return np.where((z < 0) | (z < self.ahead), self.held(u, aim, h), u)
+        share = h * self.stiffness / (h * self.stiffness + self.damping)
+        aim = -np.where(gap > 0, 1.0, share) * gap / h
+        return aim + (v - aim) / (1 + h * (h * self.stiffness + self.damping))
 
 
 @dataclass(frozen=True)
-class ContactJoint(Solved):
-    """ODE's contact joint: C is the larger one of e (-v)₊ and h k p/(h k + c)/h, at most `fastest`.
+class Capped(Linear):
+    """The spring and damper of Gazebo Classic, whose C = -k z/(h k + c) is at most `fastest`.
 
-    The rebound is from the velocity before the step, and so it is lower each time. The position
-    moves as without `fastest`, and a body whose C at rest, g/(h k + c), is larger lies deeper than
-    g/k.
+    The position moves as without `fastest`, and a body whose C at rest, g/(h k + c), is larger lies
+    deeper than g/k.
     """
 
     fastest: float = math.inf
     step: float = math.inf
 
     @property
-    def of_position(self) -> "ContactJoint":
+    def of_position(self) -> "Capped":
         return self if math.isinf(self.fastest) else replace(self, fastest=math.inf)
-
-    def settling(self, fall: float) -> Array:
-        return np.asarray(fall)
 
     def rest(self, gravity: float) -> Array:
         aim = gravity / (self.step * self.stiffness + self.damping)
         more = np.maximum(aim - self.fastest, 0.0) / (self.step * self.stiffness)
         return gravity / self.stiffness + more
 
-    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
-        out = -self.stiffness * z / (h * self.stiffness + self.damping)
-        aim = np.minimum(np.maximum(self.thrown(v), out), self.fastest)
-        return np.where(z < 0, self.held(u, aim, h), u)
-
-
-@dataclass(frozen=True)
-class FoundAhead(Solved):
-    """PhysX's restitution, in the step that would end below the surface: C = e (-u)₊ or -z/h."""
-
-    def velocity(self, z: Array, v: Array, u: Array, h: Array) -> Array:
-        thrown = self.thrown(u)
-        aim = np.where(thrown > 0, thrown, np.minimum(-z / h, 0.0))
-        return np.where(z + h * u < 0, self.held(u, aim, h), u)
+    def implicit_velocity(self, z: Array, v: Array, h: Array) -> Array:
+        both = h * self.stiffness + self.damping
+        aim = np.minimum(-self.stiffness * z / both, self.fastest)
+        return aim + (v - aim) / (1 + h * both)
 
 
 @dataclass(frozen=True)
 class SemiImplicit:
     """The force is that of the beginning of the step; `free` is the velocity without the contact.
 
-    It never pulls unless the damper `pulls` (the release of LAMMPS and MercuryDPM). The damper of
+    It never pulls unless the damper `pulls` (LAMMPS). The damper of
     Newton acts on `approach` only.
     """
 
@@ -376,16 +303,8 @@ class Implicit:
     ahead: bool = False
 
     def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        touching = z + h * free < 0 if self.ahead else z < 0
+        touching = z + h * free < 0 if self.ahead else (z < 0) | (z < law.ahead)
         return np.where(touching, np.maximum(free, law.implicit_velocity(z, free, h)), free)
-
-
-@dataclass(frozen=True)
-class OfSolver:
-    """The velocity is that of a solver, and a contact never pulls, see :class:`Solved`."""
-
-    def velocity(self, law: Any, z: Array, v: Array, free: Array, h: Array, g: Array) -> Array:
-        return np.maximum(free, law.velocity(z, v, free, h))
 
 
 @dataclass(frozen=True)
@@ -435,7 +354,7 @@ def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
 @np.errstate(over="ignore", invalid="ignore")
 def drop(
     law: Law,
-    scheme: SemiImplicit | Implicit | OfSolver,
+    scheme: SemiImplicit | Implicit,
     step: Array | float,
     speed: float,
     gravity: float,

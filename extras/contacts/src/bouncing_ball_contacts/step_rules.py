@@ -8,8 +8,9 @@ z and v on. The rules were found in the source of the engines and by dropping ba
 """
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class Fall:
 
     ``number`` is the restitution coefficient of both bodies together. Impacts slower than
     ``threshold`` have none. ``keeps`` is the share of its velocity that a linear damping leaves to
-    a body in a step, and ``relaxation`` how many steps a contact of cannon-es takes to relax.
+    a body in a step. ``settings`` are other parameters by their names in the engine.
     """
 
     number: float
@@ -27,7 +28,8 @@ class Fall:
     threshold: float
     radius: float
     keeps: float = 1.0
-    relaxation: float = 3.0
+    mass: float = 1.0
+    settings: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def added(self) -> float:
@@ -246,6 +248,65 @@ def dart(at: Fall, z: float, v: float) -> Steps:
         yield z, v
 
 
+def bullet_flight(at: Fall, v: Any) -> Any:
+    """Return the velocity after a step of free flight with Bullet's linear damping."""
+    return v - at.added - at.step * at.settings["linearDamping"] * v * (1 + abs(v))
+
+
+def pybullet(at: Fall, z: float, v: float) -> Steps:
+    """Below `ahead` the velocity with the step's gravity is reversed.
+
+    A body that is too slow for that is stopped at the surface, and put out of it by a share of its
+    depth in a step, `contactERP`. The linear damping D decelerates it by D v (1 + |v|/(1 m/s)).
+    """
+    slop = at.settings["contactSlop"]
+    ahead = at.settings["ahead"]
+    while True:
+        u = bullet_flight(at, v)
+        v = u
+        if z < 0 or z < ahead:
+            gap = z + slop
+            out = gap * (1.0 if gap > 0 else at.settings["contactERP"]) / at.step
+            v = max(u, -at.number * u * (u < -at.threshold) - out)
+        z += at.step * v
+        yield z, v
+
+
+def ode(at: Fall, z: float, v: float) -> Steps:
+    """The velocity before the step's gravity is reversed, or a share of the depth taken back.
+
+    `soft_cfm` softens both.
+    """
+    held = at.step / (at.settings["soft_cfm"] * at.mass)
+    erp = at.settings["soft_erp"]
+    while True:
+        u = v - at.added
+        if z < 0:
+            aim = max(-at.number * v * (v < -at.threshold), -erp * z / at.step)
+            u = max(u, aim + (u - aim) / (1 + held))
+        v = u
+        z += at.step * v
+        yield z, v
+
+
+def gazebo(at: Fall, z: float, v: float) -> Steps:
+    """As ODE's, of two bodies alike, at most `max_vel`; the position moves as without it."""
+    both = at.step * at.settings["kp"] / 2 + 2 * at.settings["kd"]
+    held = at.step * both / at.mass
+    fastest = min(at.settings["max_vel"], at.settings["contact_max_correcting_vel"])
+    while True:
+        u = v - at.added
+        moves = u
+        if z < 0:
+            aim = max(-at.number * v * (v < -at.threshold), -at.settings["kp"] / 2 * z / both)
+            capped = min(aim, fastest)
+            moves = max(u, aim + (u - aim) / (1 + held))
+            u = max(u, capped + (u - capped) / (1 + held))
+        v = u
+        z += at.step * moves
+        yield z, v
+
+
 def xpbd(at: Fall, z: float, v: float) -> Steps:
     """Two iterations that take back 0.8 of the penetration each; then v is reversed."""
     while True:
@@ -277,7 +338,7 @@ def cannon(at: Fall, z: float, v: float) -> Steps:
 
     The body has 1 kg; heavier ones sink deeper.
     """
-    four = 4 * at.relaxation
+    four = 4 * at.settings["contactEquationRelaxation"]
     a = 4 / (at.step * (1 + four))
     b = four / (1 + four)
     softness = 4 / (at.step**2 * 1e7 * (1 + four))

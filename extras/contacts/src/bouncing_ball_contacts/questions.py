@@ -1,0 +1,105 @@
+"""The two questions: which parameters give a bounce, and which bounce parameters give."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from bouncing_ball_contacts.answers import Answer
+from bouncing_ball_contacts.bounces import Bounce, Quantity
+from bouncing_ball_contacts.designs import design_spring
+from bouncing_ball_contacts.engines import ENGINES, Engine, as_compared
+from bouncing_ball_contacts.rebounds import design_number, diagnose_number, rows_of
+from bouncing_ball_contacts.units import Refused
+
+
+def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity = None) -> Answer:
+    """Return what to write into an engine for a bounce, and what it does there.
+
+    Parameters
+    ----------
+    bounce : Bounce
+    engine : str or Engine
+        Name of an engine, or a row of :data:`.ENGINES`. If an engine has both, a restitution by
+        number is written, unless the bounce has a penetration, a stiffness or a contact time, or a
+        restitution of 0.
+    time_step : Quantity, optional
+        Of the engine; without one that of a contact is the longest one that it allows.
+
+    Returns
+    -------
+    Answer
+
+    Raises
+    ------
+    Refused
+        If there is no such contact, or a quantity is missing.
+
+    >>> print(design(Bounce(mass=1, radius=0.1, restitution=0.8), "mujoco", "1 ms").result)
+    mujoco, 1 ms: r = 0.801 (0.784 to 0.818), sinks 17.5 mm of 100 mm
+    """
+    if not isinstance(bounce, Bounce):
+        raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
+    if isinstance(engine, Engine):
+        return design_spring(bounce, engine, time_step)
+    springs, number = rows_of(engine)
+    is_spring = bounce.gives_contact or bounce.restitution == 0
+    if number is None or (springs is not None and is_spring):
+        return design_spring(bounce, springs or ENGINES["generic"], time_step)
+    return design_number(bounce, number, time_step)
+
+
+def diagnose(
+    bounce: Bounce,
+    engine: str | Engine,
+    parameters: Mapping[str, Any] | None = None,
+    time_step: Quantity = None,
+    *,
+    other: Mapping[str, Any] | None = None,
+) -> Answer:
+    """Return the bounce that parameters give at a step, and the least change for the one wanted.
+
+    Parameters
+    ----------
+    bounce : Bounce
+        Its restitution is the one that is wanted, and may be left out.
+    engine : str or Engine
+    parameters : mapping
+        Parameters of one body by their names; without any, the defaults of the engine.
+    time_step : Quantity
+        Of the engine.
+    other : mapping, optional
+        Parameters of the other body beside the engine's defaults; if it is left out, both are
+        alike.
+
+    Returns
+    -------
+    Answer
+
+    Raises
+    ------
+    Refused
+        If a parameter or the step is missing, unknown or out of its range.
+    """
+    # Importing it takes longer than a design, which does not need it.
+    from bouncing_ball_contacts.diagnosis import diagnose_spring
+
+    if not isinstance(bounce, Bounce) or not all(
+        isinstance(body or {}, Mapping) for body in (parameters, other)
+    ):
+        raise Refused(
+            "give a bounce, an engine and parameters by their names: "
+            "diagnose(Bounce(mass='50 g'), 'mujoco', {'solref': '0.02 1'}, '2 ms')"
+        )
+    typed = parameters or {}
+    if isinstance(engine, Engine):
+        return diagnose_spring(bounce, engine, typed, time_step, other)
+    springs, number = rows_of(engine)
+    # A stiffness or a damping is one of springs, unless a number is given as well, and so are names
+    # that only springs have.
+    compared = set(map(as_compared, [*typed, *(other or {})]))
+    of_number = number.names if number else {}
+    of_springs = set(map(as_compared, springs.rules)) - of_number.keys() if springs else set()
+    of_springs |= set(map(as_compared, springs.names)) if springs else set()
+    is_number = "number" in {of_number.get(each) for each in compared}
+    if number is None or (springs and not is_number and compared & of_springs):
+        return diagnose_spring(bounce, springs or ENGINES["generic"], typed, time_step, other)
+    return diagnose_number(bounce, number, typed, time_step, other)

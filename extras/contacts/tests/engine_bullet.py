@@ -1,15 +1,15 @@
 """Contacts that PyBullet finds ahead, or when bodies touch.
 
 ``python tests/engine_bullet.py`` lets balls and boxes meet a table or each other, at 16 instants
-within a step, without friction and with it, and writes r as diagnosed and in PyBullet into
-docs/validation.md. The exit status is 1 if one differs.
+within a step, without friction and with it, and saves r as diagnosed and in PyBullet in
+docs/validation/bullet.csv. The exit status is 1 if one differs.
 """
 
 import sys
 
 import numpy as np
 import pybullet
-from engine_page import write
+from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, diagnose
 
@@ -97,18 +97,23 @@ def met(shapes, size, other_mass, step, parameters, gap, friction):
     return np.sqrt(max(max(heights[turn : top + 1]), 0) / gap)
 
 
-HEAD = ["bodies", "size, m", "other mass, kg", "step, ms", "parameters", "r", "PyBullet"]
-WORDS = (
-    "A body of 1 kg meets a table or another body with 3 m/s in PyBullet, at 16 instants within a "
-    "step; the column *r* is what `bounce diagnose` says. PyBullet finds some of these contacts "
-    "ahead."
-)
+HEAD = [
+    "engine",
+    "friction",
+    "bodies",
+    "size, m",
+    "other mass, kg",
+    "step, ms",
+    "parameters",
+    "r",
+    "r in the engine",
+    "promise",
+]
 
 
 def table(friction):
-    """Return the lines of a table, and how many diagnoses differ."""
-    wrong = 0
-    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
+    """Return the rows of a table."""
+    rows = []
     for shapes, size, other_mass, step, parameters in CASES:
         asked = dict(mass=1.0, radius=size, speed=SPEED, points=4 if "box, " in shapes else 1)
         found = diagnose(Bounce(**asked, other_mass=other_mass), "pybullet", parameters, step)
@@ -120,25 +125,21 @@ def table(friction):
         low, mean, high = found.outcome.restitution
         agrees = low - 2e-3 <= min(measured) and max(measured) <= high + 2e-3
         agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
-        wrong += not agrees
         given = ", ".join(f"{name} = {value:g}" for name, value in parameters.items())
         texts = [shapes, f"{size:g}", str(other_mass or "–"), f"{1e3 * step:.3g}", given]
         texts += [f"{low:.3f} to {high:.3f}", f"{min(measured):.3f} to {max(measured):.3f}"]
-        lines.append("| " + " | ".join(texts) + ("" if agrees else " (differs)") + " |")
-        print(lines[-1], flush=True)
-    said = f"{len(CASES) - wrong} of {len(CASES)} agree with PyBullet."
-    print(said)
-    return [said, "", *lines], wrong
+        rows.append(["pybullet", f"{friction:g}", *texts, KEPT[bool(agrees)]])
+        print(" | ".join(rows[-1]), flush=True)
+    return rows
 
 
 def main():
     pybullet.connect(pybullet.DIRECT)
-    lines, wrong = table(0.0)
-    more, also_wrong = table(FRICTION)
-    rubbed = f"The same at a friction of {FRICTION}, on a table with {SLIDE} m/s along it."
-    page = ["## Contacts of PyBullet that are found ahead", "", WORDS, "", *lines, "", rubbed, ""]
-    write("bullet", [*page, *more])
-    sys.exit(wrong + also_wrong > 0)
+    rows = table(0.0) + table(FRICTION)
+    save("bullet", HEAD, rows)
+    differ = sum(row[-1] == KEPT[False] for row in rows)
+    print(f"{len(rows) - differ} of {len(rows)} agree with PyBullet.")
+    sys.exit(differ > 0)
 
 
 if __name__ == "__main__":

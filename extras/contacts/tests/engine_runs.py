@@ -88,7 +88,7 @@ class Trial(NamedTuple):
 
     @property
     def step(self):
-        return self.design.row.step
+        return self.design.time_step
 
 
 class Motion(NamedTuple):
@@ -129,7 +129,10 @@ def _mujoco_model(trial):
 
     r = trial.size
     form = f'type="box" size="{r!r} {r!r} {r!r}"' if trial.shape == "box" else f'size="{r!r}"'
-    rough = f'class="bounce" friction="{trial.friction!r} 0.005 0.0001"'
+    # The snippet is a geom, whose attributes both geoms have.
+    (pasted,) = re.findall(r"<geom (.*?)/>", trial.design.snippet)
+    pasted = re.sub(' friction="[^"]*"', "", pasted)
+    rough = f'{pasted} friction="{trial.friction!r} 0.005 0.0001"'
     below = f'<geom {rough} type="plane" size="9 9 1"/>'
     if trial.table == "slab":
         below = f'<geom {rough} type="box" size="9 9 0.01" pos="0 0 -0.01"/>'
@@ -141,7 +144,7 @@ def _mujoco_model(trial):
         return " ".join(map(repr, values))
 
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco>{trial.design.snippet}<option gravity="{numbers(trial.weight)}"/>
+        f"""<mujoco><option timestep="{trial.step!r}" gravity="{numbers(trial.weight)}"/>
         <worldbody><body pos="{numbers(trial.place)}" quat="{numbers(trial.turned)}"><freejoint/>
         <geom {rough} {form} mass="{trial.mass!r}"/></body>{below}</worldbody></mujoco>"""
     )
@@ -216,8 +219,15 @@ def pybullet(trial):
         trial.mass, form, basePosition=trial.place, baseOrientation=[*xyz, w]
     )
     pybullet.setGravity(*trial.weight)
-    # The world keeps its parameters, and this one is not in every snippet.
-    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.02)
+    # The world keeps its parameters, and these are not in every snippet.
+    pybullet.setPhysicsEngineParameter(
+        fixedTimeStep=trial.step,
+        numSubSteps=1,
+        contactBreakingThreshold=0.02,
+        contactERP=0.08,
+        contactSlop=1e-5,
+        restitutionVelocityThreshold=0.2,
+    )
     for body in (one, other):
         pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
     pybullet.resetBaseVelocity(other, [trial.slide, 0, -trial.speed], [0, trial.spin, 0])
@@ -544,7 +554,12 @@ def _physx():
 
 def physx(trial, other=None):
     engine, poses, ovstage = _physx()
-    defaults = ENGINES["physx"].defaults
+    threshold = trial.design.parameters.get("PhysxCfg.bounce_threshold_velocity", 0.5)
+    defaults = {
+        "restitution": 0.0,
+        "bounceThresholdVelocity": threshold,
+        **ENGINES["physx"].defaults,
+    }
     one = defaults | trial.design.parameters
     of_table = one if other is None else defaults | other
     r = trial.size
@@ -685,10 +700,12 @@ def _by_program(name, trial, *values):
 
 
 def gazebo(trial):
-    row = ENGINES["gazebo"]
-    values = {**row.defaults, **trial.design.parameters}
+    names = ("kp", "kd", "restitution_coefficient", "threshold")
+    names += ("max_vel", "contact_max_correcting_vel", "min_depth")
+    none = {"restitution_coefficient": 0.0, "threshold": 1e5}
+    values = {**none, **ENGINES["gazebo"].defaults, **trial.design.parameters}
     is_box = int(trial.shape == "box")
-    return _by_program("engine_gazebo", trial, *(values[name] for name in row.defaults), is_box)
+    return _by_program("engine_gazebo", trial, *(values[name] for name in names), is_box)
 
 
 RUNS = {
@@ -707,6 +724,15 @@ RUNS = {
     "ode": ode,
     "gazebo": gazebo,
 }
+
+
+ROWS = {"isaac-lab": "physx"}
+"""The engine in which a row is run: the contact offset is longer than the way of the body here."""
+
+
+def number_row(name):
+    """Return the name by which an engine is asked for its number."""
+    return "isaac-lab" if name == "physx" else name
 
 
 class Measured(NamedTuple):
@@ -739,20 +765,21 @@ def measure(design, shape, slide=0.0, instants=13):
 
     A ball that is dropped moves along the table with the speed `slide` in m/s.
     """
-    run = RUNS[design.engine]
+    run = RUNS[ROWS.get(design.engine, design.engine)]
     bounce = design.bounce
-    row = design.row
-    step = row.step
+    step = design.time_step
+    outcome = design.outcome
     speed = bounce.impact_speed
     g = bounce.load
     rubs = bounce.friction or 0.0
+    deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
     found = []
     for share in np.linspace(0.01, 0.99, instants):
-        lasts = 8 * row.outcome.depth[1] / speed + 6 * step
+        lasts = 8 * deepest / speed + 6 * step
         if g:
             gap = float(speed**2 / (2 * g) + share * speed * step)
             fall = math.sqrt(2 * gap / g)
-            seconds = fall * (1.05 + row.outcome.restitution[2]) + lasts
+            seconds = fall * (1.05 + outcome.restitution[2]) + lasts
             steps = int(seconds / step)
             trial = Trial(design, shape, gap, 0.0, steps, g, rubs, slide)
         else:
@@ -772,10 +799,10 @@ def measure(design, shape, slide=0.0, instants=13):
         found.append((r, depth, peak))
     r, depth, force = np.array(found).T
     rest = math.nan
-    if shape != "two" and row.outcome.rest > 0:
+    if shape != "two" and outcome.rest > 0:
         # Laid where it should rest, it stays there, or swings about where it rests.
-        period = 2 * math.pi * math.sqrt(row.outcome.rest / g)
+        period = 2 * math.pi * math.sqrt(outcome.rest / g)
         steps = max(20, int(4 * period / step))
-        heights = run(Trial(design, shape, -row.outcome.rest, 0.0, steps, g, rubs)).heights
+        heights = run(Trial(design, shape, -outcome.rest, 0.0, steps, g, rubs)).heights
         rest = -float(np.mean(heights))
     return Measured((r.min(), r.max()), depth.max(), force.max(), rest)

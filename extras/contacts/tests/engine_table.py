@@ -1,21 +1,19 @@
 """Designs beside what their engines do: ``python tests/engine_table.py [ENGINE]...``.
 
-It prints two tables, without friction and with it, and writes them into docs/validation.md, where
-rows of other engines and of those that are not installed stay as they are. The exit status is 1 if
-a design differs.
+It prints the designs without friction and with it, and saves docs/validation/designs.csv. Balls
+with friction that are dropped move along the table with half the speed of their impact as well. The
+exit status is 1 if a design differs.
 """
 
 import math
-import re
 import sys
 
 import engine_runs
 import numpy as np
-from engine_page import said, write
+from engine_page import KEPT, save
 
-from bouncing_ball_contacts import Bounce, design
+from bouncing_ball_contacts import ENGINES, Bounce, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.engines import engine_named
 from bouncing_ball_contacts.schemes import exact, offsets
 
 EQUAL = dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm")
@@ -39,7 +37,7 @@ CASES = [
         {},
     ),
     ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
-    ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1/240", {"pick": "impulse"}),
+    ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1/240", {}),
     (
         "pybullet",
         "ball",
@@ -54,7 +52,7 @@ CASES = [
         "ball",
         dict(mass="1 kg", restitution=0.5, radius="5 cm"),
         "1 ms",
-        {"pick": "your step"},
+        {"springs": True},
     ),
     ("pybullet", "box", BOX, "1 ms", {}),
     (
@@ -152,57 +150,52 @@ CASES = [
     ("genesis", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("genesis", "box", BOX, "1 ms", {}),
 ]
-DESIGNS = (
-    "Designs at 13 instants within a step. *r designed* is what `bounce design` prints, which "
-    "holds for neighbouring contacts as well; the numbers before each column *engine* are for the "
-    "contact and the step as they are written. `two` are two free balls without gravity."
-)
 FRICTION = 0.3
-RUBBED = (
-    f"The same at a friction of {FRICTION}; balls that are dropped move along the table with half "
-    "the speed of their impact as well. Of SAP in Drake, and of MuJoCo up to r = 0.6, the r of the "
-    "engine is within the range that the answer has for bodies that slide. The program for "
-    "Gazebo has no friction."
-)
 SMOOTH = ("gazebo",)
 """Engines that are run without friction only."""
 HEAD = [
-    "engine, shape",
+    "engine",
+    "friction",
+    "shape",
     "given",
-    "step",
+    "step, ms",
     "r designed",
     "r at this step",
-    "engine",
+    "r in the engine",
     "sinks, mm",
-    "engine",
+    "sinks in the engine, mm",
     "force, N",
-    "engine",
+    "force in the engine, N",
     "at rest, mm",
-    "engine",
+    "at rest in the engine, mm",
+    "promise",
 ]
 
 
 def label(name, shape, wanted, more):
-    """Return the first two cells of a row: the engine, and what is given."""
+    """Return cells of a row: the shape, and what is given."""
     given = ", ".join(map(str, wanted.values()))
-    return [f"{name}, {shape}", given + "".join(f", {value}" for value in more.values())]
+    return [shape, given + ", springs" * bool(more)]
 
 
 def cells(name, shape, wanted, time_step, more, friction):
     """Return the further cells of a row of the table, and whether the engine agrees."""
-    found = design(Bounce(**wanted, friction=friction), name, time_step, **more)
-    outcome = found.row.outcome
-    problem = Problem(found.bounce, engine_named(name))
-    law = problem.law_of(found.parameters, found.row.step)
-    # The design is for neighbouring steps as well, and the engine has this one.
-    here = problem.outcome(law, found.row.step, exact(offsets(401)))
+    engine = ENGINES[name] if more else engine_runs.number_row(name)
+    found = design(Bounce(**wanted, friction=friction), engine, time_step)
+    outcome = here = found.outcome
+    is_spring = "stiffness" in found.numbers
+    problem = Problem(found.bounce, ENGINES[name])
+    if is_spring:
+        law = problem.law_of(found.parameters, found.time_step)
+        # The design is for neighbouring steps as well, and the engine has this one.
+        here = problem.outcome(law, found.time_step, exact(offsets(401)))
     low, _, high = here.restitution
     slide = found.bounce.impact_speed / 2 if friction and shape == "ball" else 0.0
-    wider = problem.promised(here, 0.5) if slide else (low, high)
+    wider = problem.promised(here, 0.5) if slide and is_spring else (low, high)
     measured = engine_runs.measure(found, shape, slide)
     at_least, at_most = measured.restitution
     texts = [
-        f"{found.row.step * 1e3:.4g} ms",
+        f"{found.time_step * 1e3:.4g}",
         f"{outcome.restitution[0]:.4f} to {outcome.restitution[2]:.4f}",
         f"{low:.4f} to {high:.4f}",
         f"{at_least:.4f} to {at_most:.4f}",
@@ -220,6 +213,8 @@ def cells(name, shape, wanted, time_step, more, friction):
     if wider != (low, high):
         # Of bodies that slide the answer has this range of r, and neither depth nor force.
         return texts, agrees
+    if not is_spring:
+        return texts, agrees
     spread = (here.depth[1] - here.depth[0]) / 13
     agrees &= bool(np.isclose(measured.depth, here.depth[1], rtol=0.02, atol=spread))
     spread = (here.force[1] - here.force[0]) / 13
@@ -228,52 +223,33 @@ def cells(name, shape, wanted, time_step, more, friction):
     return texts, agrees
 
 
-def table(cases, friction, engines, earlier):
-    """Return the lines of a table, and how many of its designs differ.
-
-    The rows of other ``engines`` are those of an ``earlier`` table, by their first cells.
-    """
-    lines = ["| " + " | ".join(HEAD) + " |", "|" + " --- |" * len(HEAD)]
-    agreed = 0
-    run = 0
-    kept = set()
+def table(cases, friction, engines):
+    """Return the rows of a table."""
+    rows = []
     for name, shape, wanted, time_step, more in cases:
-        start = "| " + " | ".join(label(name, shape, wanted, more)) + " | "
-        try:
-            if engines and name not in engines:
-                raise ImportError(name=name)
-            texts, agrees = cells(name, shape, wanted, time_step, more, friction)
-        except ImportError:
-            lines += [line for line in earlier if line.startswith(start)]
-            kept.add(name)
+        if engines and name not in engines:
             continue
-        run += 1
-        agreed += agrees
-        mark = "" if agrees else " (differs)"
-        lines.append(start + " | ".join(texts) + mark + " |")
-        print(lines[-1], flush=True)
-    print(f"{agreed} of {run} designs agree; not run: {', '.join(sorted(kept)) or 'none'}.")
-    rows = lines[2:]
-    differ = sum("(differs)" in row for row in rows)
-    summary = f"{len(rows) - differ} of {len(rows)} designs agree with their engines."
-    absent = len(cases) - len(rows)
-    if absent:
-        names = sorted({case[0] for case in cases if not any(f"| {case[0]}," in r for r in rows)})
-        summary += f" Not run: {absent}, of {', '.join(names)}."
-    return [summary, "", *lines], run - agreed
+        try:
+            texts, agrees = cells(name, shape, wanted, time_step, more, friction)
+        except ImportError as missing:
+            print(f"Not run, because it is not installed: {name} ({missing.name}).")
+            continue
+        first = [name, f"{friction:g}", *label(name, shape, wanted, more)]
+        rows.append([*first, *texts, KEPT[bool(agrees)]])
+        print(" | ".join(rows[-1]), flush=True)
+    return rows
 
 
 def main():
     engines = sys.argv[1:]
-    # The rows of both tables on the page: the second one has the same designs with friction.
-    (rubbed,) = said(f"^{re.escape(RUBBED)}$") or [None]
-    rows = said("^(?:The same at a friction.*|\\| .*)$")
-    where = rows.index(rubbed) if rubbed else len(rows)
-    lines, wrong = table(CASES, 0.0, engines, rows[:where])
-    cases = [case for case in CASES if case[0] not in SMOOTH]
-    with_friction, also_wrong = table(cases, FRICTION, engines, rows[where:])
-    write("designs", ["## Designs", "", DESIGNS, "", *lines, "", RUBBED, "", *with_friction])
-    sys.exit(1 if wrong + also_wrong else 0)
+    smooth = table(CASES, 0.0, engines)
+    rubbed = table([case for case in CASES if case[0] not in SMOOTH], FRICTION, engines)
+    rows = smooth + rubbed
+    if rows:
+        save("designs", HEAD, rows)
+    differ = sum(row[-1] == KEPT[False] for row in rows)
+    print(f"{len(rows) - differ} of {len(rows)} designs agree with their engines.")
+    sys.exit(differ > 0)
 
 
 if __name__ == "__main__":

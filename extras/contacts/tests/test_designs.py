@@ -188,7 +188,7 @@ def test_two_free_bodies_are_said_to_meet_on_a_line():
 
 def test_what_no_contact_keeps_is_said():
     box = Bounce(mass="500 g", restitution=0.8, radius="10 cm", points=4)
-    assert "boxes some degrees off flat" in str(design(box, "mujoco"))
+    assert "boxes off flat" in str(design(box, "mujoco"))
     two = Bounce(mass=1, restitution=0.8, radius="10 cm", other_mass=1, speed=2)
     assert "slide past each other" in str(design(two, "newton"))
 

@@ -31,6 +31,13 @@ def test_a_page_shows_what_the_command_prints(typed, page, command, shown):
         )
 
 
+def test_the_answers_of_the_readme_are_short():
+    """MuJoCo's had 16 lines and 207 words."""
+    shown = [each for page, _, each in SHOWN if page == "README.md"]
+    assert len(shown) == 3
+    assert all(each.count("\n") <= 10 and len(each.split()) < 80 for each in shown)
+
+
 def test_the_examples_in_python():
     failed, tried = doctest.testfile(str(ROOT / "docs" / "python.md"), module_relative=False)
     assert failed == 0 and tried > 10

@@ -420,20 +420,15 @@ def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
     """Return the scenes in which r of a contact is another one."""
     bounce = problem.bounce
     engine = problem.engine
-    ranges = [
-        f"{span(*problem.promised(outcome, speed))} at up to {speed:g} times the speed of its fall"
-        for speed in engine.sliding.speeds
-    ]
     low, high = problem.promised(outcome)
     is_wider = max(outcome.restitution.low - low, high - outcome.restitution.high) > TOLERANCE
+    # The widest range is that of the largest speed.
+    low, high = problem.promised(outcome, max(engine.sliding.speeds, default=None))
     return tuple(
         holding(
             [
-                (is_wider, f"bodies that slide (r = {', '.join(ranges)})"),
-                (
-                    bounce.points > 1,
-                    "boxes some degrees off flat or that slide fast",
-                ),
+                (is_wider, f"bodies that slide (r = {span(low, high)})"),
+                (bounce.points > 1, "boxes off flat or that slide fast"),
                 (bounce.other_mass, "bodies that slide past each other"),
                 *((True, text) for text in engine.not_for),
             ]
@@ -507,6 +502,11 @@ def _remarks(
     depth = f"it may sink {show(bounce.limit, 'm')}, {share} (--penetration)"
     assumed = bounce.assumed + holding([(not bounce.gives_contact, depth)])
     is_vague = math.isnan(outcome.rest) and not isinstance(law, Impedance)
+    ranges = [
+        f"{span(*problem.promised(outcome, speed))} at up to {speed:g} times the speed of the fall"
+        for speed in engine.sliding.speeds
+    ]
+    is_sliding = ranges and bounce.friction != 0
     is_pasted = re.search("@friction@|@rubs@", snippet_of(engine.name))
     return holding(
         [
@@ -516,6 +516,7 @@ def _remarks(
                 f"{show(outcome.force[1], 'N')}",
             ),
             (is_vague, VAGUE),
+            (is_sliding, f"Of bodies that slide r is {', '.join(ranges)}"),
             (bounce.friction and engine.friction, engine.friction),
             (bounce.friction and isinstance(law, Impedance), problem.slides(law, step)),
             (

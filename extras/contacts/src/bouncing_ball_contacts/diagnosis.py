@@ -23,7 +23,7 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem, not_for
+from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem
 from bouncing_ball_contacts.engines import (
     CONES,
     ENGINES,
@@ -207,9 +207,8 @@ def diagnose_spring(
         change = _least_change(contact)
         if change is None or change.time_step != contact.step:
             of_r.append(
-                f"no damping of this contact keeps r within {TOLERANCE:g} at this step, but "
-                f"'bounce design' may have a contact that does; the nearest: "
-                f"{_nearest(contact).gives}"
+                f"no damping of this contact keeps r within {TOLERANCE:g} at this step; 'bounce "
+                f"design' may have a contact that does; the nearest: {_nearest(contact).gives}"
             )
     return Answer(
         engine=engine.name,
@@ -218,7 +217,6 @@ def diagnose_spring(
         parameters=contact.one,
         outcome=found.outcome,
         warnings=(*of_r, *_facts(contact, found)),
-        not_for=not_for(replace(problem, bounce=_known(bounce, found)), found.outcome),
         remarks=tuple(_remarks(contact, found, given, differs)),
         change=change,
         lost=lost,
@@ -229,11 +227,6 @@ def diagnose_spring(
             "free": found.free,
         },
     )
-
-
-def _known(bounce: Bounce, found: Found) -> Bounce:
-    """Return the bounce with the r that the contact has."""
-    return replace(bounce, restitution=min(max(found.outcome.restitution.mean, 0.0), 1.0))
 
 
 def _remarks(

@@ -276,8 +276,8 @@ def fit(
     else:
         by_golf, by_drag = by_drag_of(*_GOLF_BALL), by_drag_of(*_TABLE_TENNIS_BALL)
         drag_note = (
-            f"the drag of the air is not removed: r is too low by {by_golf:.2g} if it is a golf "
-            f"ball, by {by_drag:.2g} if it is a table tennis ball; give --mass and --diameter"
+            f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
+            f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"
         )
     does_drag = recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
     is_height = recording.kind in ("drops", "heights") and read_at is None
@@ -302,16 +302,15 @@ def fit(
         *((True, note) for note in recording.notes),
         (
             is_height,
-            "heights are taken as those of the lowest point of the ball: read at its top, a ball "
-            f"of {show(size, 'm')} has an r that is too high by {by_size:.2g} (--read-at bottom or "
-            "top)",
+            "heights are those of the lowest point of the ball; if they are of its top, r is too "
+            f"high by {by_size:.2g} ({show(size, 'm')}): give --read-at bottom or top",
         ),
         (does_drag, drag_note),
         # Contacts of rubber, the longest ones, last for 10 ms.
         (
             is_heard and not lasts and matters < 0.01,
-            f"times between impacts include the contact: r is lower by {lower / 1000:.2g} for each "
-            f"ms that it lasts, which matters from {show(matters, 's')} on; give --contact-time",
+            f"times between impacts include the contact: r is too high by {lower / 1000:.2g} for "
+            f"each ms of it, which matters above {show(matters, 's')}; give --contact-time",
         ),
         (len(v) < 3, "too few impacts for an interval of their own: it is wide"),
         (

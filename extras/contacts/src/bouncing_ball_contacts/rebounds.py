@@ -334,6 +334,8 @@ BY_NUMBER = {
                 "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
             },
             notes=(),
+            # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
+            not_for=("three bodies in touch",),
         ),
         ByNumber(
             name="chipmunk",
@@ -417,6 +419,9 @@ BY_NUMBER = {
             springs="pybullet",
             is_restless=True,
             calmed_by="contactProcessingThreshold",
+            # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
+            # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
+            not_for=("three bodies in touch", "boxes on GEOM_PLANE", "tilted capsules"),
         ),
         ByNumber(
             name="ode",
@@ -866,7 +871,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
             ),
             (
                 number > 0 and not is_slow and lowest > 0,
-                f"drops from less than {show(lowest, 'm')} do not bounce: the threshold is {limit}",
+                f"drops from less than {show(lowest, 'm')} do not bounce: threshold {limit}",
             ),
             (
                 way > bounce.size,

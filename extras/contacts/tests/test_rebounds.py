@@ -480,6 +480,13 @@ def test_where_the_damping_is_in_the_way_the_least_change_is_without(name, line)
     assert line in found.change.snippet
 
 
+def test_a_least_change_is_not_what_was_given():
+    given = {"restitution": 1.0, "frictionAir": 0}
+    ball = Bounce(drop_height=3.4, restitution=1.0, radius=0.8)
+    found = diagnose(ball, "matter-js", given, "1/60")
+    assert not found.is_kept and found.change is None and found.also[0].is_kept
+
+
 def test_a_threshold_of_physx_that_lets_a_ball_hop_for_ever_is_said_so(typed):
     """In PhysX 5.12 a ball of r = 0.8 hopped by 0.11 mm at 1 ms and 0.02 m/s, and lay still at
     0.053 m/s.

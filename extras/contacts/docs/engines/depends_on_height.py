@@ -11,7 +11,7 @@ contact = {"kn": OMEGA**2, "gamma_n": 2 * ratio * OMEGA}
 print("height in m  √(h′/h)  first order")
 for height in (1.0, 0.1, 0.01):
     ball = Bounce(mass=1.0, drop_height=height, radius=1.0, gravity=GRAVITY)
-    found = diagnose(ball, "lammps", contact, 5e-6)
+    limit = diagnose(ball, "lammps", contact, 5e-6).numbers["limit"]
     v = math.sqrt(2 * GRAVITY * height)
     first = R - 2 * ratio * (1 + R) * GRAVITY / (OMEGA * v)
-    print(f"{height:<11}  {found.limit:.3f}    {first:.3f}")
+    print(f"{height:<11}  {limit:.3f}    {first:.3f}")

@@ -17,7 +17,7 @@ for stiffness in (5e4, 5e5, 5e6):
         shares = []
         for bounce in range(1, 4):
             ball = Bounce(mass=MASS, drop_height=height, radius=0.1, gravity=GRAVITY)
-            height *= diagnose(ball, "lammps", contact, 1e-6).limit ** 2
+            height *= diagnose(ball, "lammps", contact, 1e-6).numbers["limit"] ** 2
             shares.append(f"{height / (HEIGHT * r ** (2 * bounce)):.3f}")
         columns.append(" ".join(shares))
     print(f"{stiffness:.0e}      " + "  ".join(columns))

@@ -983,7 +983,12 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
             f"threshold of {engine.limit(engine.threshold)}, a constant"
         )
     best, number = case.wanted()
-    return replace(best.answer(number), asked_step=asked, also=_shorter(best, number))
+    found = best.answer(number)
+    way = show(bounce.impact_speed * asked, "m")
+    far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
+    warnings = (*found.warnings, *([far] * (step != asked)))
+    also = _shorter(best, number)
+    return replace(found, asked_step=asked, warnings=warnings, also=also)
 
 
 def _shorter(case: Case, number: float) -> tuple[Answer, ...]:
@@ -1055,8 +1060,9 @@ def diagnose_number(
         # The number of one body may not be enough.
         tried = (best, number), case._replace(other=None).wanted()
         best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
-    change = best.answer(number)
-    if best.other is None and other is not None:
+    # What is given already is no change.
+    change = best.answer(number) if (best, number) != (case, given.get("number")) else None
+    if change and best.other is None and other is not None:
         change = replace(change, gives=f"{change.gives} (of both bodies)")
     is_beyond = best.deviation(number) > TOLERANCE
     beyond = (f"no number keeps r within {TOLERANCE:g} at this step",) * is_beyond

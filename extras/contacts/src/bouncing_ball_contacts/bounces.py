@@ -41,14 +41,15 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
 """The unit of each quantity of a bounce, and how it is read."""
 _CONTACT = ("penetration", "stiffness", "contact_time")
 _EITHER = (("drop_height", "speed"), *combinations(_CONTACT, 2))
-"""Quantities of which one at most is given."""
+"""Pairs of quantities of which at most one is given."""
 
 
 @dataclass(frozen=True)
 class Bounce:
-    """A bounce that is wanted: a body falls on a surface, or meets another free body.
+    """Bounce that is wanted: a body falls on a surface, or meets another free body.
 
-    Quantities are numbers in SI units or texts with units; they are numbers in SI units afterwards.
+    Give quantities as numbers in SI units, or as texts with units. The attributes are numbers in SI
+    units.
 
     Parameters
     ----------
@@ -92,7 +93,7 @@ class Bounce:
     friction: Quantity = None
     gravity: Quantity = STANDARD_GRAVITY
     given: Mapping[str, str] = field(init=False, repr=False, compare=False)
-    """What was given, in words."""
+    """Quantities that were given, as text."""
 
     def __post_init__(self) -> None:
         refuse(
@@ -149,17 +150,17 @@ class Bounce:
 
     @property
     def reduced_mass(self) -> float:
-        """m, or m M/(m + M) of two free bodies, in kg."""
+        """Mass m in kg; of two free bodies their reduced mass m M/(m + M)."""
         return self.mass if self.other_mass is None else 1 / (1 / self.mass + 1 / self.other_mass)
 
     @property
     def load(self) -> float:
-        """The gravity that acts during the contact in m/s², which is none between free bodies."""
+        """Gravity during the contact in m/s²; 0 between free bodies."""
         return self.gravity if self.other_mass is None else 0.0
 
     @property
     def impact_speed(self) -> float:
-        """In m/s."""
+        """Speed of the impact in m/s."""
         return self.speed or math.sqrt(2 * self.gravity * (self.drop_height or 1.0))
 
     def step(self, typed: Quantity) -> float:
@@ -175,12 +176,12 @@ class Bounce:
 
     @property
     def size_name(self) -> str:
-        """What the size is."""
+        """How messages call the size: "radius" or "half height"."""
         return "half height" if self.points > 1 else "radius"
 
     @property
     def solid(self) -> float:
-        """The volume of the body over the cube of its size."""
+        """Volume of the body divided by the cube of its size."""
         return 8 if self.points > 1 else 4 / 3 * math.pi
 
     @property
@@ -195,19 +196,19 @@ class Bounce:
 
     @property
     def other_size(self) -> float:
-        """The size of a second free body of the same density in m, infinite of the ground."""
+        """Size of a second free body of the same density in m; infinite for the ground."""
         if self.other_mass is None or self.mass is None:
             return math.inf
         return self.size * (self.other_mass / self.mass) ** (1 / 3)
 
     @property
     def reduced_radius(self) -> float:
-        """R of a contact of spheres in m."""
+        """Reduced radius R of a contact of spheres in m."""
         return 1 / (1 / self.size + 1 / self.other_size)
 
     @property
     def limit(self) -> float:
-        """The penetration in m that must not be exceeded."""
+        """Maximum penetration in m."""
         fifth = self.impact_speed**2 / (10 * self.load) if self.load else math.inf
         return self.penetration or min(self.size / 10, fifth)
 
@@ -218,7 +219,7 @@ class Bounce:
 
     @property
     def assumed(self) -> list[str]:
-        """What was not given of the drop and of the body, in words."""
+        """Assumptions on the drop and the body, as text."""
         solid = "a solid cube" if self.points > 1 else "a solid ball"
         of = "this density" if self.density else "steel (give its size or --density)"
         return holding(

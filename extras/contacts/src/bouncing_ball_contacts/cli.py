@@ -15,6 +15,7 @@ from bouncing_ball_contacts.rebounds import BY_NUMBER, rows_of
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
+    holding,
     in_si,
     positive,
     refuse,
@@ -87,14 +88,14 @@ def main(context: click.Context) -> None:
 
 
 def _plain(found: Any) -> Any:
-    """Return the numbers and texts of an answer, or of several, as those of JSON."""
+    """Return the fields of an answer, or of a dictionary of answers."""
     if isinstance(found, dict):
         return {name: _plain(each) for name, each in found.items()}
     return dataclasses.asdict(found)
 
 
 def _print(found: Any, as_json: bool, explain: bool, written: Answer | None = None) -> None:
-    """Print answers, those of several balls by their names, and what is written for an engine."""
+    """Print answers: of one ball or of several, and what to write for an engine."""
     if as_json:
         values = _plain(found) | ({} if written is None else {"design": _plain(written)})
         # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
@@ -102,12 +103,11 @@ def _print(found: Any, as_json: bool, explain: bool, written: Answer | None = No
         plain = json.loads(text, parse_constant=lambda _: None)
         click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
-    several = found.items() if isinstance(found, dict) else [("", found)]
-    answers = [(name, each) for name, each in several] + [("", written)] * (written is not None)
-    texts = [
-        f"{name}\n{each.explained if explain else each}".lstrip("\n") for name, each in answers
-    ]
-    click.echo("\n\n".join(texts))
+    answers = list(found.items()) if isinstance(found, dict) else [("", found)]
+    if written is not None:
+        answers.append(("", written))
+    texts = [f"{name}\n{each.explained if explain else each}" for name, each in answers]
+    click.echo("\n\n".join(text.lstrip("\n") for text in texts))
 
 
 @main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _EXPLAIN, _JSON])
@@ -119,7 +119,7 @@ def design_command(
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
-    """Return the values of texts NAME=VALUE."""
+    """Return names and values of texts NAME=VALUE."""
     found: dict[str, str] = {}
     for text in pairs:
         name, equals, value = map(str.strip, text.partition("="))
@@ -137,7 +137,7 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
 
 
 def _step_of(typed: dict[str, str], time_step: str | None) -> tuple[dict[str, str], str | None]:
-    """Return the parameters without a time step among them, and the time step."""
+    """Separate the time step from the parameters."""
     steps = {name: value for name, value in typed.items() if as_compared(name) in _TIME_STEPS}
     values = [*steps.values(), *filter(None, [time_step])]
     if len(values) > 1:
@@ -249,7 +249,8 @@ def fit_command(
     }
     given = {name: value for name, value in contact.items() if value is not None}
     if engine is None:
-        for name in [*given, *(["time_step"] * (time_step is not None))]:
+        of_engine = {**given, "time_step": time_step}
+        for name in holding((value, name) for name, value in of_engine.items()):
             option = name.replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
         _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain)

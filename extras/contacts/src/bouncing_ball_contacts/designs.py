@@ -55,7 +55,7 @@ _AIM = 0.995
 
 
 class Candidate(NamedTuple):
-    """A contact at a step in s, and what it does before its numbers are written."""
+    """Contact at a step in s, with its outcome before its numbers are rounded."""
 
     law: Law
     step: float
@@ -63,7 +63,7 @@ class Candidate(NamedTuple):
 
 
 def _written(value: Any) -> Any:
-    """Return a number, or several, as snippets write them."""
+    """Return a number, or a tuple of numbers, with the digits of a snippet."""
     if isinstance(value, tuple):
         return tuple(map(_written, value))
     return float(f"{value:.6g}")
@@ -76,7 +76,15 @@ def _same(step: float, _: float) -> float:
 
 @dataclass(frozen=True)
 class Problem:
-    """A bounce in an engine with the largest deviation of r, for which contacts are tried."""
+    """Search for the contact of an engine that bounces as wanted.
+
+    Attributes
+    ----------
+    bounce, engine
+        What is wanted, and where.
+    tolerance
+        Largest deviation of r.
+    """
 
     bounce: Bounce
     engine: Engine
@@ -88,7 +96,7 @@ class Problem:
 
     @property
     def usable_depth(self) -> float:
-        """The largest depth in m with which a contact works in a scene.
+        """Largest depth in m at which a contact works in a scene.
 
         A ball that sinks by more than its radius may leave a table on its other side, and two free
         bodies that overlap by more than a quarter of one slide past each other.
@@ -98,19 +106,19 @@ class Problem:
 
     @property
     def deepest(self) -> float:
-        """The depth in m from which on the engine loses the body, or two bodies change places."""
+        """Depth in m above which the engine loses the body, or two bodies pass each other."""
         size = self.bounce.size
         return min(self.engine.deepest * size, size + self.bounce.other_size)
 
     @property
     def lost(self) -> str:
-        """What happens beyond the deepest depth."""
+        """Message for depths above the deepest one."""
         if self.bounce.other_mass is None:
             return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
         return f"bodies that sink more than {show(self.deepest, 'm')} pass through each other"
 
     def setting(self, step: float) -> Setting:
-        """Return where a contact is used at a time step in s."""
+        """Return the setting of a contact at a time step in s."""
         return Setting(
             mass=self.bounce.reduced_mass,
             step=step,
@@ -120,11 +128,11 @@ class Problem:
         )
 
     def law(self, depth: Any, ratio: Any) -> Law:
-        """Return contacts by their undamped depths in m and ratios of damping."""
+        """Return contacts with undamped depths in m and ratios of damping."""
         return self.engine.of_depth(depth, ratio, self.bounce.impact_speed)
 
     def law_of(self, parameters: Parameters, step: float) -> Law:
-        """Return the contact of parameters that both bodies have, at a time step in s."""
+        """Return the contact of two bodies with the same parameters, at a time step in s."""
         body = {**self.engine.defaults, **parameters}
         return self.engine.read(self.engine.combined(body, body), self.setting(step))
 
@@ -134,7 +142,7 @@ class Problem:
         return drop(law, self.engine.scheme, step, bounce.impact_speed, bounce.load, trials)
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
-        """Return what one contact does at a time step in s."""
+        """Return the outcome of a contact at a time step in s."""
         found = self.drops(law, step, trials)
         force = found.peak * self.bounce.reduced_mass
         rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
@@ -150,10 +158,10 @@ class Problem:
         )
 
     def hops(self, law: Law, step: float, found: Outcome) -> str:
-        """Return why a body never lies still, and by how much it hops; empty if it does.
+        """Return by how much a body at rest hops in MuJoCo; empty if it hardly does.
 
-        A rebound leaves r of a speed, and a step of gravity, which is thrown back by a number and
-        by MuJoCo's contact, adds g h to it: the body leaves with about g h/(1 - r).
+        Each step of gravity adds the speed g h, which the contact throws back. A rebound keeps r of
+        a speed, so the body leaves with about g h/(1 - r).
         """
         fall = self.bounce.load * step
         speed = 0.0
@@ -167,10 +175,10 @@ class Problem:
         )
 
     def slides(self, law: Law, step: float) -> str:
-        """Return how weakly friction acts in MuJoCo, where it is a damper as that of the contact.
+        """Return how weakly friction acts in MuJoCo.
 
-        A body at rest leaves the contact for one or two steps each time, in which it is not held on
-        a slope.
+        Friction is a damper, with the damping of the contact. A body at rest leaves the contact for
+        one or two steps each time, and slides on a slope in these steps.
         """
         share = float(law.damping) / math.sqrt(float(law.stiffness))
         if not share:
@@ -184,12 +192,12 @@ class Problem:
 
     @property
     def duration(self) -> float:
-        """T/δ in s/m: how long an undamped contact lasts."""
+        """Duration of an undamped contact divided by its depth, T/δ in s/m."""
         return float(self.law(1.0, 0.0).duration(self.bounce.impact_speed))
 
     @property
     def given_depth(self) -> float | None:
-        """δ in m of a contact that was given."""
+        """Undamped depth δ in m of a contact that was given; None without one."""
         time = self.bounce.contact_time
         if self.bounce.stiffness is not None:
             time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
@@ -198,9 +206,10 @@ class Problem:
     def ratio(self, depth: float, step: float) -> float:
         """Return the ratio of damping with which the mean r is the wanted one.
 
-        It is interpolated where r falls below. If r may be 0 within the tolerance, or does not
-        fall so far, it is the middle of those with the least error: a contact that no body leaves
-        does not depend on where in a step it begins, and too much damping throws the body away.
+        The ratio is interpolated where r falls below the wanted one. If r may be 0 within the
+        tolerance, or never falls below, it is the middle of the ratios with the smallest error. A
+        contact that no body leaves does not depend on where in a step it begins, and too much
+        damping throws the body away.
         """
         wanted = self.bounce.restitution
         # No law needs more than 1/r, to which that of Hunt and Crossley tends.
@@ -219,7 +228,7 @@ class Problem:
         return ratio
 
     def candidate(self, depth: float, ratio: float, step: float) -> Candidate:
-        """Return a contact with what it does."""
+        """Return a contact with its outcome."""
         law = self.law(depth, ratio)
         return Candidate(law, step, self.outcome(law, step))
 
@@ -229,20 +238,20 @@ class Problem:
 
     @property
     def permitted(self) -> float:
-        """The depth in m that must not be exceeded, infinite of a contact that was given."""
+        """Maximum depth in m; infinite for a contact that was given."""
         return self.bounce.limit if self.given_depth is None else math.inf
 
     def keeps(self, found: Outcome, depth: float) -> bool:
-        """Return whether r is within the tolerance, and the body sinks by a depth at most."""
+        """Return whether r is within the tolerance, and the depth at most `depth`."""
         deviation = found.restitution.deviation(self.bounce.restitution)
         return deviation <= self.tolerance and found.depth[1] <= depth
 
     def step_of(self, count: float) -> Callable[[float], float]:
-        """Return the step of an undamped depth with which a contact has so many steps."""
+        """Return the step, as a function of the undamped depth, of a contact of `count` steps."""
         return lambda depth: _written(min(self.duration * depth / count, LONGEST_STEP))
 
     def keeping(self, step_of: Callable[[float], float]) -> Candidate:
-        """Return the contact that keeps what is given, at the step of its undamped depth."""
+        """Return the contact with the depth, stiffness or contact time that is given."""
         if self.given_depth is not None:
             return self.at(self.given_depth, step_of(self.given_depth))
         # A contact that is stopped by its damper sinks about √r times its undamped depth.
@@ -259,9 +268,9 @@ class Problem:
         return self.candidate(depth, ratio, step_of(depth))
 
     def wanted(self) -> Candidate:
-        """Return the contact that keeps what is given, with the longest step in the tolerance.
+        """Return the contact that keeps what is given at the longest step within the tolerance.
 
-        If there is none, it is the one with the nearest r.
+        If no contact does, return the contact with the nearest r.
         """
         tried = []
         for count in _COUNTS:
@@ -280,8 +289,8 @@ class Problem:
     def stiffest(self, step: float) -> Candidate:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
 
-        It is found by halving, because r misses less the more steps there are. If there is none,
-        it is the most compliant one.
+        Bisect the number of steps of a contact: more steps have a smaller error of r. If no contact
+        keeps r, return the most compliant one.
         """
 
         @functools.cache
@@ -300,9 +309,9 @@ class Problem:
         return {name: _written(value) for name, value in self.engine.of_each(combined).items()}
 
     def between(self, step: float, short: Candidate) -> Candidate:
-        """Return the contact at the longest of a step, its half, … at which it works in a scene.
+        """Return the contact at the longest of a step, its half, … that is not too deep.
 
-        It is that of the short step if there is none.
+        If every one is too deep, return the contact of the short step.
         """
         while True:
             contact = self.keeping(functools.partial(_same, step))
@@ -317,9 +326,10 @@ class Problem:
                 return short
 
     def promised(self, found: Outcome, speed: float | None = None) -> tuple[float, float]:
-        """Return the least and the greatest r of bodies that slide up to a speed.
+        """Return the smallest and the largest r of bodies that slide at up to `speed`.
 
-        It is in that of the fall, and by default the least for which the engine has a range.
+        The speed is in units of the speed of the fall; by default it is the smallest one for which
+        the engine has a range.
         """
         low, _, high = found.restitution
         sliding = self.engine.sliding
@@ -330,7 +340,7 @@ class Problem:
 
 
 def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) -> Answer:
-    """Return the contact of an engine with which a body bounces as wanted, and what it does.
+    """Return the stiffness and damping with which a body bounces as wanted.
 
     Raises
     ------
@@ -372,7 +382,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
 
 
 def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:
-    """Return the answer for a contact, with its numbers as they are written."""
+    """Return the answer for a contact, with rounded parameters."""
     bounce = problem.bounce
     engine = problem.engine
     step = contact.step
@@ -439,7 +449,7 @@ def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
 def _warnings(
     problem: Problem, law: Law, step: float, asked: float | None, outcome: Outcome
 ) -> list[str]:
-    """Return what changes r, then what the depth does, the severest first."""
+    """Return warnings: on r, then on the depth, the severest first."""
     bounce = problem.bounce
     r = outcome.restitution
     slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
@@ -491,7 +501,7 @@ def _warnings(
 def _remarks(
     problem: Problem, law: Law, step: float, asked: float | None, outcome: Outcome
 ) -> list[str]:
-    """Return what else to know of a contact, what was given and what was assumed."""
+    """Return remarks on a contact, what was given, and what was assumed."""
     bounce = problem.bounce
     engine = problem.engine
     given = [f"{name} {value}" for name, value in bounce.given.items()]

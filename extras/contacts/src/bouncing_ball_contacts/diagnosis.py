@@ -78,7 +78,17 @@ _FINE = 1 + 2e-4
 
 @dataclass(frozen=True)
 class Contact:
-    """The parameters of two bodies at a time step in s; without another body both are alike."""
+    """Contact of two bodies.
+
+    Attributes
+    ----------
+    problem
+        Bounce and engine.
+    one, other
+        Parameters of each body; the other body has the same ones if `other` is None.
+    step
+        Time step in s.
+    """
 
     problem: Problem
     one: Parameters
@@ -87,7 +97,7 @@ class Contact:
 
     @property
     def combined(self) -> dict[str, Any]:
-        """The parameters of both bodies together."""
+        """Combined parameters of both bodies."""
         return self.problem.engine.combined(
             self.one, self.one if self.other is None else self.other
         )
@@ -103,27 +113,27 @@ class Contact:
 
     @property
     def damper(self) -> str:
-        """The parameter by which r is changed."""
+        """Name of the parameter that sets r."""
         return self.problem.engine.names[1]
 
     @property
     def is_ratio(self) -> bool:
-        """Whether the damper is a damping ratio, beside a time constant."""
+        """Whether the damper is a damping ratio, next to a time constant."""
         return self.damper == "dampratio" or self.one.get("solref", (0.0,))[0] > 0
 
     @property
     def diverges(self) -> bool:
-        """Whether the damper reverses the speed within an explicit step, and throws the body."""
+        """Whether the damper reverses the speed within an explicit step."""
         longest = self.step * max(1.0, self.steps / MOST_STEPS)
         explicit = isinstance(self.problem.engine.scheme, SemiImplicit) and not self.is_ratio
         return explicit and float(self.law.damping) * longest > 1
 
     def outcome(self, *trials: Trials) -> Outcome:
-        """Return what the contact does."""
+        """Return the outcome of the contact."""
         return self.problem.outcome(self.law, self.step, *trials)
 
     def damped(self, value: float) -> "Contact":
-        """Return the contact with another number for the damper of the first body."""
+        """Return the contact with another damping of the first body."""
         number: Any = value
         if self.damper == "solref":
             number = (self.one["solref"][0], math.copysign(value, self.one["solref"][0]))
@@ -132,7 +142,7 @@ class Contact:
 
 @dataclass(frozen=True)
 class Found:
-    """What a contact does.
+    """Numbers of a contact.
 
     Attributes
     ----------
@@ -273,7 +283,7 @@ def _remarks(
 
 
 def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the given parameters of a body as numbers, by the names of the engine.
+    """Return the parameters that were typed for a body as numbers, by their names in the engine.
 
     Raises
     ------
@@ -321,7 +331,7 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
 
 
 def _vector(name: str, value: Any) -> tuple[float, ...]:
-    """Return numbers that may be a text, with brackets, commas or quotes."""
+    """Return the numbers of a text, which may have brackets, commas or quotes."""
     if isinstance(value, str):
         value = re.findall(r"[^\s,()\[\]\"']+", value)
     numbers = tuple(in_si(name, each, "") for each in np.atleast_1d(np.asarray(value, object)))
@@ -362,10 +372,10 @@ def _spring(law: Law) -> Law:
 
 
 def _in_short_steps(contact: Contact, gravity: float) -> float:
-    """Return r in the limit of short steps, with nothing that is set beside the contact.
+    """Return r of the spring and the damper alone, in the limit of short steps.
 
-    r differs from its limit by a multiple of the step, and half of that at half the step. The steps
-    are semi-implicit also where the engine's are implicit: they come nearer to the limit.
+    Extrapolate from a step and its half, because the error of r is proportional to the step. Steps
+    are semi-implicit also for implicit engines, because their error is smaller.
     """
     law = contact.law
     law = _spring(law) if isinstance(law, Linear) else law
@@ -432,15 +442,16 @@ def _friction(contact: Contact, found: Found) -> list[str]:
     )
     solimp = _spelled(contact.problem.engine.beside.get("solimp", ""))
     changes = max(abs(smooth - cone), abs(smooth - found.outcome.restitution.mean))
-    return [
+    said = (
         f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
         f"with the elliptic cone {cone:.3f} at every friction; at solimp = {solimp}, as designs "
         "have, none changes it"
-    ] * (changes > _VISIBLE)
+    )
+    return holding([(changes > _VISIBLE, said)])
 
 
 def _facts(contact: Contact, found: Found) -> list[str]:
-    """Return what else changes r, or the depth."""
+    """Return further warnings."""
     row = contact.problem.engine
     law = contact.law
     hops = contact.problem.hops(law, contact.step, found.outcome)
@@ -468,7 +479,7 @@ def _facts(contact: Contact, found: Found) -> list[str]:
 
 
 def _guesses(contact: Contact, found: Found) -> list[str]:
-    """Return what the numbers may have been meant to be, where r would then be the wanted one."""
+    """Return what the numbers may have been meant to be: r would then be the wanted one."""
     row = contact.problem.engine
     bounce = contact.problem.bounce
     wanted = bounce.restitution
@@ -499,9 +510,9 @@ def _guesses(contact: Contact, found: Found) -> list[str]:
 
 
 def _nearest(contact: Contact) -> Answer:
-    """Return the change with which the mean r is the wanted one at this step, or the nearest one.
+    """Return the damping with which the mean r is nearest to the wanted one at this step.
 
-    It is found by bisection: a damping lowers r, and a share raises it.
+    Bisect: a damping lowers r, and a share raises it.
     """
     raises = contact.damper in _SHARES
     bounce = contact.problem.bounce
@@ -534,7 +545,7 @@ def _nearest(contact: Contact) -> Answer:
 
 
 def _least_change(contact: Contact) -> Answer | None:
-    """Return the change with which r keeps the tolerance, at the longest step that has one."""
+    """Return the damping that keeps r within the tolerance, at the longest step that has one."""
     deviations: list[float] = []
     for halvings in range(12):
         change = _nearest(replace(contact, step=contact.step / 2**halvings))

@@ -45,8 +45,18 @@ CONES = ("pyramidal", "elliptic")
 
 @dataclass(frozen=True)
 class Setting:
-    """Where a contact is used: the (reduced) mass in kg, the step in s, the number of points that
-    share the force, the (reduced) radius in m, and whether both bodies are free.
+    """Setting of a contact.
+
+    Attributes
+    ----------
+    mass, radius
+        Mass in kg and radius in m; for two free bodies the reduced ones.
+    step
+        Time step in s.
+    points
+        Number of contact points that share the force.
+    both_free
+        Whether both bodies are free.
     """
 
     mass: float
@@ -58,10 +68,16 @@ class Setting:
 
 @dataclass(frozen=True)
 class Rule:
-    """How an engine combines a number of two bodies.
+    """How an engine combines a parameter of two bodies.
 
-    ``of`` combines two numbers, and ``alike`` gives the number that both bodies need for a combined
-    one.
+    Attributes
+    ----------
+    text
+        The rule in words.
+    of
+        Combined value of two values.
+    alike
+        Value that both bodies need for a combined value.
     """
 
     text: str
@@ -79,9 +95,16 @@ PAIR = Rule("of the pair", lambda a, b: a, lambda x: x)
 
 
 class Sliding(NamedTuple):
-    """What sliding takes from r at most, and what it ``adds`` to an r at a speed along the surface.
+    """How sliding widens the range of r.
 
-    Measured up to the greatest of ``speeds``, which are in those of the fall.
+    Attributes
+    ----------
+    takes
+        Maximum decrease of r.
+    adds
+        Maximum increase of an r, at a speed along the surface divided by the speed of the fall.
+    speeds
+        Such speeds, of which the largest one was measured.
     """
 
     takes: float = 0.0
@@ -173,13 +196,13 @@ class Engine:
         }
 
     def of_each(self, combined: Parameters) -> dict[str, Any]:
-        """Return the parameters that both bodies need alike for those of their contact."""
+        """Return the parameters that both bodies need for the parameters of their contact."""
         return {name: self.rules[name].alike(value) for name, value in combined.items()}
 
 
 @dataclass(frozen=True)
 class DrakeDissipation(Engine):
-    """Drake's dissipations are averaged, each with the share of its body in the penetration."""
+    """Drake averages dissipations, weighted by the share of each body in the penetration."""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         stiffness, dissipation = self.names
@@ -213,7 +236,7 @@ class PhysX(Engine):
 
 @dataclass(frozen=True)
 class NewtonMujoco(Engine):
-    """Newton's MuJoCo solver averages time constants and damping ratios, and not ke and kd."""
+    """Newton's MuJoCo solver averages time constants and damping ratios, instead of ke and kd."""
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         a, b = (np.array(_solref(each["ke"], each["kd"])) for each in (one, other))
@@ -222,9 +245,10 @@ class NewtonMujoco(Engine):
 
 
 def as_compared(name: str) -> str:
-    """Return a name as it is compared: SetKn, set_kn and kn are the same, but E and e are not.
+    """Return the form in which names are compared.
 
-    Of a name such as ``Physics.bounceThreshold`` only the last part counts.
+    SetKn, set_kn and kn are the same name; E and e are different names. Only the last part of a
+    name such as ``Physics.bounceThreshold`` counts.
     """
     last = re.split("[.:/>]", name)[-1]
     return last if len(last) == 1 else re.sub(r"^(set|geom_)(?!$)|[\W_]", "", last.lower())
@@ -233,10 +257,10 @@ def as_compared(name: str) -> str:
 def parameters_of(
     engine: str, known: Mapping[str, str], names: Sequence[str], typed: Parameters
 ) -> dict[str, Any]:
-    """Return what was typed by the names of the engine.
+    """Return typed values by their names in the engine.
 
-    ``known`` has what each one stands for that may be typed, as it is compared; ``names`` are
-    those of the engine.
+    ``known`` maps names as they are compared to names of the engine; ``names`` are listed in
+    messages.
 
     Raises
     ------
@@ -261,7 +285,7 @@ def parameters_of(
 
 
 def one_of(name: str, value: Any, words: Iterable[str]) -> str:
-    """Return the word whose first three letters are given, and refuse others."""
+    """Return the word that begins with the first three letters of a value."""
     for word in words:
         if str(value).lower()[:3] == word[:3]:
             return word
@@ -269,13 +293,13 @@ def one_of(name: str, value: Any, words: Iterable[str]) -> str:
 
 
 def snippet_of(name: str) -> str:
-    """Return the text of a file of snippets; empty if there is none."""
+    """Return the text of a snippet; empty if there is none."""
     path = files(__package__).joinpath("snippets", f"{name}.txt")
     return path.read_text("utf-8") if path.is_file() else ""
 
 
 def filled(text: str, values: Mapping[str, Any]) -> str:
-    """Return a text with numbers in place of ``@name@`` and ``@name.0@``."""
+    """Replace ``@name@`` and ``@name.0@`` in a text by numbers."""
 
     def number(place: re.Match[str]) -> str:
         name, _, index = place[1].partition(".")
@@ -321,7 +345,7 @@ def _solimp(values: Any) -> tuple[float, ...]:
 
 
 def _read_mujoco(p: Parameters, at: Setting, least: float = 1e-15) -> Law:
-    """Return the law; a product of times that is below `least` is raised to it."""
+    """Return the law; raise a product of times below `least` to it."""
     first, second = p["solref"]
     low, high, width, middle, power = _solimp(p["solimp"])
     if first > 0:
@@ -395,15 +419,6 @@ def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
 
 def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
     return _read_mujoco({"solref": _solref(p["ke"], p["kd"]), "solimp": p["solimp"]}, at)
-
-
-def _if_set(rule: Rule, default: float) -> Rule:
-    """Return a rule of numbers that are -1 if unset: then they are the default, or both unset."""
-
-    def of(a: float, b: float) -> float:
-        return -1.0 if max(a, b) < 0 else rule.of(*(default if x < 0 else x for x in (a, b)))
-
-    return replace(rule, of=of)
 
 
 _BULLET = _forces(("contactStiffness", "contactDamping"))

@@ -101,7 +101,7 @@ class Fit:
         lines = self._lines(MOST_WARNINGS)
         count = len(self.notes) - MOST_WARNINGS
         named = "1 more remark" if count == 1 else f"{count} more remarks"
-        return "\n".join([*lines, *([f"{named}: --explain"] * (count > 0))])
+        return "\n".join([*lines, *holding([(count > 0, f"{named}: --explain")])])
 
     __repr__ = __str__
 
@@ -274,7 +274,8 @@ def fit(
         by_drag = by_drag_of(kilograms, metres)
         drag_note = f"the drag of the air is removed, which raises r by {by_drag:.2g}"
     else:
-        by_golf, by_drag = by_drag_of(*_GOLF_BALL), by_drag_of(*_TABLE_TENNIS_BALL)
+        by_golf = by_drag_of(*_GOLF_BALL)
+        by_drag = by_drag_of(*_TABLE_TENNIS_BALL)
         drag_note = (
             f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
             f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"

@@ -26,7 +26,7 @@ _NO_DRAG = 1e-30
 
 
 def drag_of(mass: float, diameter: float) -> float:
-    """Return the drag ρ C A/(2 m) of a ball in 1/m, and refuse a ball that no material has."""
+    """Return the drag ρ C A/(2 m) of a ball in 1/m; refuse an impossible density."""
     density = mass / (math.pi / 6 * diameter**3)
     if not _AIR < density < _DENSEST:
         raise Refused(
@@ -37,7 +37,7 @@ def drag_of(mass: float, diameter: float) -> float:
 
 
 def heights_of(durations: Array, drag: float) -> Array:
-    """Return the heights of flights that last for some time in s.
+    """Return the heights in m of flights with durations in s.
 
     A ball that starts with b √(g/D) rises for atan(b)/√(g D) to ln(1 + b²)/(2 D), and falls for
     asinh(b)/√(g D). Newton's method comes from below, because both functions are concave.
@@ -52,14 +52,14 @@ def heights_of(durations: Array, drag: float) -> Array:
 
 
 def speeds_of(heights: Array, drag: float) -> tuple[Array, Array]:
-    """Return the speeds with which a ball falls from a height, and with which it rises to it."""
+    """Return the speeds of a ball that falls from heights in m, and that rises to them."""
     both = max(drag, _NO_DRAG) * np.array([-1.0, 1.0])
     down, up = (np.sqrt(STANDARD_GRAVITY * np.expm1(2 * each * heights) / each) for each in both)
     return down, up
 
 
 def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
-    """Return -y/g and -v/g of a ball, a time after the top, which is negative on the way up."""
+    """Return -y/g and -v/g at times in s after the top; times on the way up are negative."""
     a = math.sqrt(STANDARD_GRAVITY * max(drag, _NO_DRAG))
     # A ball rises for less than π/2a.
     rise = np.clip(a * since_top, -1.5, 0.0)

@@ -72,8 +72,15 @@ _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 class Impacts:
     """Impacts of a recording.
 
-    ``speed`` is in m/s; ``readings`` is M, the derivative of ln r by the readings (of times in s,
-    heights in m, speeds in m/s, or r), and ``usual`` is the usual standard deviation of these.
+    Attributes
+    ----------
+    speed, log_r
+        Speed in m/s, and ln r.
+    readings
+        M, the derivative of ln r with respect to the readings: times in s, heights in m, speeds in
+        m/s, or r.
+    usual
+        Usual standard deviation of a reading.
     """
 
     speed: Array
@@ -88,7 +95,7 @@ class Impacts:
 
 
 def _derivatives(kind: str, values: Array) -> Array:
-    """Return the part of a chain in M, which is that of ln v after minus that before an impact."""
+    """Return the part of M of a chain: ln v after an impact minus ln v before it."""
     power = np.array(KINDS[kind][2])
     n = len(values)
     if values.ndim == 2:
@@ -136,10 +143,10 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
 
 
 def misread(impacts: Impacts) -> Lines:
-    """Return the impacts that one wrong reading moved away from all others; none if there is none.
+    """Return the impacts that one wrong reading moved away from all others; empty without one.
 
-    A top of a series enters two impacts with opposite signs, and a time enters three. What a
-    reading moved is by far more than what is left without it.
+    A top of a series enters two impacts with opposite signs, and a time enters three. The reading
+    moved them by much more than the deviations that remain without it.
     """
     away = impacts.log_r - np.median(impacts.log_r)
     readings = impacts.readings
@@ -156,7 +163,7 @@ def misread(impacts: Impacts) -> Lines:
 
 
 def without_contacts(recording: Recording, lasts: float) -> Recording:
-    """Return a recording of flights from release to touch, in place of from touch to touch.
+    """Return a recording with the contact subtracted from flights from touch to touch.
 
     Raises
     ------
@@ -200,7 +207,7 @@ class Curves:
 
 @dataclass(frozen=True)
 class Estimate:
-    """The median of β, the ends of its interval of 95 %, and the mean of c."""
+    """Median of β, ends of its 95 % interval, and mean of c."""
 
     value: float
     low: float
@@ -215,7 +222,7 @@ class Estimate:
 
 
 def deviations(weights: Array, columns: Array, y: Array) -> tuple[Array, Array]:
-    """Return what the best sums of columns leave, over its standard deviation, and their basis.
+    """Return the scaled residuals of least squares, and the orthonormal basis Q.
 
     ``weights`` (ratio, n) are one over the variances, ``columns`` are (curve, n, k); the deviations
     (ratio, curve, n, 1) are y less its projection Q Qᵀ on the columns.
@@ -330,7 +337,7 @@ def curves_of(
 
 
 def estimate(curves: Curves) -> Estimate:
-    """Return what a recording says."""
+    """Return the median and the interval of β."""
     # What is left out changes probabilities by less than 1e-6.
     matters = curves.confidence > 1e-6 / curves.confidence.size
     weights = curves.confidence[matters]

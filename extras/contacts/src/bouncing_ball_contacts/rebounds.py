@@ -141,7 +141,7 @@ class ByNumber:
 
     @property
     def names(self) -> dict[str, str]:
-        """What the names that may be typed stand for, as they are compared."""
+        """Meaning of the names that may be typed, by their compared forms."""
         modes = ("combine", "bounceCombine", "restitutionCombineMode")
         typed = {
             "number": ("restitution", self.parameter),
@@ -155,7 +155,7 @@ class ByNumber:
 
     @property
     def unit(self) -> float:
-        """Unit of the threshold as it is set in m/s; in pixels it is one in 1/60 s."""
+        """Unit of the threshold in m/s; with pixels one pixel in 1/60 s."""
         return 60 / self.pixels if self.pixels else 1.0
 
     def limit(self, threshold: float) -> str:
@@ -164,7 +164,7 @@ class ByNumber:
         return ", ".join(filter(None, [show(threshold, "m/s"), pixels, self.set_by]))
 
     def scaled(self, gravity: float, pixels: float | None = None) -> "ByNumber":
-        """Return the engine with so many pixels a metre, by default those of its own gravity."""
+        """Return the engine with `pixels` in a metre; by default its own gravity sets them."""
         if not self.pixels:
             return self
         scale = pixels or _PIXELS / (gravity or STANDARD_GRAVITY)
@@ -563,7 +563,7 @@ NAMES = {
 
 
 def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
-    """Return the rows of an engine: that of its springs, and that of its number.
+    """Return the row of an engine for springs, and the row for a restitution by number.
 
     Raises
     ------
@@ -590,7 +590,7 @@ def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
 
 
 def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, Array]:
-    """Return the ways upwards and the velocities before and after the steps of free flights."""
+    """Return heights above the start, and velocities, after the steps of free flights."""
     n = np.arange(math.ceil(steps) + 10)
     if engine.free is None:
         # A step far above the surface.
@@ -606,7 +606,7 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
 
 
 def _after(steps: Steps, z: float) -> tuple[float, float]:
-    """Return height and velocity of a ball from z that flies up again, both 0 if it does not."""
+    """Return height and velocity of a ball that flies up again; 0 if it stays."""
     rises = False
     for z_next, v in steps:
         if rises and z_next < z:
@@ -672,7 +672,7 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
 
 
 def _snippet(case: "Case", number: float) -> str:
-    """Return the lines to paste: the number, and each threshold and setting that is no default."""
+    """Return the lines to paste: the number, and each setting that differs from its default."""
     row = case.engine
     own = BY_NUMBER[row.name]
     alike = "one of both bodies" if row.pair is LARGER else "both bodies"
@@ -691,7 +691,17 @@ def _snippet(case: "Case", number: float) -> str:
 
 
 class Case(NamedTuple):
-    """A ball in an engine at a step in s, with the number of the other body if it is not alike."""
+    """Ball in an engine.
+
+    Attributes
+    ----------
+    engine, bounce, step
+        Rule, bounce, and time step in s.
+    threshold, settings
+        Threshold in m/s, and the other parameters that change r.
+    other
+        Number of the other body; None if both bodies have the same number.
+    """
 
     engine: ByNumber
     bounce: Bounce
@@ -702,12 +712,12 @@ class Case(NamedTuple):
 
     @property
     def never_bounces(self) -> bool:
-        """Whether no number helps, because the threshold is a constant."""
+        """Whether the impact is below a threshold that is a constant."""
         fastest = self.bounce.impact_speed + self.bounce.load * self.step
         return fastest <= self.threshold and self.engine.is_constant
 
     def number(self, written: float) -> float:
-        """Return the number of both bodies together."""
+        """Return the combined number of both bodies."""
         return self.engine.pair.of(written, written if self.other is None else self.other)
 
     def settling(self, written: float) -> float:
@@ -747,11 +757,11 @@ class Case(NamedTuple):
             return Range(math.nan, math.nan, math.nan)
 
     def range(self, written: float) -> Range:
-        """Return r of a number."""
+        """Return the range of r of a number."""
         return Range.of(self.restitutions(written, self.bounce.impact_speed, MOST_INSTANTS))
 
     def nearest(self) -> float:
-        """Return the number whose mean r is the wanted one, or the nearest to it, by bisection."""
+        """Return the number whose mean r is nearest to the wanted one, by bisection."""
         speed = self.bounce.impact_speed
         place = bisect_left(
             range(10_000),
@@ -765,9 +775,9 @@ class Case(NamedTuple):
         return self.range(written).deviation(self.bounce.restitution)
 
     def with_threshold(self) -> "tuple[Case, float]":
-        """Return the case and the nearest number, with another threshold if it is in the way.
+        """Return the case and the nearest number, with another threshold if r needs it.
 
-        It is lowered to a quarter of the speed, and raised to what lets the ball come to rest.
+        Lower the threshold to a quarter of the speed, or raise it until the ball comes to rest.
         """
         number = self.nearest()
         row = self.engine
@@ -786,7 +796,7 @@ class Case(NamedTuple):
         return best, number
 
     def wanted(self) -> "tuple[Case, float]":
-        """Return the case and the number that keep r, with other settings if need be."""
+        """Return the case and the number that keep r, with other settings if r needs them."""
         tried = [self.with_threshold()]
         for settings in self.engine.designed:
             if tried[-1][0].deviation(tried[-1][1]) <= TOLERANCE:
@@ -795,7 +805,7 @@ class Case(NamedTuple):
         return min(tried, key=lambda each: each[0].deviation(each[1]))
 
     def answer(self, number: float) -> Answer:
-        """Return what a number does."""
+        """Return the answer for a number."""
         row = self.engine
         bounce = self.bounce
         settings = {
@@ -883,7 +893,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
 
 
 def _remarks(case: Case, written: float) -> list[str]:
-    """Return what else to know, what was given and what was assumed."""
+    """Return remarks, what was given, and what was assumed."""
     row = case.engine
     bounce = case.bounce
     damping = case.settings.get(row.damped_by, 0.0)
@@ -924,7 +934,7 @@ def _remarks(case: Case, written: float) -> list[str]:
 
 
 def _causes(case: Case, written: float, r: float) -> Iterator[str]:
-    """Yield which settings change r visibly, by setting one after the other as designs do."""
+    """Yield the settings that change r visibly: set one after the other as designs do."""
     designed = case.engine.designed[-1] if case.engine.designed else {}
     for name, value in designed.items():
         was = case.settings[name]
@@ -937,7 +947,7 @@ def _causes(case: Case, written: float, r: float) -> Iterator[str]:
 
 
 def _refuse_springs(bounce: Bounce, engine: ByNumber) -> None:
-    """Refuse what has no meaning where the restitution is a number."""
+    """Refuse quantities of springs."""
     springs = ("penetration", "stiffness", "contact_time")
     place = f"has no place in {engine.name}, where the restitution is a number"
     refuse(
@@ -986,7 +996,7 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     found = best.answer(number)
     way = show(bounce.impact_speed * asked, "m")
     far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
-    warnings = (*found.warnings, *([far] * (step != asked)))
+    warnings = (*found.warnings, *holding([(step != asked, far)]))
     also = _shorter(best, number)
     return replace(found, asked_step=asked, warnings=warnings, also=also)
 
@@ -1071,7 +1081,7 @@ def diagnose_number(
 
 
 def _later(engine: ByNumber, bodies: Sequence[Mapping[str, Any]]) -> Rule:
-    """Return how numbers are combined; of the modes of two materials of PhysX the later one."""
+    """Return how numbers are combined; for PhysX the later mode of both materials."""
     if not engine.is_physx:
         return engine.pair
     return max((body.get("combine", MEAN) for body in bodies), key=list(MODES.values()).index)
@@ -1100,7 +1110,7 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
 
 
 def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the number, the threshold, the settings and how two numbers are combined, as typed."""
+    """Return what was typed: the number, the threshold, settings, and how numbers are combined."""
     combine = "combine" if engine.is_physx else ""
     names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
     found = parameters_of(engine.name, engine.names, list(names), typed)

@@ -72,17 +72,32 @@ _FEWEST = 4
 class Recording:
     """What was measured.
 
-    ``kind`` is "flights" (durations of successive flights in s), "heights" (successive tops),
-    "drops" (pairs of heights), "speeds" (pairs), "coefficients" (pairs of speed and r), or "track".
-
-    ``chains`` are arrays, one for each recording; those of pairs have two columns. A track has one
-    for each impact, with the columns time, position, and 1 after the impact or else 0. A flight is
-    the time from touch to touch, which includes the contact at its begin, unless flights are free
-    of contact, ``is_free``; ``are_times`` is whether it is the difference of two measured times.
-    ``digit`` is the last digit with which readings are written, in SI units, or 0; heights from
-    which a ball is dropped and speeds of coefficients are set, and not read. ``uncertainty`` has
-    standard deviations of r, ``contact_time`` is in s, 0 if it is not known, and ``head`` has what
-    the file says of the ball.
+    Attributes
+    ----------
+    name : str
+        Name of the file or the experiment.
+    kind : str
+        "flights" (durations of successive flights in s), "heights" (successive tops), "drops"
+        (pairs of heights), "speeds" (pairs), "coefficients" (pairs of speed and r), or "track".
+    chains : tuple of arrays
+        One array for each recording; pairs have two columns. A track has one array for each impact,
+        with the columns time, position, and 1 after the impact or else 0. A flight is the time from
+        touch to touch, which includes the contact at its begin, unless ``is_free``.
+    uncertainty : array
+        Standard deviations of r.
+    contact_time : float
+        In s; 0 if it is not known.
+    is_free : bool
+        Whether flights do not include the contact.
+    are_times : bool
+        Whether a flight is the difference of two measured times.
+    digit : float
+        Last digit of the readings in SI units, or 0. Heights of drops and speeds of coefficients
+        are set, and not read.
+    head : dict
+        Quantities in the head of the file.
+    notes : tuple of str
+        What a user has to know.
     """
 
     name: str
@@ -98,7 +113,7 @@ class Recording:
 
 
 def rounding_of(recording: Recording) -> float:
-    """Return the frame of a film's times or the last digit of the readings in SI units, or 0.
+    """Return the rounding of the readings in SI units: the frame of a film, or the last digit.
 
     Three readings are needed for a digit, because numbers lose zeros at their end.
     """
@@ -112,9 +127,9 @@ def rounding_of(recording: Recording) -> float:
 
 
 def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
-    """Return the numbers between missing ones, with their lines.
+    """Return the runs of numbers between missing numbers, with their lines.
 
-    Those of several columns, as h0 and h1, run along each line.
+    Numbers of several columns, such as h0 and h1, run along each line.
     """
     runs: list[tuple[Array, Lines]] = []
     if len(columns) > 1:
@@ -142,7 +157,7 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
 
 
 def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
-    """Refuse flights in s that no ball has."""
+    """Refuse durations in s that are too short, too long or not positive."""
     half = len(flights) // 2
     # Flights get shorter, even if r is 0.997.
     if half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
@@ -161,9 +176,9 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
 def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, remedy: str) -> None:
     """Refuse flights in s that end with an echo, or with a touch that was counted twice.
 
-    Such a flight has less than a quarter of the middle of those beside it, and the next one is
-    longer, by more than three missing touches would make it. The last flight has less than a
-    quarter of what the two before it predict.
+    Such a flight is shorter than half of the geometric mean of its neighbours, and the next flight
+    is longer than it. Three missing touches make a smaller difference. The last flight is shorter
+    than a quarter of the duration that the two flights before it predict.
     """
     # A first flight is compared with the next one only.
     before = np.concatenate([flights[1:2] / 4, flights[:-1]])
@@ -178,11 +193,11 @@ def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, rem
 
 
 def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) -> None:
-    """Refuse flights in s within which an impact is missing, and a first one that is a fall.
+    """Refuse flights in s with a missing impact, and a first flight that is a fall.
 
-    To two flights that are taken as one the third has the ratio r²/(1 + r) < r/2, and to a fall,
-    which is half a flight, the next one has the ratio 2r; the middle between that and r, in the
-    logarithms that scatter alike, is √2 r.
+    If two flights are taken as one, the ratio of the third flight to it is r²/(1 + r) < r/2. A fall
+    is half a flight, so the ratio of the next flight to it is 2r. The limit between 2r and r is
+    their geometric mean √2 r.
     """
     middle = flights[1:-1]
     beside = flights[:-2] * flights[2:]
@@ -243,7 +258,7 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
 
 
 def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Column]) -> Recording:
-    """Return the recording of pairs: of the first column with each of the others."""
+    """Return the recording of pairs of the first column and each other column."""
     first, *others = (table.values(each) for each in columns)
     # Without a unit an uncertainty has that of the coefficients.
     known = [replace(each, unit=each.unit or columns[-1].unit) for each in errors]
@@ -272,7 +287,7 @@ def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
 
 
 def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
-    """Return the positions of each flight, without those beside impacts, and the impacts."""
+    """Return the indices of each flight, without positions next to impacts, and the impacts."""
     # Importing it takes longer than all else here.
     from scipy.signal import find_peaks
 
@@ -312,7 +327,7 @@ def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, floa
 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
-    """Return the tracks of impacts; gravity gives their scale."""
+    """Return the tracks of impacts, scaled by gravity."""
     is_there = np.all([~np.isnan(each.numbers) for each in columns], axis=0)
     t = table.values(columns[0])[is_there]
     t = t - t[:1]
@@ -370,7 +385,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
 
 
 def _layout(table: Table) -> tuple[str, list[Column]]:
-    """Return what was measured, and the columns with that."""
+    """Return what was measured, and its columns."""
     roles = {each.role for each in table.columns}
     # An r beside times was computed of these.
     computed = {"restitution"} if {"time", "interval"} & roles else set()
@@ -398,7 +413,7 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
 
 
 def _is_reading(column: Column, kind: str) -> bool:
-    """Return whether a column that is not used may be what was measured, or a half of it."""
+    """Return whether a column that is not used looks like a measurement."""
     is_error = re.search(_ERRORS, column.name.lower())
     if is_error or column.role in _COMPUTED.get(kind, ()) or np.isnan(column.numbers).all():
         return False
@@ -408,7 +423,7 @@ def _is_reading(column: Column, kind: str) -> bool:
 
 
 def _contact_time(table: Table) -> float:
-    """Return the contact time in s of the head, or the mean of a column; 0 if there is none."""
+    """Return the contact time in s, from the head or as the mean of a column; 0 without one."""
     if "contact time" in table.head:
         return positive("contact time", table.head["contact time"], "s")
     times = [value for each in table.of("duration") for value in table.values(each).tolist()]
@@ -511,10 +526,10 @@ def read(
 
 
 def typed_readings(words: Sequence[str]) -> dict[str, Any]:
-    """Return the column of numbers that are typed with their unit, as in 1.80 1.21 0.82 m.
+    """Return a column of numbers that are typed with their unit, as in 1.80 1.21 0.82 m.
 
-    Lengths are successive heights. Times that grow are those of the impacts, and others are the
-    intervals between them.
+    Lengths are successive heights. Increasing times are times of impacts; other times are intervals
+    between impacts.
 
     Raises
     ------

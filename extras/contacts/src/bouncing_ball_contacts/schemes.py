@@ -41,9 +41,14 @@ _CREEPING = 2e-5
 
 @dataclass(frozen=True)
 class Trials:
-    """Drops of a contact: offsets, and factors of its step and of its losses, of one shape.
+    """Variations of a contact, arrays of one shape.
 
-    The losses are by the damping and by gravity.
+    Attributes
+    ----------
+    at
+        Offsets of the impact within a step.
+    step, losses
+        Factors of the step, and of the losses by damping and gravity.
     """
 
     at: Array
@@ -52,17 +57,17 @@ class Trials:
 
 
 def offsets(count: int) -> Array:
-    """Return instants of the impact within a step, evenly from one end of it to the other."""
+    """Return evenly spaced instants of the impact within a step."""
     return np.linspace(1e-3, 1 - 1e-3, count)
 
 
 def exact(at: Array) -> Trials:
-    """Return trials of the contact as it is, at offsets."""
+    """Return trials of the unchanged contact at offsets."""
     return Trials(at, np.ones_like(at), np.ones_like(at))
 
 
 def nearby(steps: int, count: int) -> Trials:
-    """Return trials of a contact and of its neighbours, of as many steps, at as many offsets.
+    """Return trials of a contact and its neighbours, with `steps` steps and `count` offsets.
 
     The step over the contact time, h ω, differs by up to 1 %, and the damping ratio ζ and g/(ω v)
     by up to 0.5 %. This covers a mass, a stiffness and a step that are each off by 0.5 %, and a
@@ -92,12 +97,12 @@ class Law:
 
     @property
     def deep(self) -> "Law":
-        """The spring and the damper of all points together, at the full impedance of MuJoCo."""
+        """Spring and damper of all points together, at the full impedance of MuJoCo."""
         return self
 
     @property
     def of_position(self) -> "Law":
-        """The law whose velocity moves the body: the same one, but in Gazebo."""
+        """Law whose velocity moves the body; another one in Gazebo only."""
         return self
 
     def rest(self, gravity: float) -> Array:
@@ -105,10 +110,10 @@ class Law:
         return gravity / self.stiffness
 
     def duration(self, speed: float) -> Array:
-        """Return the order of the contact time in s.
+        """Return the order of magnitude of the contact time in s.
 
-        It is 300/c if a strong damper stops the body long before it comes out: steps of 1/3000 of
-        it are still short for the damper.
+        It is at most 300/c. A strong damper stops the body long before it is released, and steps of
+        1/3000 of 300/c are short for the damper.
         """
         time = np.pi / np.sqrt(self.stiffness) + 2 * self.damping / self.stiffness
         return np.minimum(time, 300 / np.maximum(self.damping, 1e-300))
@@ -125,7 +130,7 @@ class Linear(Law):
 
     @classmethod
     def of_depth(cls, depth: Array, ratio: Array, speed: float) -> Self:
-        """Return the contact that sinks in by `depth` without damping."""
+        """Return the contact with an undamped depth in m."""
         return cls((speed / depth) ** 2, 2 * ratio * speed / depth)
 
 
@@ -207,7 +212,7 @@ class Impedance(Law):
         return self._shared(d) * (gravity + d * self.stiffness * p + self.damping * w)
 
     def rest(self, gravity: float) -> Array:
-        """Return the depth at rest in m of one contact, up to which it does not carry the body."""
+        """Return the depth at rest in m of one contact: the smallest one that carries the body."""
         if self.low == self.high:
             return gravity * (1 / self._shared(self.high) - 1) / (self.high * self.stiffness)
         depths = np.geomspace(1e-18, 1e18, 500)
@@ -309,10 +314,16 @@ class Implicit:
 
 @dataclass(frozen=True)
 class Drops:
-    """Results of drops; the last axis is that of the trials.
+    """Results of drops; the last axis is the axis of the trials.
 
-    ``restitution`` is √(h′/h), or the ratio of the speeds without gravity; ``depth`` is in m, and
-    ``peak`` is the largest acceleration by the contact in m/s².
+    Attributes
+    ----------
+    restitution
+        √(h′/h), or the ratio of the speeds without gravity.
+    depth
+        Largest penetration in m.
+    peak
+        Largest acceleration by the contact in m/s².
     """
 
     restitution: Array
@@ -329,7 +340,7 @@ class Drops:
 
 
 def _beside(law: Law, trials: Trials) -> Law:
-    """Return the law with one more axis at the end of its arrays, for the trials."""
+    """Return the law with an axis for the trials at the end of its arrays."""
     arrays = {
         name: value[..., None] for name, value in vars(law).items() if isinstance(value, np.ndarray)
     }
@@ -338,7 +349,7 @@ def _beside(law: Law, trials: Trials) -> Law:
 
 
 def _drag_free(most: float, gravity: float, drag: float) -> tuple[Array, Array]:
-    """Return speeds in m/s up to one of them, and those without drag from or to the same height.
+    """Return speeds in m/s, and the speeds without drag from or to the same heights.
 
     The height is ∫ v dv/(g + D v (1 + v)); D is negative in a fall, which has a terminal speed.
     """

@@ -15,11 +15,20 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Fall:
-    """A ball on its way down: what the rule of an engine depends on, in SI units.
+    """Ball on its way down, in SI units.
 
-    ``number`` is the restitution coefficient of both bodies together. Impacts slower than
-    ``threshold`` have none. ``keeps`` is the share of its velocity that a linear damping leaves to
-    a body in a step. ``settings`` are other parameters by their names in the engine.
+    Attributes
+    ----------
+    number
+        Combined restitution coefficient of both bodies.
+    step, gravity, radius, mass
+        Time step, gravity, and the ball.
+    threshold
+        Speed below which an impact has no restitution.
+    keeps
+        Share of a velocity that a linear damping leaves in a step.
+    settings
+        Other parameters by their names in the engine.
     """
 
     number: float
@@ -33,7 +42,7 @@ class Fall:
 
     @property
     def added(self) -> float:
-        """The speed that gravity adds in a step."""
+        """Speed that gravity adds in a step."""
         return self.gravity * self.step
 
 
@@ -191,7 +200,7 @@ _SKIN = 2 * _SLOP
 
 
 def _out(z: float) -> float:
-    """Return where a ball at the time of its impact is put, in iterations with a factor of 3/4."""
+    """Return the height of a ball after the iterations at the time of its impact."""
     for _ in range(20):
         apart = z - _SKIN
         z += min(max(-0.75 * (apart + _SLOP), 0.0), 0.2)
@@ -290,7 +299,10 @@ def ode(at: Fall, z: float, v: float) -> Steps:
 
 
 def gazebo(at: Fall, z: float, v: float) -> Steps:
-    """As ODE's, of two bodies alike, at most `max_vel`; the position moves as without it."""
+    """As `ode`, for two bodies with the same parameters; `max_vel` caps the velocity.
+
+    The position moves as without the cap.
+    """
     both = at.step * at.settings["kp"] / 2 + 2 * at.settings["kd"]
     held = at.step * both / at.mass
     fastest = min(at.settings["max_vel"], at.settings["contact_max_correcting_vel"])

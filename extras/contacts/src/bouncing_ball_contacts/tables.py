@@ -111,9 +111,16 @@ def experiments() -> list[str]:
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """A column: its heading without the unit, the unit, what it has, and its cells.
+    """Column of a table.
 
-    ``numbers`` are in the unit of the column, NaN for an empty cell.
+    Attributes
+    ----------
+    name, unit
+        Heading without its unit, and the unit.
+    role
+        What the column contains, a key of :data:`NAMES`; empty if the name is not known.
+    cells, numbers
+        Texts of the cells, and numbers in the unit of the column; NaN for an empty cell.
     """
 
     name: str
@@ -124,18 +131,18 @@ class Column:
 
     @property
     def scale(self) -> float:
-        """The unit of the column in SI units."""
+        """Unit of the column in SI units."""
         return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
 
     @property
     def is_count(self) -> bool:
-        """Whether the numbers are whole and grow by 1 at most, as those of lines or trials."""
+        """Whether the numbers are whole and increase by 0 or 1, as numbers of trials do."""
         steps = np.diff(self.numbers)
         return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
 
     @property
     def digit(self) -> float:
-        """The last digit with which the numbers are written, in SI units."""
+        """Last digit of the numbers, in SI units."""
         written = [re.search(r"[.,](\d+)(?:[eE]([-+]?\d+))?", cell) for cell in self.cells]
         powers = [int(each[2] or 0) - len(each[1]) for each in written if each]
         return self.scale * 10.0 ** min(powers, default=0)
@@ -143,7 +150,7 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns with the numbers of their lines, and what the head says."""
+    """Columns, the numbers of their lines, and the quantities of the head."""
 
     name: str
     head: dict[str, str]
@@ -151,11 +158,11 @@ class Table:
     lines: Lines
 
     def of(self, role: str) -> list[Column]:
-        """Return the columns that have a quantity."""
+        """Return the columns that contain a quantity."""
         return [each for each in self.columns if each.role == role]
 
     def parts(self, role: str) -> "dict[str, Table]":
-        """Return the lines of each name in a column of names; an empty cell has the one above."""
+        """Return the lines of each name in a column; an empty cell has the name above it."""
         name = ""
         cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
         names = [name := cell or name for cell in cells[0]]
@@ -172,14 +179,14 @@ class Table:
     def refuse(
         self, is_bad: NDArray[np.bool_], text: str, *numbers: Array, lines: Any = None
     ) -> None:
-        """Refuse the first number that is bad; the text has places for numbers of that line."""
+        """Refuse the first bad line; the text is formatted with its numbers."""
         for i in np.flatnonzero(is_bad)[:1]:
             line = (self.lines if lines is None else lines)[i]
             said = text.format(*(f"{each[i]:.6g}" for each in numbers))
             raise Refused(f"{self.name}, line {line}: {said}")
 
     def values(self, column: Column) -> Array:
-        """Return the numbers of a column in SI units, and refuse those that no ball has."""
+        """Return the numbers of a column in SI units; refuse numbers that are out of range."""
         unit = _UNITS[column.role]
         what, bare, most, meant = _LARGEST[unit]
         # The sign of a velocity is its direction.
@@ -193,7 +200,7 @@ class Table:
 
 
 def _text_of(source: Any) -> tuple[str, str]:
-    """Return the name of a source, and its lines with tabs if it is none of text."""
+    """Return the name of a source, and its text; columns become lines with tabs."""
     if isinstance(source, Mapping):
         return "columns", _columns_as_text(source)
     if not isinstance(source, str | Path):
@@ -221,7 +228,7 @@ def _columns_as_text(columns: Mapping[str, Any]) -> str:
 
 
 def _heading(text: str) -> tuple[str, str, str]:
-    """Return the name of a heading, its unit, and what it has: '' if that is not known."""
+    """Return the name of a heading, its unit, and its role; an unknown role is empty."""
     plain = " ".join(re.sub("[’′]", "'", text.replace("_", " ")).split())
     parts = re.fullmatch(r"(.+?) ?[(\[](.*)[)\]]", plain) or re.fullmatch(
         r"(.+?)(?: in |[ /]+)(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
@@ -234,7 +241,7 @@ def _heading(text: str) -> tuple[str, str, str]:
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:
-    """Return a number, NaN for an empty cell, or None for another text and for infinity."""
+    """Return the number of a cell, NaN if it is empty, and None if it has another text."""
     plain = cell.replace("−", "-")
     if is_decimal_comma:
         plain = plain.replace(",", ".")
@@ -247,7 +254,7 @@ def _number(cell: str, is_decimal_comma: bool) -> float | None:
 
 
 def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
-    """Return what the head says, the cells by line, and whether commas are decimal.
+    """Return the quantities of the head, the cells by line, and whether commas are decimal.
 
     The first line of cells has the headings, also if a program wrote a title above it.
     """
@@ -324,7 +331,7 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
 
 
 def _with_times(head: Mapping[str, str], columns: list[Column]) -> list[Column]:
-    """Return the columns with times in place of frames, if the head has their rate and none is."""
+    """Replace frames by times, if the head has the frame rate and no column has times."""
     if "frame rate" not in head or any(each.role == "time" for each in columns):
         return columns
     rate = positive("frame rate", head["frame rate"], "Hz")

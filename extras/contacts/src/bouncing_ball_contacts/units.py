@@ -59,21 +59,21 @@ _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
 def units_of(unit: str) -> list[str]:
-    """Return the units that are known of the quantities of an SI unit."""
+    """Return the units of the quantity of an SI unit."""
     return list(_UNITS[unit])
 
 
 class Refused(ValueError):
-    """A question without an answer; the message is one line for whoever asked."""
+    """Raised for a question without an answer; the message is one line."""
 
 
 def holding(said: Iterable[tuple[Any, str]]) -> list[str]:
-    """Return those sentences whose conditions hold."""
+    """Return the texts whose conditions hold."""
     return [text for holds, text in said if holds]
 
 
 def refuse(said: Iterable[tuple[Any, str]]) -> None:
-    """Raise the first of those sentences whose conditions hold."""
+    """Raise `Refused` with the first text whose condition holds."""
     for text in holding(said):
         raise Refused(text)
 

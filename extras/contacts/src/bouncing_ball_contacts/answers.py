@@ -126,7 +126,7 @@ class Answer:
         said = [
             (self.lost, f"lost, because {self.lost}"),
             (not self.lost, f"r = {self.outcome.restitution}"),
-            (not self.is_kept, f"{bounce.restitution} is wanted"),
+            (not self.is_kept, f"{bounce.restitution or 0:.4g} is wanted"),
             (
                 not math.isnan(depth) and not self.lost,
                 f"sinks {show(depth, 'm')} of {show(bounce.size, 'm')}",

@@ -671,6 +671,11 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
 
 
+def _number(value: float) -> str:
+    """Return a number with a decimal point, as C++ wants before an f, or with a power of ten."""
+    return f"{value:g}" if value >= 1e6 else str(float(value))
+
+
 def _snippet(case: "Case", number: float) -> str:
     """Return the lines to paste: the number, and each setting that differs from its default."""
     row = case.engine
@@ -682,9 +687,9 @@ def _snippet(case: "Case", number: float) -> str:
     if case.threshold != row.threshold:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
     values = {row.parameter: float(f"{number:.4g}"), **changed}
-    # In the order of the lines. Also a whole number has a decimal point, as C++ wants before an f.
+    # In the order of the lines.
     return "\n".join(
-        line.format(name=name, value=float(values[name]), bodies=bodies)
+        line.format(name=name, value=_number(values[name]), bodies=bodies)
         for name, line in row.lines.items()
         if name in values
     )
@@ -1062,7 +1067,7 @@ def diagnose_number(
     found = case.answer(number)
     causes = tuple(_causes(case, number, found.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
-    found = replace(found, snippet="", warnings=causes + found.warnings)
+    found = replace(found, snippet="", not_for=(), warnings=causes + found.warnings)
     if found.is_kept or case.never_bounces:
         return found
     best, number = case.wanted()

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from bouncing_ball_contacts import questions, rebounds, units
+
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 SHOWN = [
@@ -41,6 +43,12 @@ def test_the_answers_of_the_readme_are_short():
 def test_the_examples_in_python():
     failed, tried = doctest.testfile(str(ROOT / "docs" / "python.md"), module_relative=False)
     assert failed == 0 and tried > 10
+
+
+@pytest.mark.parametrize("module", [questions, rebounds, units], ids=lambda each: each.__name__)
+def test_the_examples_of_docstrings(module):
+    failed, tried = doctest.testmod(module)
+    assert failed == 0 and tried > 0
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

@@ -34,7 +34,8 @@ class Range(NamedTuple):
         return max(wanted - self.low, self.high - wanted)
 
     def __str__(self) -> str:
-        return f"{self.mean:.3f} ({span(self.low, self.high)})"
+        # Ends that differ by rounding are the same.
+        return f"{self.mean:.3f} ({span(round(self.low, 6), round(self.high, 6))})"
 
 
 @dataclass(frozen=True)

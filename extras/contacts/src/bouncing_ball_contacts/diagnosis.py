@@ -176,8 +176,8 @@ def diagnose_spring(
     """
     # The mass is looked at first.
     problem = Problem(bounce, engine)
-    is_told = bounce.friction is not None and "friction" in engine.rules
-    rubs = {"friction": bounce.friction} if is_told else {}
+    has_friction = bounce.friction is not None and "friction" in engine.rules
+    rubs = {"friction": bounce.friction} if has_friction else {}
     given = _given(engine, {**rubs, **parameters})
     differs = None if other is None else _given(engine, other)
     refuse(

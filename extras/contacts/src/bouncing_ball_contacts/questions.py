@@ -33,8 +33,9 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
     Refused
         If there is no such contact, or a quantity is missing.
 
-    >>> print(design(Bounce(mass=1, radius=0.1, restitution=0.8), "mujoco", "1 ms").result)
-    mujoco, 1 ms: r = 0.801 (0.784 to 0.818), sinks 17.5 mm of 100 mm
+    >>> found = design(Bounce(mass=1, radius=0.1, restitution=0.8), "mujoco", "1 ms")
+    >>> sorted(found.parameters), round(found.outcome.restitution.mean, 2)
+    (['solimp', 'solref'], 0.8)
     """
     if not isinstance(bounce, Bounce):
         raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
@@ -78,6 +79,10 @@ def diagnose(
     ------
     Refused
         If a parameter or the step is missing, unknown or out of its range.
+
+    >>> found = diagnose(Bounce(drop_height=1), "rapier", {"restitution": 0.8}, "1/60", other={})
+    >>> found.numbers["number"], round(found.outcome.restitution.mean, 2)
+    (0.4, 0.39)
     """
     # Importing it takes longer than a design, which does not need it.
     from bouncing_ball_contacts.diagnosis import diagnose_spring

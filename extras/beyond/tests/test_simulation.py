@@ -538,3 +538,47 @@ def test_arguments_that_make_no_sense_are_named_in_one_line(call, text):
     with pytest.raises(ValueError, match=text) as raised:
         call()
     assert "\n" not in str(raised.value)
+
+
+LAID = {
+    "restitution": bb.Rigid(0.5),
+    "spring and damper": bb.SpringDamper(20.0, restitution=0.65),
+    "corrected": bb.Corrected(bb.SpringDamper(20.0, restitution=0.65)),
+    "hertz": bb.tsuji(restitution=0.65, duration=0.1, speed=3.8),
+}
+
+
+@pytest.mark.parametrize("name", LAID)
+def test_a_ball_that_is_dropped_from_the_table_itself_lies_on_it(name):
+    """At rest, while the table rises, and while it falls as fast as a ball of the same speed."""
+    ball = LAID[name]
+    found = bb.drop(ball, height=0.0, periods=0.3, samples=20)
+    assert found.contact[1:].all()
+    # At most twice the static penetration, which is 1/ϖ² for the spring, (1/K)^(2/3) for the law.
+    assert (np.abs(found.ball) < 2 * 3400 ** (-2 / 3)).all()
+    rising = bb.drop(ball, height=0.5 * np.sin(0.3), amplitude=0.5, phase=0.3, periods=0.3)
+    assert np.isfinite(rising.ball).all()
+    assert (rising.ball > rising.table - 0.1).all()
+
+
+@pytest.mark.parametrize("phase", [0.5, 2.5, -2.0, 4.0])
+def test_the_first_sample_of_a_drop_is_its_height(phase):
+    """Also where rounding puts the beginning of the fall after the time 0."""
+    for height in np.linspace(1.6, 9.0, 40):
+        found = bb.drop(bb.Rigid(0.5), height=height, amplitude=1.5, phase=phase, periods=0.1)
+        assert found.ball[0] == pytest.approx(height, abs=1e-12)
+
+
+def test_a_ball_of_a_law_that_is_laid_on_the_table_is_followed_in_time():
+    """Its root time is a million where that of an impact is one; an integrator has the same."""
+    law = LAID["hertz"]
+    found = bb.history(law, amplitude=0.5, phase=0.3, relative_velocity=0.0, periods=0.5)
+
+    def motion(t, y):
+        force = law.force(max(-y[0], 0.0), -y[1], **law.values)
+        return [y[1], -1 + 0.5 * np.sin(t + 0.3) + force]
+
+    times = found.time.values
+    known = {"t_eval": times, "rtol": 1e-11, "atol": 1e-13}
+    solution = solve_ivp(motion, (0, times[-1]), [0.0, -1e-12], "Radau", **known)
+    np.testing.assert_allclose(found.ball - found.table, solution.y[0], atol=1e-9)

@@ -144,6 +144,12 @@ class Ball:
         """The end of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
+    def contact_after(
+        self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
+    ) -> tuple[Values, Values]:
+        """δ and δ′ a time after the start of a contact."""
+        raise NotImplementedError
+
     def release_slopes(
         self,
         tau: Values,
@@ -416,6 +422,12 @@ class SpringDamper(Ball):
         given = self.start(u), u, table, waves, gravity, ratio, self.zeta
         gap, speed = oscillator.motion(duration, *given)
         return Impact(duration + 0 * gap, gap, speed, ratio * (gap + self.kappa * speed))
+
+    def contact_after(
+        self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
+    ) -> tuple[Values, Values]:
+        """δ and δ′ a time after the start of a contact."""
+        return self.contact(tau, u, time * self.frequency_ratio, amplitude, table=table)[1:3]
 
     def free(self, u: Values) -> Values:
         """T of a free impact: π/√(1 - ζ²), or 2 arccos ζ/√(1 - ζ²) with the force release."""

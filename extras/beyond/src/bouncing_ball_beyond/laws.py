@@ -34,7 +34,7 @@ from bouncing_ball_beyond.root_time import (
 )
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
-TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "load", "start_speed")
+TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "after", "load", "start_speed")
 """Names that parameters must not have."""
 
 LIMITS = (-46.0, 23.0)
@@ -278,6 +278,22 @@ class ForceLaw(Ball):
         self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
     ) -> tuple[Values, Impact]:
         return self._followed(tau, u, amplitude, gravity, table=table)
+
+    def contact_after(
+        self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
+    ) -> tuple[Values, Values]:
+        """δ and δ′ a time after the start of a contact."""
+        given = {"tau": tau, "u": u, "after": time, "amplitude": amplitude, "gravity": 1.0}
+        rows, motion, start, by = self._started(given, table)
+        after = rows.given.pop("after")
+        moves = np.flatnonzero(after > 0)
+        depth = self.at(**self.own(rows.given)).depth(rows.given["u"])
+        first = (FIRST_PANEL * depth ** (1 / self.root) / np.abs(rows.given["u"]))[moves]
+        some = motion.of(moves), start[:, moves], by[..., moves], first, after[moves]
+        state = np.array([*start])
+        state[:, moves] = follow(*some, after=after[moves])[0][1:3]
+        q, v = state.reshape(2, *rows.shape)
+        return -(q**self.root), -v
 
     def free(self, u: Values) -> Values:
         """T of free impacts, without a table and gravity."""

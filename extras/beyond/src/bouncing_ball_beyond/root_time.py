@@ -826,8 +826,9 @@ def follow(
     period: NDArray,
     longest: Values = PERIODS,
     until: NDArray | None = None,
+    after: NDArray | None = None,
 ) -> tuple[NDArray, NDArray]:
-    """Contacts from their starts to the first releases, or to root times.
+    """Contacts from their starts to the first releases, to root times, or to times.
 
     A contact is permanent if its motion repeats after a period, or if it lasts too long.
 
@@ -839,6 +840,8 @@ def follow(
         Those of the first panel, and of the table.
     until : array, shape (rows,), optional
         Root times at which contacts are left.
+    after : array, shape (rows,), optional
+        Times after the start at which contacts are left.
     longest : int or array, shape (rows,)
         A contact that lasts for so many periods is taken for a permanent one.
 
@@ -849,8 +852,13 @@ def follow(
     """
     q, v = start
     rows = v.size
-    motion = motion._replace(given={**motion.given, "turn": period.copy()})
-    events = motion.kinks if until is not None else (*motion.kinks, motion.release, _turn)
+    turn = (period if after is None else after).copy()
+    motion = motion._replace(given={**motion.given, "turn": turn})
+    events = (*motion.kinks, motion.release, _turn)
+    if until is not None:
+        events = motion.kinks
+    elif after is not None:
+        events = (*motion.kinks, _turn)
     side = np.zeros((len(events), rows))
     side[len(motion.kinks) :] = -1.0
     now = np.array([0 * v, q, v, 0 * v])

@@ -639,6 +639,11 @@ def drop(
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)
     dropped = Leaving(nothing, nothing, nothing, phase, gap, w, emerges=nothing)
     time, speed = fly(balls, dropped)
+    # A ball that lies on a table which does not fall faster is at its first impact already.
+    gravity = 1 + amplitude * table(phase, 2)
+    lies = (gap == 0) & ((w < 0) | ((w == 0) & (gravity >= 0)))
+    time = np.where(lies, 0.0, time)
+    speed = np.where(lies, -w, speed)
     turns, lands = reduced(phase + time)
     fall = np.array([nothing, phase, nothing, nothing, nothing, gap, w, time])
     first = replace(balls, turns=turns, phase=lands, speed=speed)
@@ -656,13 +661,14 @@ def over_time(
     found["contact"] = np.empty(shape, bool)
     for j, amplitude in enumerate(balls.amplitude):
         one = balls.take([j])
-        record = fall[:, :, j]
-        origin = TURN * one.turns[0] + one.phase[0] - record[:, 7].sum()
+        records = [fall[:, :, j]]
+        origin = TURN * one.turns[0] + one.phase[0] - records[0][:, 7].sum()
         while one.phase.size and TURN * one.turns[0] + one.phase[0] - origin < times[-1]:
             more, _, one = follow(one, AT_ONCE)
-            record = np.concatenate([record, more[:, :, 0]])
-            if len(record) > MOST_IMPACTS:
+            records.append(more[:, :, 0])
+            if AT_ONCE * len(records) > MOST_IMPACTS:
                 raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
+        record = np.concatenate(records)
         record = record[np.isfinite(record[:, 0])]
         one = balls.take([j])
         gap, rate, found["contact"][j] = states_at(record, origin, one, times)
@@ -679,9 +685,10 @@ def states_at(
     ball = balls.ball
     amplitude = float(balls.amplitude[0])
     begin = TURN * record[:, 0] + record[:, 1] - origin
-    number = np.searchsorted(begin, times, side="right") - 1
-    _, phase, u, own_time, duration, gap, w, _ = record[number].T
-    since = times - begin[number]
+    # Rounding may put the beginning after the first of the times.
+    number = np.maximum(np.searchsorted(begin, times, side="right") - 1, 0)
+    _, phase, u, _, duration, gap, w, _ = record[number].T
+    since = np.maximum(times - begin[number], 0.0)
     contact = since < duration
     leaves = np.where(contact, 0.0, phase + duration)
     waves = balls.table.waves(leaves, amplitude)
@@ -689,25 +696,6 @@ def states_at(
     gap[contact] = 0.0
     rate[contact] = 0.0
     if ball.lasts and contact.any():
-        given = phase[contact], u[contact], since[contact]
-        own_time = own_times(balls, own_time[contact], *given)
-        end = ball.contact(*given[:2], own_time, amplitude, table=balls.table)
-        gap[contact] = end.gap
-        rate[contact] = end.speed
+        given = phase[contact], u[contact], since[contact], amplitude
+        gap[contact], rate[contact] = ball.contact_after(*given, balls.table)
     return gap, rate, contact
-
-
-def own_times(balls: Balls, above: NDArray, *given: NDArray) -> NDArray:
-    """T at times after the starts of contacts, from T above them or NaN, by a bracket."""
-
-    def late(T: Values, phase: Values, speed: NDArray, since: NDArray) -> NDArray:
-        on_table = float(balls.amplitude[0]), 1.0, balls.table
-        return balls.ball.contact(phase, speed, T, *on_table).duration - since
-
-    above = np.where(np.isfinite(above), above, 1.0)
-    while np.any(late(above, *given) < 0):
-        above = np.where(late(above, *given) < 0, 2 * above, above)
-    # Its import takes longer than most simulations.
-    from scipy.optimize import elementwise
-
-    return elementwise.find_root(late, (np.zeros_like(above), above), args=given).x

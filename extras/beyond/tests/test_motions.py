@@ -236,6 +236,16 @@ def test_chaos_that_ends_is_a_transient():
     assert above.lyapunov_error < 0.02
 
 
+def test_exponents_without_neighbours_are_those_of_the_ball_alone():
+    """Then a transient is not told from chaos, and nothing else changes."""
+    given = {"amplitude": [1.2, 1.85], "phase": 1.0, "impacts": 400}
+    found = bb.lyapunov(bb.Rigid(0.7), neighbours=0, **given)
+    assert found.identical(bb.motion_of(bb.Rigid(0.7), **given))
+    assert found.kind[1] == "chaotic" and np.isfinite(found.lyapunov_exponent[1])
+    with pytest.raises(ValueError, match=r"neighbours = -1: must be a whole number from 0"):
+        bb.lyapunov(bb.Rigid(0.7), neighbours=-1, **given)
+
+
 @pytest.mark.parametrize("ball", [bb.Rigid(0.65), bb.SpringDamper(10.0, restitution=0.65)])
 def test_basins_are_the_motions_of_balls_one_by_one(ball):
     found = bb.basins(ball, amplitude=1.1, starts=7)

@@ -21,7 +21,7 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.periodic import orbit
-from bouncing_ball_beyond.tables import Table
+from bouncing_ball_beyond.tables import SINE, Table
 
 ARTICLE = {
     # Quantity: K, and ϖ for 1 % by the law, exactly, and of the corrected model (Table 1).
@@ -432,3 +432,50 @@ def test_a_ball_that_leaves_slowly_has_the_values_of_its_orbit():
     found = contact_values(ball, amplitude=2.8, quantities=["max_height", "phase"])
     assert found["max_height"] == pytest.approx(known.max_height, rel=1e-12)
     assert found["phase"] == pytest.approx(known.phase, rel=1e-12)
+
+
+SKEWED = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
+
+
+@pytest.mark.parametrize("table", [SINE, SKEWED])
+@pytest.mark.parametrize("r", [0.05, 0.3, 0.65, 0.95])
+def test_errors_at_the_saddle_node_of_the_restitution_model_are_those_next_to_it(table, r):
+    """Also if Λ differs from C/max w′ by rounding; the phase of a sine is 0 there."""
+    ball = SpringDamper(300.0, restitution=r)
+    node = np.pi * (1 - r) / (1 + r) / table.slope
+    amplitude = node * (1 + np.array([-1e-16, 0.0, 1e-16, 1e-15, 1e-12, 1e-10]))
+    names = [name for name in QUANTITIES if table is SKEWED or name != "phase"]
+    for errors in (law_errors, exact_errors):
+        found = errors(ball, amplitude=amplitude, table=table)
+        next_to_it = errors(ball, amplitude=node * (1 + 1e-9), table=table)
+        for name in names:
+            np.testing.assert_allclose(found[name], next_to_it[name], atol=1e-4, err_msg=name)
+    if table is SINE:
+        assert np.isinf(law_errors(ball, amplitude=node)["phase"])
+
+
+def test_orbits_at_their_saddle_node_are_found_on_both_sides():
+    """By their closed form: the phase is zero, and the height that of a flight of 2π."""
+    node = np.pi * 0.35 / 1.65
+    for side in ("stable", "unstable"):
+        found = orbit(Rigid(0.65), amplitude=node, side=side)
+        assert found.phase == pytest.approx(0, abs=1e-6)
+        assert found.defect < 1e-14
+    values = contact_values(Rigid(0.65), amplitude=node)
+    assert values["max_height"] == pytest.approx(np.pi**2 / 2, abs=1e-6)
+
+
+def test_thresholds_say_where_the_orbit_is_unstable():
+    known = {"amplitude": [1.0, 1.2385, 1.6], "quantities": ["max_height", "saddle_node"]}
+    found = error_thresholds(BALL, **known)
+    height = found["max_height"]
+    assert height.unstable.tolist() == ["", "on the contact", "in both models"]
+    assert (found["saddle_node"].unstable == "").all()
+    # The multipliers of the orbits at these ratios.
+    for amplitude, ratio, text in zip(
+        known["amplitude"], height.ratio, height.unstable, strict=True
+    ):
+        one = orbit(BALL.at(frequency_ratio=float(ratio)), amplitude=amplitude)
+        assert one.stable == (text == "")
+    corrected = error_thresholds(BALL, simple=Corrected, **known | {"amplitude": 1.6})
+    assert corrected["max_height"].unstable == "in both models"

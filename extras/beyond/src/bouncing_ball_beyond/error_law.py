@@ -16,7 +16,7 @@ from bouncing_ball_beyond.balls import Ball, H, SpringDamper, brief, checked, wh
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.march import newton
-from bouncing_ball_beyond.search import guess_of_instants, rows_of
+from bouncing_ball_beyond.search import AT_FOLD, guess_of_instants, rows_of
 from bouncing_ball_beyond.special_orbits import special_near
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
@@ -116,9 +116,19 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     )
 
 
+def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
+    """Λ, but C/max W′ where it differs from it by rounding, so that C ≤ Λ max W′ at the saddle-node
+    of the restitution model itself."""
+    amplitude = np.asarray(amplitude, float)
+    node = impact.line / table.slope
+    # C is a difference of numbers of the size of the speed, which is known to some roundings.
+    rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
+    return np.where(np.abs(amplitude - node) <= rounding, node, amplitude)
+
+
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
     """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1)."""
-    amplitude = np.asarray(amplitude, float)
+    amplitude = off_rounding(impact, amplitude, table)
     phase, lift, _, _ = table.instant(impact.line, amplitude)
     anywhere = 0 * (impact.line + amplitude)
     return {
@@ -137,7 +147,9 @@ def law_errors(
     """The error law: signed relative errors of the restitution model, by :data:`QUANTITIES`.
 
     They are right to the second order in the duration, and next to the saddle-node to the order
-    3/2; NaN where a model has no orbit.
+    3/2; NaN where a model has no orbit. At the saddle-node of the restitution model itself the
+    phase is 0, and its relative error infinite. Above the period doubling, whose Λ is in
+    ``contact_values(Rigid(r), …)``, they are the errors of orbits that are unstable.
 
     Parameters
     ----------
@@ -156,7 +168,8 @@ def law_errors(
     -0.01
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    amplitude = np.asarray(checked("amplitude", amplitude, 0, np.inf, low_allowed=False))
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    amplitude = off_rounding(impact, amplitude, table)
     reference = restitution_values(impact, amplitude, table)
     # NaN below the saddle-node.
     r = reference["apparent_restitution"]
@@ -223,7 +236,7 @@ def law_remainders(
     the order in D; the factor 1 is fitted to random orbits and tables (docs/error-law.md).
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    amplitude = np.asarray(amplitude, float)
+    amplitude = off_rounding(impact, amplitude, table)
     reference = restitution_values(impact, amplitude, table)
     delay = impact.centroid
     shift = np.abs(impact.shift)
@@ -286,8 +299,8 @@ def law_thresholds(
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
     (82.18, 132.3)
     """
-    amplitude = np.asarray(amplitude, float)
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
+    amplitude = off_rounding(impact, amplitude, table)
     coefficients = law_coefficients(impact, amplitude=amplitude, table=table)
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     for name in ("max_height", "phase"):
@@ -425,7 +438,14 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     periods = np.broadcast_to(equations.periods, amplitude.shape)
     guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
     solution = newton(equations, guess)
-    good = solution.found & (equations.turn(solution.linear) < 1)
+    # At a saddle-node steps are halved, and 12 of them are too few.
+    slow = ~solution.found & (np.abs(equations.turn(solution.linear) - 1) < 0.1)
+    if slow.any():
+        more = newton(equations.rows(slow), solution.z[slow], iterations=40)
+        solution.z[slow] = more.z
+        solution = solution._replace(linear=equations.linear(solution.z))
+        solution.found[slow] = more.found
+    good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
     # On compliant contacts Newton's method may run to a solution that is no orbit.
     leaves = equations.ends(solution.z).speed[:, 0] > 0
     good &= leaves & (solution.z[:, 1] > 0) & (np.abs(solution.z - guess)[:, 0] < np.pi)
@@ -524,16 +544,51 @@ def exact_errors(
         return {name: exact[name] / reference[name] - 1 for name in quantities}
 
 
-class ErrorThreshold(NamedTuple):
-    """From which frequency ratio on an error is within a tolerance: arrays of one shape.
+def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
+    """Numbers in :data:`UNSTABLE` of the n-T orbits of a ball and of its simple model."""
+    if simple is None or isinstance(simple, FreeImpact):
+        values = restitution_values(simple or free_impact(ball, n), amplitude, table)
+        doubles = np.asarray(amplitude) > values["period_doubling"]
+        of_simple = doubles & np.isfinite(values["max_height"])
+    else:
+        of_simple = _are_unstable(simple(ball), amplitude, n, table)
+    return of_simple + 2 * _are_unstable(ball, amplitude, n, table)
 
-    The status is "found"; "within" if the error is within the tolerance at all ratios; "outside" if
-    it is not so at the largest; and "no orbit" if there is none at the largest, or at the smallest
-    within the tolerance. The ratio is NaN if it is not found.
+
+def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
+    """Whether there are n-T orbits on the stable side of the saddle-node, and are unstable."""
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    equations = OrbitEquations(row, 1, periods, table=table)
+    z = rows_of_orbits(equations, amplitudes)
+    with np.errstate(invalid="ignore"):
+        stable = equations.stable(equations.linear(z))
+    return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
+
+
+class ErrorThreshold(NamedTuple):
+    """Frequency ratio above which an error is within a tolerance: arrays of one shape.
+
+    Attributes
+    ----------
+    ratio
+        NaN if it is not found.
+    status
+        "found"; "within" if the error is within the tolerance at all ratios; "outside" if it is
+        beyond the tolerance at the largest ratio; "no orbit" if there is no orbit at the largest
+        ratio, or at the smallest ratio within the tolerance.
+    unstable
+        Which orbit is unstable at this ratio, or at the largest one where the ratio is NaN: "", "in
+        the simple model", "on the contact" or "in both models"; "" for bifurcations, and where
+        there is no orbit.
     """
 
     ratio: NDArray
     status: NDArray
+    unstable: NDArray
+
+
+UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
+"""By whether the orbit is unstable in the simple model, 1, and on the contact, 2."""
 
 
 def error_thresholds(
@@ -570,6 +625,12 @@ def error_thresholds(
     >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
+
+    Above the period doubling the orbit is compared as well:
+
+    >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
+    >>> round(float(found.ratio), 2), str(found.unstable)
+    (75.79, 'in both models')
     """
     if not 0 < low < high < np.inf:
         raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
@@ -612,6 +673,11 @@ def error_thresholds(
             bracket = np.log(grid[last[places]]), np.log(grid[last[places] + 1])
             ratio[places] = np.exp(_last_zero(excess, bracket, places))
         for j, name in enumerate(names):
-            each = (x.reshape(len(names), *shape)[j] for x in (ratio, status))
-            found[name] = ErrorThreshold(*each)
+            of_name = ratio.reshape(len(names), *shape)[j]
+            unstable = np.zeros(shape, int)
+            if name not in alone:
+                there = path(np.where(np.isfinite(of_name), of_name, high))
+                unstable = _unstable(there, **known)
+            states = status.reshape(len(names), *shape)[j]
+            found[name] = ErrorThreshold(of_name, states, UNSTABLE[unstable])
     return {name: found[name] for name in quantities}

@@ -88,14 +88,17 @@ def newton(
         linear = equations.linear(z)
         solution = equations.bordered(z, linear, normal)
         step = solution[..., 0]
-        z = z + step
         defect = np.abs(linear.legs).max(axis=(1, 2))
         moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
         # Lengths in the equations are of the size of Λ, or of the times and the speeds.
         _, amplitude, _ = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
+        exact = defect < ROUNDING * (1 + size)
+        # Next to a singular matrix a step of rounding errors alone may lead far away.
+        step = np.where((exact & ~(moved < SPECIAL))[:, np.newaxis], 0.0, step)
+        z = z + step
         # Steps become small, or they are made of nothing but rounding errors of the equations.
-        found = (moved < TOLERANCE) | (defect < ROUNDING * (1 + size))
+        found = (moved < TOLERANCE) | exact
         if (found | np.isnan(moved)).all():
             break
     # Far away, where times have no digits left, steps are small as well.

@@ -12,6 +12,11 @@ from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 
+AT_FOLD = 1e-6
+"""1 - tr/(1 + det) below which an orbit is that of the saddle-node, and of both its sides. It grows
+with the square root of Λ - Λ_SN, so that errors of 1e-13 of a contact make it 3e-7."""
+
+
 def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
     """A ball and further numbers as rows of one length, and the shape which these had."""
     check_ball(ball)
@@ -75,7 +80,7 @@ def near_instants(
     rows, or None; and which of them a ball follows."""
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
-    good = solution.found & (sign * (1 - equations.turn(solution.linear)) > 0)
+    good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
     z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
     good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
     rows = enumerate(zip(good, z, strict=True))
@@ -92,7 +97,7 @@ def shortest_contacts(
     for i, each in enumerate(amplitude):
         alone = single(equations, i)
         orbits = [alone.orbit(z) for z in all_orbits(alone, float(each))]
-        on_side = [each for each in orbits if sign * (1 - each.turn) > 0]
+        on_side = [each for each in orbits if sign * (1 - each.turn) > -AT_FOLD]
         on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
         found.append(on_side[0] if on_side else None)
     return found, np.array([each is not None and each.admissible for each in found])

@@ -457,8 +457,12 @@ class Table:
         """
         phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
-        start = np.interp(-slope, -slopes, phase)
-        return self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
+        # Next to the steepest phase W′ falls with the square of the distance.
+        start = np.interp(np.sqrt(slopes[0] - slope), np.sqrt(slopes[0] - slopes), phase)
+        found = self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
+        # At the steepest phase itself W″ is nothing but rounding, and leads away.
+        nearer = np.abs(self(found, 1) - slope) <= np.abs(self(start, 1) - slope)
+        return np.where(nearer, found, start)
 
     def phase_of_angle(self, angle: Values) -> Values:
         """The phase after the steepest one at which (W′, -W″) has turned by an angle up to π/2."""

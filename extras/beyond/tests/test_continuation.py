@@ -13,7 +13,6 @@ from bouncing_ball_beyond.branches import FollowedBranch
 from bouncing_ball_beyond.continuation import cascade, follow, limits
 from bouncing_ball_beyond.march import TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.paths import ParameterPath
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.
@@ -521,64 +520,29 @@ def shaker(frequency):
     return 0.5e-3 * (2 * np.pi * frequency) ** 2 / 9.80665
 
 
-def test_a_path_of_ones_own_and_the_frequency_lead_to_the_same_orbits():
+def test_along_the_frequency_an_orbit_is_that_of_a_shaker_in_hertz():
+    """ϖ is the 500 Hz of the contact over the frequency of the shaker, at a stroke of 0.5 mm."""
     ball = SpringDamper(500.0 / 20.0, restitution=0.85)
-    start = orbit(ball, amplitude=shaker(20.0))
-    sweep = follow(start, along="frequency", to=1.2)
-    hertz = ParameterPath(
-        "hertz", low=15.0, high=30.0, amplitude=shaker, frequency_ratio=lambda f: 500.0 / f
+    doubling = follow(orbit(ball, amplitude=shaker(20.0)), along="frequency", to=1.2).first(
+        "period doubling"
     )
-    along = follow(start, along=hertz, to=25.0)
-    doubling = along.first("period doubling")
-    assert doubling.parameters["hertz"] == pytest.approx(22.701, abs=5e-4)
-    expected = doubling.parameters["hertz"] / np.sqrt(9.80665 / 0.5e-3) * 2 * np.pi
-    assert sweep.first("period doubling").z[-1] == pytest.approx(expected, abs=LOCATED)
-    # It is the doubling of this contact along Λ as well, and is followed along the same path.
-    stiff = SpringDamper(doubling.ball.frequency_ratio, restitution=0.85)
-    same = limits(stiff).period_doubling
-    assert same.amplitude == pytest.approx(doubling.amplitude, abs=LOCATED)
-    twice = follow(doubling, to=24.0)
-    assert (twice.along, twice.impacts, twice.values[-1]) == ("hertz", 2, 24.0)
-
-
-@pytest.mark.parametrize(
-    ("path", "text"),
-    [
-        (lambda: ParameterPath("x", low=2, high=1, amplitude=np.sin), "low must be below high"),
-        (lambda: ParameterPath("x", low=1, high=2), "needs a function for each parameter"),
-        (lambda: ParameterPath("x", low=-1, high=2, amplitude=np.abs), "must be analytic"),
-        (lambda: ParameterPath("x", low=1, high=2, amplitude=np.abs), "must be analytic"),
-        (lambda: ParameterPath("x", low=0, high=3, amplitude=np.sin), "must rise or fall throu"),
-        (lambda: ParameterPath("x", low=1, high=3, amplitude=lambda x: [x]), "arrays, also compl"),
-    ],
-)
-def test_a_path_that_is_none_is_refused(path, text):
-    with pytest.raises(ValueError, match=text):
-        path()
-
-
-@pytest.mark.parametrize("low", [1.0, 1e-3])
-def test_a_steep_path_is_analytic(low):
-    path = ParameterPath(
-        "hertz", low=low, high=40.0, amplitude=shaker, frequency_ratio=lambda f: 1e7 / f**3
-    )
-    ball = SpringDamper(1e7 / 20.0**3, restitution=0.85)
-    assert path.place(ball, shaker(20.0)) == pytest.approx(20, abs=1e-12)
+    hertz = doubling.parameters["frequency"] * np.sqrt(9.80665 / 0.5e-3) / (2 * np.pi)
+    assert hertz == pytest.approx(22.701, abs=5e-4)
+    same = limits(SpringDamper(500.0 / hertz, restitution=0.85)).period_doubling
+    assert same.amplitude == pytest.approx(shaker(hertz), abs=LOCATED)
+    twice = follow(doubling, to=1.2 * doubling.parameters["frequency"])
+    assert (twice.along, twice.impacts) == ("frequency", 2)
 
 
 def test_wrong_goals_and_parameters_are_named_in_one_line():
     start = orbit(Rigid(0.5), amplitude=1.3)
     doubling = first_doubling(Rigid(0.5), 1.4)
-    path = ParameterPath("x", low=1.0, high=2.0, amplitude=lambda x: x, restitution=lambda x: x / 4)
-    wrong = ParameterPath("x", low=1.0, high=2.0, ratio=lambda x: x)
     for call, text in (
         (lambda: follow(start, along="mass", to=2.0), "along = 'mass': must be one of amplitude"),
         (lambda: follow(start, to=-1.0), r"to = -1: amplitude must be in \[1e-12, 1e\+08\]"),
         (lambda: follow(start, along="restitution", to=1.1), r"restitution must be in \[0, 1\]"),
         (lambda: follow(start, along="frequency", to=0.0), r"frequency must be in \[1e-06, "),
         (lambda: follow(start, to=(1.4, 2.0)), "amplitude = 1.3 of the orbit must be between"),
-        (lambda: follow(start, along=path, to=2.0), "the orbit is not on the path x"),
-        (lambda: follow(start, along=wrong), "the path x has 'ratio': must be one of amplitude, r"),
         (lambda: limits(0.7), r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"),
         (
             lambda: follow(Rigid(0.5), to=2.0),

@@ -12,7 +12,6 @@ import pytest
 
 import bouncing_ball_beyond
 from bouncing_ball_beyond import named_laws
-from bouncing_ball_beyond.cli import commands, main
 
 BEYOND = Path(__file__).resolve().parents[1]
 PAGES = sorted([*BEYOND.glob("*.md"), *(BEYOND / "docs").glob("*.md")])
@@ -54,22 +53,6 @@ def test_the_installation_of_the_readme_has_what_all_modules_import():
     modules = (BEYOND / "src" / "bouncing_ball_beyond").glob("*.py")
     names = {name for module in modules for name in imported(module)}
     assert names - sys.stdlib_module_names - {"bouncing_ball_beyond"} <= installed
-
-
-def test_the_table_of_the_readme_has_all_commands():
-    readme = (BEYOND / "README.md").read_text(encoding="utf-8")
-    table = re.findall(r"^\| .* \| `([\w-]+)[^|]*` \|$", readme, re.MULTILINE)
-    assert set(table) == commands.commands.keys()
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
-def test_command_lines_run(page, capsys, monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    text = page.read_text(encoding="utf-8")
-    for line in re.findall(r"`bouncing-ball (\S[^`]*)`", text):
-        with pytest.raises(SystemExit) as ended:
-            main(line.split())
-        assert (ended.value.code, capsys.readouterr().err) == (0, ""), line
 
 
 def test_the_page_of_all_functions_has_every_public_name():

@@ -79,7 +79,7 @@ def test_basins_are_those_of_the_integration(monkeypatch):
 
 def test_balls_with_kinks_or_in_many_parameters_have_no_map():
     tau = np.zeros(100)
-    kinked = bb.adams_impact_linear(stiffness=1e4, damping=10.0, depth=0.01)
+    kinked = bb.adams_impact(stiffness=1e4, damping=10.0, depth=0.01)
     several = bb.tsuji(stiffness=np.full(100, 1e4), damping=np.full(100, 0.1))
     one = BALLS["Tsuji"][0]
     rows = [Balls(ball, tau + 1.2, tau, tau, tau + 1.0) for ball in (kinked, several, one)]

@@ -8,7 +8,6 @@ import xarray as xr
 
 from bouncing_ball_beyond import (
     Corrected,
-    ParameterPath,
     Rigid,
     SpringDamper,
     Table,
@@ -25,7 +24,6 @@ from bouncing_ball_beyond import (
 from bouncing_ball_beyond.equations import KINDS
 from bouncing_ball_beyond.periodic import orbits
 from bouncing_ball_beyond.pictures import MARKS
-from bouncing_ball_beyond.special_orbits import DEGENERATE
 
 BALLS = [
     Rigid(0.5),
@@ -99,27 +97,9 @@ def test_a_curve_comes_back(rigid, tmp_path):
     again = read_orbits(file)
     assert repr(again) == repr(curve)
     assert np.array_equal(again.z, curve.z)
-    assert again.special[0].kind == "1:2 resonance"
 
 
-def test_a_path_and_a_function_of_a_user_are_given_again(tmp_path):
-    path = ParameterPath(
-        "hertz",
-        low=15.0,
-        high=30.0,
-        amplitude=lambda f: 2.0e-3 * f**2,
-        frequency_ratio=lambda f: 500.0 / f,
-    )
-    ball = SpringDamper(500.0 / 20.0, restitution=0.85)
-    branch = follow(orbit(ball, amplitude=0.8), along=path, to=24.0)
-    data = to_dataset(branch)
-    assert data.hertz.dims == ("point",)
-    with pytest.raises(ValueError, match="on a path 'hertz' of their user: give it as along="):
-        read_orbits(data)
-    again = read_orbits(data, along=path)
-    assert np.array_equal(again.z, branch.z)
-    assert again.orbits[-1].defect < 1e-12
-
+def test_a_function_of_a_user_is_given_again():
     def slower(u):
         return 0.5 + 0.1 / (1 + u)
 
@@ -284,8 +264,7 @@ def test_a_list_of_branches_has_a_dataset_for_each(rigid):
 
 
 def test_all_kinds_have_marks():
-    degenerate = {kind for pair in DEGENERATE.values() for kind in pair}
-    assert set(MARKS) == set(KINDS) | degenerate
+    assert set(MARKS) == set(KINDS)
 
 
 def test_a_stable_cascade_has_no_unstable_lines():

@@ -10,26 +10,20 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.equations import (
     KINDS,
-    MULTIPLIERS,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
 )
-from bouncing_ball_beyond.forms import RESONANT
 from bouncing_ball_beyond.march import (
     AT_GOAL,
     CLOSED,
-    FIRST_STEP,
-    Points,
     Start,
     ends_at,
     march,
     newton,
-    tangents,
 )
 from bouncing_ball_beyond.search import single
 from bouncing_ball_beyond.special_orbits import (
-    GENERALIZED,
     Crossings,
     crossings_of,
     halved_at,
@@ -154,9 +148,9 @@ class FollowedBranch:
 
 
 class SpecialCurve(FollowedBranch):
-    """Special orbits of one kind along two parameters, with those of codimension two."""
+    """Special orbits of one kind along two parameters."""
 
-    _where = "this curve; its orbits of codimension two are"
+    _where = "this curve; other special orbits on it are"
 
     @property
     def kind(self) -> str:
@@ -182,14 +176,12 @@ def both_ways(
     direction: NDArray,
     window: NDArray,
     points: int,
-    until: str | None = None,
-    step: float = FIRST_STEP,
 ) -> Any:
     """The curve through a point, shape (1, N), along a direction and against it."""
     both = np.concatenate([-direction, direction])
     nothing = np.full(2, np.nan), np.full(2, "")
-    start = Start(equations, np.tile(z, (2, 1)), both, *nothing, step)
-    return joined(*followed(start, np.array([window, window]), [until, until], points, ""))
+    start = Start(equations, np.tile(z, (2, 1)), both, *nothing)
+    return joined(*followed(start, np.array([window, window]), [None, None], points, ""))
 
 
 class _Passed(NamedTuple):
@@ -221,13 +213,13 @@ def followed(
     branches = []
     for i, (path, end) in enumerate(steps):
         equations = single(start.equations, i)
-        passed = _resonant(equations, path)
+        passed: list[_Passed] = []
         for j in np.flatnonzero(crossings.row == i):
             kind = str(crossings.kind[j])
             number = crossings.number[j]
             here = z[j] if found[j] else None
             if kind == "period halving":
-                here = _merged(equations, crossings.ends[:, j])
+                here = None if equations.kind else halved_at(equations, crossings.ends[:, j])
             if here is not None and not (number == 0 and kind == own):
                 place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
                 passed.append(_Passed(number, place, equations.orbit(here, kind)))
@@ -252,36 +244,6 @@ def followed(
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))
     return branches
-
-
-def _merged(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period; on curves of saddle-nodes this is a
-    generalized doubling of half the period."""
-    if not equations.kind:
-        return halved_at(equations, ends)
-    half, near = equations.halved(ends)
-    half = replace(half, kind="period doubling")
-    start = newton(half, near.mean(axis=0, keepdims=True))
-    if equations.kind != "saddle-node" or not start.found[0]:
-        return None
-    reach = float(np.linalg.norm((ends[1] - ends[0]) / equations.scales(ends[:1])[0]))
-    window = start.z[0, half.size :] + reach * np.array([[-1.0], [1.0]])
-    given = half, start.z, tangents(half, start.z), window, 20
-    found = both_ways(*given, until=GENERALIZED, step=reach / 2).special
-    generalized = [each.z for each in found if each.kind == GENERALIZED]
-    return half.doubled(generalized[0][np.newaxis])[1][0] if generalized else None
-
-
-def _resonant(equations: OrbitEquations, path: Points) -> list[_Passed]:
-    """The resonance at the end of a curve, if it ends with one."""
-    if equations.kind not in MULTIPLIERS:
-        return []
-    column = equations.kinds.index(equations.kind)
-    resonant = np.abs(path.tests[:, column]) < RESONANT
-    if not resonant[-1] or resonant.all():
-        return []
-    orbit = equations.orbit(path.z[-1], equations.watched[column])
-    return [_Passed(len(path.z) - 1, 0.0, orbit)]
 
 
 def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:

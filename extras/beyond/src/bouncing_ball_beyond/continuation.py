@@ -23,9 +23,7 @@ AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
 multiples of nπ, their saddle-node with r = 0."""
 
 
-def follow(
-    orbit: Any, *, along: str | Path | None = None, to: Any = None, points: int = 500
-) -> Any:
+def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
     """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
 
     It goes through an orbit, or begins at a special one: stable from a saddle-node, with twice the
@@ -36,9 +34,9 @@ def follow(
     ----------
     orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
         A sequence has a list of branches, and the reason in place of one that there is not.
-    along : str or Path, optional
-        "amplitude", a parameter of the ball or the table, "frequency" (at a fixed stroke,
-        Ω/√(g/a) = √Λ), or a `ParameterPath`; by default what changed on the branch of the orbit.
+    along : str, optional
+        "amplitude", a parameter of the ball or the table, or "frequency" (at a fixed stroke,
+        Ω/√(g/a) = √Λ); by default what changed on the branch of the orbit.
     to : float, array_like or tuple (low, high), optional
         Where a branch ends, one value or one for each orbit; a tuple has both ways. Behind a
         saddle-node the parameter moves back, at most as far beyond its first value. By default it
@@ -106,7 +104,7 @@ def _listed(given: Any, name: str, wanted: str) -> list:
     return found
 
 
-def _follow_all(orbits: list, along: str | Path | None, to: Any, points: int, until: list) -> list:
+def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: list) -> list:
     """Branches of orbits, or reasons, in order; those with the same equations side by side."""
     several = 2 if isinstance(to, tuple) else len(orbits)
     if to is not None and np.shape(to) not in ((), (several,)):

@@ -1,4 +1,4 @@
-"""Curves of special orbits in two parameters, with their points of codimension two.
+"""Curves of special orbits in two parameters.
 
 They solve the equations of an orbit and one more, the test of their kind: see docs/orbits.md.
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
@@ -22,21 +22,16 @@ from bouncing_ball_beyond.equations import (
 )
 from bouncing_ball_beyond.forms import one_impact_less
 from bouncing_ball_beyond.march import newton, unit
-from bouncing_ball_beyond.paths import Path, path_of, usual_range
-from bouncing_ball_beyond.special_orbits import GENERALIZED
-from bouncing_ball_beyond.starts import flip
+from bouncing_ball_beyond.paths import path_of, usual_range
 
 OTHER = 1e-3
 """A start that is farther from the corrected special orbit is no special orbit of its kind."""
-
-BESIDE = 0.01
-"""Distance of the first saddle-node from a generalized period doubling, as that of a step."""
 
 
 def special_curve(
     special: PeriodicOrbit,
     *,
-    along: tuple[str | Path, str | Path] = ("amplitude", "restitution"),
+    along: tuple[str, str] = ("amplitude", "restitution"),
     ranges: Mapping[str, tuple[float, float]] | None = None,
     points: int = 400,
 ) -> SpecialCurve:
@@ -48,9 +43,9 @@ def special_curve(
     ----------
     special : PeriodicOrbit
         A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
-        followed as the doubling of half the period, the grazing of an impact as that of a flight
-        without it, and a generalized doubling as the saddle-nodes of doubled orbits.
-    along : tuple of two names or paths
+        followed as the doubling of half the period, and the grazing of an impact as that of a
+        flight without it.
+    along : tuple of two names
         As for `follow`.
     ranges : mapping of names to (low, high), optional
         Where the curve ends; by default at a tenth and at ten times the value, or at 10 if that
@@ -63,12 +58,12 @@ def special_curve(
     >>> from bouncing_ball_beyond import Rigid, follow, orbit
     >>> doubling = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8).first("period doubling")
     >>> curve = special_curve(doubling, ranges={"amplitude": (0.5, 3.0), "restitution": (0.1, 1.0)})
-    >>> [each.kind for each in curve.special], curve.end
-    (['1:2 resonance'], 'restitution = 1 is reached')
+    >>> curve.end
+    'restitution = 1 is reached'
     """
-    equations, z, normal = _start(special, along)
+    equations, z = _start(special, along)
     window = _limits(equations, z, special, ranges)
-    first = newton(equations, z[np.newaxis], normal)
+    first = newton(equations, z[np.newaxis])
     if not first.found[0]:
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
@@ -79,16 +74,16 @@ def special_curve(
 SUCH = "such as branch.first('period doubling')"
 
 
-def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray | None]:
-    """The equations of special orbits, one of them, and a normal, if not the last parameter's."""
+def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
+    """The equations of special orbits, and one of them."""
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
     if not isinstance(along, tuple | list) or len(along) != 2 or along[0] == along[1]:
         raise ValueError(
-            f"along = {brief(along)}: must be two different parameters, by names or paths, such as"
+            f"along = {brief(along)}: must be two different parameters, by their names, such as"
             " ('amplitude', 'restitution')"
         )
-    allowed = {*KINDS, GENERALIZED} - {"lost release", "vanishing flight", *OF_RESTS}
+    allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"the orbit is {special.kind or 'an ordinary one'}: a curve goes through a special one"
@@ -98,17 +93,11 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray, NDArray |
     equations, z = special.on(*paths)
     if special.kind == "grazing of an impact":
         others, row = one_impact_less(equations, z)
-        return replace(others, kind="grazing of a flight"), row, None
+        return replace(others, kind="grazing of a flight"), row
     if special.kind == "period halving":
         half, rows = equations.halved(z[np.newaxis])
-        return replace(half, kind="period doubling"), rows[0], None
-    if special.kind == GENERALIZED:
-        # There the curve of the saddle-nodes of doubled orbits begins.
-        twice, rows = equations.doubled(z[np.newaxis])
-        units = twice.scales(rows)
-        ahead = unit(flip(equations, z[np.newaxis]) / units)
-        return replace(twice, kind="saddle-node"), (rows + BESIDE * ahead * units)[0], ahead / units
-    return replace(equations, kind=special.kind), z, None
+        return replace(half, kind="period doubling"), rows[0]
+    return replace(equations, kind=special.kind), z
 
 
 def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, ranges: Any) -> NDArray:

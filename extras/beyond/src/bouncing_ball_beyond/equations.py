@@ -259,7 +259,7 @@ class OrbitEquations:
     def excess(self, z: NDArray, linear: Linear) -> NDArray:
         """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
         if self.kind not in MULTIPLIERS:
-            return TESTS[self.kind](self, z, linear)
+            return KINDS[self.kind].test(self, z, linear)
         trace, determinant = linear.trace_and_determinant
         return 1 - MULTIPLIERS[self.kind] * trace + determinant
 
@@ -298,16 +298,14 @@ class OrbitEquations:
     )
     """The kinds of special orbits that a march watches: they cost little, or end a curve."""
 
-    @cached_property
-    def watched(self) -> tuple[str, ...]:
-        """The names of the tests; on a curve of a kind that of a resonance is in its place."""
-        return tuple(
-            RESONANCES.get(name, name) if name == self.kind else name for name in self.kinds
-        )
-
     def tests(self, z: NDArray, linear: Linear) -> NDArray:
-        """What is zero at the special orbits that a march watches, shape (rows, tests)."""
-        return np.stack([TESTS[name](self, z, linear) for name in self.watched], axis=1)
+        """What is zero at the special orbits that a march watches, shape (rows, tests); 1 for those
+        of the kind of a curve."""
+        columns = [
+            np.ones(len(z)) if name == self.kind else KINDS[name].test(self, z, linear)
+            for name in self.kinds
+        ]
+        return np.stack(columns, axis=1)
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
@@ -841,19 +839,8 @@ OF_RESTS = ("end of a rest", "lost lift-off")
 
 
 SINGULAR = slice(2, 5)
-"""Those tests of `OrbitEquations.watched` at which multipliers have poles or jump: beyond them
+"""Those tests of `OrbitEquations.kinds` at which multipliers have poles or jump: beyond them
 there are no orbits."""
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
 """The multiplier that a kind of special orbit has."""
-
-RESONANCES = {"saddle-node": "1:1 resonance", "period doubling": "1:2 resonance"}
-"""Where on curves of a kind both multipliers are the same: their product is 1."""
-
-TESTS: dict[str, Callable] = {
-    **{name: kind.test for name, kind in KINDS.items()},
-    **dict.fromkeys(
-        RESONANCES.values(), lambda equations, z, linear: linear.trace_and_determinant[1] - 1
-    ),
-}
-"""What is zero at special orbits, also at resonances: functions of equations, orbits and legs."""

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.chains import dense
 from bouncing_ball_beyond.equations import (
     MULTIPLIERS,
-    Linear,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
@@ -26,9 +25,6 @@ NODES = np.arange(-4.0, 5.0)
 FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
 """Weights of central differences over the nodes, exact for polynomials of the eighth degree."""
-
-RESONANT = 1e-6
-"""A special orbit is in resonance if the product of its multipliers differs from 1 by less."""
 
 SHARE = 0.1
 """Step of the differences: the largest change of an unknown over the least speed, or over 1."""
@@ -93,20 +89,6 @@ def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
     return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
 
 
-@np.errstate(all="ignore")
-def degeneracy(equations: OrbitEquations, z: NDArray, linear: Linear | None) -> NDArray:
-    """b (det - 1)² at period doublings, shape (rows,), zero where b is; NaN at a resonance."""
-    linear = linear or equations.linear(z)
-    apart = linear.trace_and_determinant[1] - 1
-    values = np.full(len(z), np.nan)
-    for i in np.flatnonzero(np.abs(apart) > RESONANT):
-        v, w = _vectors(linear.derivatives[i], -1)
-        single = equations.rows([i])
-        bent = curvature(single, z[i], v, -1, _longest_step(single, z[i], v))
-        values[i] = coefficient(bent, v, w, -1) * apart[i] ** 2
-    return values
-
-
 @dataclass(frozen=True)
 class NormalForm:
     """The coefficient a or b of `normal_form` with its uncertainty, the rate of the parameter, the
@@ -150,8 +132,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     """
     if orbit.kind not in MULTIPLIERS:
         raise ValueError(
-            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling"
-            " that is not generalized,"
+            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
             ' such as branch.first("period doubling")'
         )
     equations = orbit.equations

@@ -24,6 +24,10 @@ TOLERANCE = 1e-11
 SPECIAL = 1e-9
 """The same for special orbits, whose gradients have errors of 1e-7 at most."""
 
+NOISE = 1e-3
+"""The same for a step from an orbit whose equations hold but for rounding: a longer one is made of
+rounding errors over a singular matrix, as at a saddle-node, and is not taken."""
+
 FAST = 0.1
 """A special orbit at a point needs no new gradient if a step is so much shorter than the last."""
 
@@ -94,8 +98,7 @@ def newton(
         _, amplitude, _ = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
         exact = defect < ROUNDING * (1 + size)
-        # Next to a singular matrix a step of rounding errors alone may lead far away.
-        step = np.where((exact & ~(moved < SPECIAL))[:, np.newaxis], 0.0, step)
+        step = np.where((exact & ~(moved < NOISE))[:, np.newaxis], 0.0, step)
         z = z + step
         # Steps become small, or they are made of nothing but rounding errors of the equations.
         found = (moved < TOLERANCE) | exact
@@ -266,7 +269,7 @@ def march(
         good &= (turned < TURN) | (length < 1e-6)
         fades = np.zeros(rows.size, bool)
         if equations.ball.lasts and equations.kind != IMPACT:
-            speed = equations.watched.index(IMPACT)
+            speed = equations.kinds.index(IMPACT)
             before, after = (each.tests[:, speed] for each in (here, there))
             fades = good & (0 < after) & (after < FADED) & (after > before / 2) & (after < before)
         easy = (cosine > 0.99) & (turned < TURN / 2)
@@ -284,7 +287,7 @@ def march(
                 paths[rows[j]].append(inner.take([j]))
             paths[rows[j]].append(here.take([j]))
             kind = until[rows[j]]
-            passed = np.array(equations.watched)[crossed[j]]
+            passed = np.array(equations.kinds)[crossed[j]]
             ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
             if not ends[rows[j]] and fades[j]:
                 ends[rows[j]] = f"the speed of an impact has fallen below {FADED:g}"

@@ -7,7 +7,6 @@ mass. A cubic step s = x²(3 - 2x) with x = p/d grows from 0 at the surface to 1
 """
 
 from collections.abc import Callable
-from inspect import signature
 from typing import Any
 
 import numpy as np
@@ -29,13 +28,11 @@ RANGES: dict[str, Any] = {
     "depth": {"low": 0, "high": np.inf, "low_allowed": False},
     "damping_ratio": {"low": 0, "high": np.inf, "low_allowed": True},
     "damping": {"low": 0, "high": np.inf, "low_allowed": True},
-    "nominal_restitution": {"low": 0, "high": 1, "low_allowed": False},
 }
 """The least and the largest value of a parameter, and whether the least one is allowed."""
 
 UNITS_OF_RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
-UNITS_OF_NOMINAL = {"stiffness": HERTZ, "nominal_restitution": NUMBER}
-"""The units of ϖ and ζ, and of K and e."""
+"""The units of ϖ and ζ."""
 
 STEPPED = 0.1
 """The depth d of a law that is given by an impact, over the scale of the penetration."""
@@ -179,41 +176,6 @@ def _lag_of_ratios(frequency_ratio: Values, damping_ratio: Values) -> Values:
     return 2 * damping_ratio / frequency_ratio
 
 
-def elasto_backlash(
-    frequency_ratio: Values = None,
-    damping_ratio: Values = None,
-    *,
-    restitution: Values = None,
-    duration: Values = None,
-    speed: Values = None,
-) -> ForceLaw:
-    """f = ϖ²p + 2ζϖp′, the damping force at most ϖ²p: ElastoBacklash2 of the Modelica library.
-
-    During compression the damper at most doubles the force, which thus grows from zero. The force
-    has a kink where p = κp′, κ = 2ζ/ϖ, and the contact ends where it vanishes, p = -κp′.
-    """
-    return _given(
-        {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
-        {"restitution": restitution, "duration": duration, "speed": speed},
-        _of_ratios,
-        force=_limited_damper,
-        release="force",
-        lag=_lag_of_ratios,
-        kinks=(_equal_forces,),
-        units=UNITS_OF_RATIOS,
-    )
-
-
-def _equal_forces(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
-    return p - _lag_of_ratios(frequency_ratio, damping_ratio) * v
-
-
-def _limited_damper(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
-    damped = _lag_of_ratios(frequency_ratio, damping_ratio) * v
-    limited = np.where(np.real(damped) < np.real(p), damped, p)
-    return frequency_ratio * frequency_ratio * (p + limited)
-
-
 def hunt_crossley(
     stiffness: Values = None,
     damping: Values = None,
@@ -240,31 +202,6 @@ def hunt_crossley(
 
 def _hunt_crossley(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     return stiffness * p * np.sqrt(p) * (1 + damping * v)
-
-
-def hunt_crossley_linear(
-    stiffness: Values = None,
-    damping: Values = None,
-    *,
-    restitution: Values = None,
-    duration: Values = None,
-    speed: Values = None,
-) -> ForceLaw:
-    """f = K p (1 + C p′): a linear spring with Hunt and Crossley's damping, as in Drake.
-
-    The parameters are those of :func:`hunt_crossley`, and r is the same function of C v.
-    """
-    return _given(
-        {"stiffness": stiffness, "damping": damping},
-        {"restitution": restitution, "duration": duration, "speed": speed},
-        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g / v},
-        force=_linear_hunt_crossley,
-        units={"stiffness": SPRING, "damping": (0, -1, 1)},
-    )
-
-
-def _linear_hunt_crossley(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
-    return stiffness * p * (1 + damping * v)
 
 
 def tsuji(
@@ -341,78 +278,6 @@ def _lag_of_damping(stiffness: Values, damping: Values) -> Values:
     return damping
 
 
-def lankarani_nikravesh(
-    stiffness: Values = None,
-    nominal_restitution: Values = None,
-    *,
-    restitution: Values = None,
-    duration: Values = None,
-    speed: Values = None,
-) -> ForceLaw:
-    """f = K p^{3/2} (1 + c p′/v₀), c = 3(1 - e²)/4, with the speed v₀ at the start of the contact.
-
-    K > 0 and e in (0, 1]. The real r, which is not e, is the same at every speed. As v₀ tends to
-    zero the damping grows without limit. H. M. Lankarani and P. E. Nikravesh, Journal of Mechanical
-    Design 112 (1990) 369-376, as quoted by public code for multibody contacts.
-    """
-    return _given(
-        {"stiffness": stiffness, "nominal_restitution": nominal_restitution},
-        {"restitution": restitution, "duration": duration, "speed": speed},
-        lambda c, P, v: {
-            "stiffness": v**2 / P**2.5,
-            "nominal_restitution": np.sqrt(np.maximum(1 - 4 * c / 3, 0)) + 0 * v,
-        },
-        force=_lankarani_nikravesh,
-        root=2,
-        needs=("start_speed",),
-        units=UNITS_OF_NOMINAL,
-    )
-
-
-def _lankarani_nikravesh(
-    p: Values, v: Values, stiffness: Values, nominal_restitution: Values, start_speed: Values
-) -> Values:
-    factor = 0.75 * (1 - nominal_restitution * nominal_restitution)
-    return _hunt_crossley(p, v, stiffness, factor / start_speed)
-
-
-def flores(
-    stiffness: Values = None,
-    nominal_restitution: Values = None,
-    *,
-    restitution: Values = None,
-    duration: Values = None,
-    speed: Values = None,
-) -> ForceLaw:
-    """f = K p^{3/2} (1 + c p′/v₀), c = 8(1 - e)/(5e): as :func:`lankarani_nikravesh`, with another
-    c.
-
-    Examples
-    --------
-    >>> round(float(flores(2000.0, 0.5).signature(3.0).restitution), 3)
-    0.47
-    """
-    return _given(
-        {"stiffness": stiffness, "nominal_restitution": nominal_restitution},
-        {"restitution": restitution, "duration": duration, "speed": speed},
-        lambda c, P, v: {
-            "stiffness": v**2 / P**2.5,
-            "nominal_restitution": 8 / (8 + 5 * c) + 0 * v,
-        },
-        force=_flores,
-        root=2,
-        needs=("start_speed",),
-        units=UNITS_OF_NOMINAL,
-    )
-
-
-def _flores(
-    p: Values, v: Values, stiffness: Values, nominal_restitution: Values, start_speed: Values
-) -> Values:
-    factor = 8 * (1 - nominal_restitution) / (5 * nominal_restitution)
-    return _hunt_crossley(p, v, stiffness, factor / start_speed)
-
-
 def adams_impact(
     stiffness: Values = None,
     damping: Values = None,
@@ -439,26 +304,6 @@ def adams_impact(
     )
 
 
-def adams_impact_linear(
-    stiffness: Values = None,
-    damping: Values = None,
-    depth: Values = None,
-    *,
-    restitution: Values = None,
-    duration: Values = None,
-    speed: Values = None,
-) -> ForceLaw:
-    """f = max(0, K p + C s p′): :func:`adams_impact` with the exponent 1, and d a tenth of v/√K."""
-    return _given(
-        {"stiffness": stiffness, "damping": damping, "depth": depth},
-        {"restitution": restitution, "duration": duration, "speed": speed},
-        lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
-        force=_linear_adams,
-        kinks=(_full_depth, _linear_pulls),
-        units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
-    )
-
-
 def _step(p: Values, depth: Values) -> Values:
     """s(p)."""
     x = p / depth
@@ -467,13 +312,6 @@ def _step(p: Values, depth: Values) -> Values:
 
 def _adams(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     force = stiffness * p * np.sqrt(p) + damping * _step(p, depth) * v
-    return np.where(np.real(force) > 0, force, 0.0)
-
-
-def _linear_adams(
-    p: Values, v: Values, stiffness: Values, damping: Values, depth: Values
-) -> Values:
-    force = stiffness * p + damping * _step(p, depth) * v
     return np.where(np.real(force) > 0, force, 0.0)
 
 
@@ -486,15 +324,6 @@ def _pulls(p: Values, v: Values, stiffness: Values, damping: Values, depth: Valu
     inside = np.sqrt(p) * (3 - 2 * p / depth) / (depth * depth)
     deep = np.maximum(p, depth)
     step = np.where(np.real(p) < np.real(depth), inside, 1 / (deep * np.sqrt(deep)))
-    return stiffness + damping * step * v
-
-
-def _linear_pulls(
-    p: Values, v: Values, stiffness: Values, damping: Values, depth: Values
-) -> Values:
-    """The force over p, where it is not limited."""
-    inside = p * (3 - 2 * p / depth) / (depth * depth)
-    step = np.where(np.real(p) < np.real(depth), inside, 1 / np.maximum(p, depth))
     return stiffness + damping * step * v
 
 
@@ -531,39 +360,3 @@ def _simscape(p: Values, v: Values, stiffness: Values, damping: Values, depth: V
 
 def _lag_of_force(stiffness: Values, damping: Values, depth: Values) -> Values:
     return damping / stiffness
-
-
-LAWS = {
-    law.__name__: law
-    for law in (
-        linear,
-        hunt_crossley,
-        hunt_crossley_linear,
-        tsuji,
-        lankarani_nikravesh,
-        flores,
-        kuwabara_kono,
-        elasto_backlash,
-        adams_impact,
-        adams_impact_linear,
-        simscape_contact,
-    )
-}
-"""The named laws by their names."""
-
-
-def named_law(name: str, **values: Any) -> ForceLaw:
-    """The law of a name in :data:`LAWS` with values of its arguments, or ValueError.
-
-    Examples
-    --------
-    >>> named_law("hunt-crossley", stiffness=1000.0, damping=0.08).root
-    2
-    """
-    law = LAWS.get(name.replace("-", "_"))
-    if law is None:
-        raise ValueError(f"law = {name!r}: must be one of {', '.join(LAWS)}")
-    known = signature(law).parameters
-    for each in values.keys() - known.keys():
-        raise ValueError(f"{each}: no argument of {law.__name__}, which has {', '.join(known)}")
-    return law(**values)

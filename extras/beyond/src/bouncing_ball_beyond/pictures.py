@@ -30,10 +30,6 @@ MARKS = {
     "lost release": "X",
     "end of a rest": "d",
     "lost lift-off": "x",
-    "cusp": "P",
-    "generalized period doubling": "*",
-    "1:1 resonance": "p",
-    "1:2 resonance": "h",
 }
 """Marks of special orbits."""
 

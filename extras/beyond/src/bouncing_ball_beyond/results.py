@@ -178,11 +178,11 @@ def decoded(values: dict[str, Any]) -> Any:
     return kind(**{name: tuple(x) if isinstance(x, list) else x for name, x in values.items()})
 
 
-def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = None) -> Found:
+def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
     """The orbit, branch, curve or list of orbits of which a dataset, or its netCDF file, was made.
 
-    A ball with a function of its user's, and a path of his, are not in the file and are given
-    again; ValueError if one is missing, or if the dataset has no orbits.
+    A ball with a function of its user's is not in the file and is given again; ValueError if it is
+    missing, or if the dataset has no orbits.
 
     Examples
     --------
@@ -205,7 +205,7 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
     missing = ball.parameters.keys() - data.variables
     if missing:
         raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
-    paths = [_path(each, ball, along, table) for each in json.loads(data.attrs["along"])]
+    paths = [path_of(each, ball, table) for each in json.loads(data.attrs["along"])]
     numbers = range(data.sizes["point"])
     orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in numbers]
     form = data.attrs["form"]
@@ -221,18 +221,6 @@ def read_orbits(source: Any, *, ball: Ball | None = None, along: Path | None = N
     z = np.array([each.z for each in rows])
     ends = data.attrs["start"], data.attrs["end"]
     return kind(replace(equations, kind=common), z, special, *ends)
-
-
-def _path(name: str, ball: Ball, given: Path | None, table: Table) -> Path:
-    """The path of a name, or the given one if that is its name."""
-    if given is not None and given.name == name:
-        return given
-    try:
-        return path_of(name, ball, table)
-    except ValueError:
-        raise ValueError(
-            f"the orbits are on a path {name!r} of their user: give it as along="
-        ) from None
 
 
 def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> PeriodicOrbit:

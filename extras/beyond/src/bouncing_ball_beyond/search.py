@@ -11,7 +11,6 @@ from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrb
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
-
 AT_FOLD = 1e-6
 """1 - tr/(1 + det) below which an orbit is that of the saddle-node, and of both its sides. It grows
 with the square root of Λ - Λ_SN, so that errors of 1e-13 of a contact make it 3e-7."""

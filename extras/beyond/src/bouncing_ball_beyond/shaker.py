@@ -3,12 +3,10 @@
 It is if the ball bounces as often as the restitution model says, on a stable orbit, and as high.
 """
 
-import re
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-import pint
 
 from bouncing_ball_beyond.balls import Ball, SpringDamper
 from bouncing_ball_beyond.error_law import (
@@ -23,54 +21,19 @@ from bouncing_ball_beyond.paths import Frequency
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
-UNITS: pint.UnitRegistry = pint.UnitRegistry()
+"""In m/s²."""
 
 
-def in_si(name: str, value: float | str | None, unit: str) -> float:
-    """A positive quantity in SI units, from a number or a text with a unit; ValueError if it is
-    none.
-
-    "Hz" stands for cycles, of which the angular frequency in rad/s is returned. An acceleration in
-    "g" is a multiple of standard gravity.
-
-    Examples
-    --------
-    >>> in_si("stiffness", "2 kN/mm", "N/m"), in_si("acceleration", "2 g", "m/s^2")
-    (2000000.0, 19.6133)
-    >>> round(in_si("frequency", "3000 rpm", "Hz") / (2 * np.pi), 9)
-    50.0
-    """
-    try:
-        number = _quantity(str(value), unit).m_as("rad/s" if unit == "Hz" else unit)
-        if not 0 < number < np.inf:
-            raise ValueError("not positive")
-    # Pint raises errors of many kinds for a text that is no quantity.
-    except Exception as error:
-        of_unit = "" if unit == "dimensionless" else f" in {unit}"
-        raise ValueError(f"{name} = {value!r}: must be a positive quantity{of_unit}") from error
-    return float(number)
+def _in_mm(value: float) -> str:
+    return "–" if np.isnan(value) else f"{1e3 * value:.4g}"
 
 
-def _quantity(text: str, unit: str) -> pint.Quantity:
-    if "," in text:
-        raise ValueError("a comma may be a decimal point or separate thousands")
-    # Data sheets write kg/m3, g/cm3 and m/s2.
-    text = re.sub(r"\b([a-zµ]?m|s)([23])\b", r"\1**\2", text)
-    quantity: pint.Quantity = UNITS.Quantity(text)
-    if quantity.units == UNITS.dimensionless:
-        quantity = quantity.m * UNITS.Unit(unit)
-    if quantity.units == UNITS.Unit("1/s"):
-        raise ValueError("1/s may be Hz or rad/s")
-    if quantity.units == UNITS.gram and unit == "m/s^2":
-        return quantity.m * UNITS.standard_gravity
-    if "hertz" in str(quantity.units):
-        return quantity * UNITS.Quantity(2 * np.pi, "rad")
-    return quantity
-
-
-def in_words(value: float, unit: str) -> str:
-    """A quantity in SI units with four digits and a prefix: 0.0005589, "m" is "558.9 µm"."""
-    return "–" if np.isnan(value) else f"{UNITS.Quantity(value, unit).to_compact():.4g~P}"
+def positive(name: str, value: Any, unit: str) -> float:
+    """A positive number; ValueError with the unit in which it must be given otherwise."""
+    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not (is_number and 0 < value < np.inf):
+        raise ValueError(f"{name} = {value!r}: must be a positive number{unit and ' in '}{unit}")
+    return float(value)
 
 
 class ByModel(NamedTuple):
@@ -81,11 +44,11 @@ class ByModel(NamedTuple):
     by_law: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ShakerAnswer:
     """Whether a restitution coefficient is good enough, and how far away each limit is.
 
-    ``str(answer)`` is a short table and the answer in sentences. What does not exist is NaN.
+    It is shown as a short table and the answer in sentences. What does not exist is NaN.
     """
 
     n: int
@@ -148,7 +111,7 @@ class ShakerAnswer:
             return "the heights of both models differ by more than the tolerance"
         return ""
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         rows = [
             ("", ("restitution", "contact", "error law"), "on this contact, at this stroke"),
             (
@@ -161,10 +124,10 @@ class ShakerAnswer:
                 [f"{value:.4g}" for value in self.period_doubling],
                 f"up to {self.highest_frequency:.4g} Hz",
             ),
-            ("greatest height", [in_words(value, "m") for value in self.max_height], ""),
+            ("greatest height/mm", [_in_mm(value) for value in self.max_height], ""),
         ]
         lines = [
-            f"{name:<16}{''.join(f'{value:>13}' for value in values)}   {limit}".rstrip()
+            f"{name:<18}{''.join(f'{value:>13}' for value in values)}   {limit}".rstrip()
             for name, values, limit in rows
         ]
         return "\n".join([*lines, "", *self._sentences()])
@@ -183,16 +146,15 @@ class ShakerAnswer:
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
-            f"The table moves by ±{in_words(self.stroke, 'm')} at {in_words(self.frequency, 'Hz')},"
+            f"The table moves by ±{1e3 * self.stroke:.4g} mm at {self.frequency:.4g} Hz,"
             f" with an acceleration of {self._acceleration()}."
-            f" A contact lasts {in_words(self.contact_duration, 's')},"
+            f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
         if self.bounces and np.isnan(self.error):
             sentences.append(
-                "On the contact its orbit is not found at such an acceleration; strokes without a"
-                " unit are in m."
+                "On the contact its orbit is not found at such an acceleration; strokes are in m."
             )
         elif self.bounces:
             sentences.append(f"This motion is {STABLE[doubled]}.")
@@ -206,7 +168,7 @@ class ShakerAnswer:
             )
             if self.longest_contact > 0:
                 sentences.append(
-                    f"Contacts of up to {in_words(self.longest_contact, 's')} are within this"
+                    f"Contacts of up to {1e6 * self.longest_contact:.4g} µs are within this"
                     " tolerance."
                 )
         if self.amplitude * self.table.lift < 1:
@@ -234,48 +196,46 @@ STABLE = ("stable", "stable in one of the two models only", "unstable, its perio
 
 def on_shaker(
     *,
-    frequency: float | str,
-    restitution: float | str,
-    stroke: float | str | None = None,
-    acceleration: float | str | None = None,
-    mass: float | str | None = None,
-    radius: float | str | None = None,
-    density: float | str | None = None,
-    contact_duration: float | str | None = None,
-    stiffness: float | str | None = None,
-    youngs_modulus: float | str | None = None,
+    frequency: float,
+    restitution: float,
+    stroke: float | None = None,
+    acceleration: float | None = None,
+    mass: float | None = None,
+    radius: float | None = None,
+    density: float | None = None,
+    contact_duration: float | None = None,
+    stiffness: float | None = None,
+    youngs_modulus: float | None = None,
     poissons_ratio: float = 0.3,
-    table_youngs_modulus: float | str | None = None,
+    table_youngs_modulus: float | None = None,
     table_poissons_ratio: float = 0.3,
-    gravity: float | str = STANDARD_GRAVITY,
+    gravity: float = STANDARD_GRAVITY,
     n: int = 1,
-    tolerance: float | str = 0.01,
+    tolerance: float = 0.01,
     table: Table = SINE,
 ) -> ShakerAnswer:
-    """Whether a restitution coefficient is good enough for a ball on a shaker.
-
-    Numbers are in SI units, and frequencies in Hz.
+    """Whether a restitution coefficient is good enough for a ball on a shaker, in SI units.
 
     Parameters
     ----------
     frequency
-        Frequency of the table, such as "50 Hz", "314 rad/s" or "3000 rpm".
+        Frequency of the table in Hz.
     restitution
         Restitution coefficient r of a free impact, between 0 and 1.
     stroke, acceleration
-        One of both: the amplitude of the table's motion, which is half of the distance between its
-        lowest and its highest position, or its greatest acceleration, such as "0.8 g".
+        One of both: the amplitude of the table's motion in m, half of the distance between its
+        lowest and its highest position, or its largest acceleration in m/s².
     mass, radius, density
-        The mass of the ball, or its radius and density. A contact duration needs none of them, and
-        the units of those given are checked nevertheless.
+        The mass of the ball in kg, or its radius in m and its density in kg/m³. A contact duration
+        needs none of them.
     contact_duration, stiffness, youngs_modulus
-        One of them. The first two are those of a contact with a spring and a damper. With Young's
-        modulus of the ball, the contact is that of Hertz with the damping of Tsuji, whose r is the
-        same at every speed, and the radius is needed.
+        One of them, in s, N/m or Pa. The first two are those of a contact with a spring and a
+        damper. With Young's modulus of the ball, the contact is that of Hertz with the damping of
+        Tsuji, whose r is the same at every speed, and the radius is needed.
     poissons_ratio, table_youngs_modulus, table_poissons_ratio
         For a contact of Hertz; without a modulus the table is rigid.
     gravity
-        Acceleration of gravity.
+        Acceleration of gravity in m/s².
     n
         The number of periods of the table in which the ball bounces once.
     tolerance
@@ -286,38 +246,27 @@ def on_shaker(
     Raises
     ------
     ValueError
-        With one line, if a quantity is missing, has a wrong unit or is out of range, or if the
-        contact is so compliant that its saddle-node or its period doubling is not found.
+        With one line, if a quantity is missing or out of range, or if the contact is so compliant
+        that its saddle-node or its period doubling is not found.
 
     Examples
     --------
-    >>> table = {"frequency": "50 Hz", "acceleration": "0.8 g"}
-    >>> answer = on_shaker(**table, mass="20 g", stiffness="1e7 N/m", restitution=0.85)
+    >>> given = {"frequency": 50.0, "acceleration": 0.8 * 9.80665, "restitution": 0.85}
+    >>> answer = on_shaker(**given, mass=0.02, stiffness=1e7)
     >>> answer.is_good_enough, round(answer.error, 4)
     (False, -0.0121)
     """
-    given = restitution
-    restitution = in_si("restitution", restitution, "dimensionless")
-    if not 0 < restitution < 1:
-        raise ValueError(f"restitution = {given!r}: must be between 0 and 1")
-    rate = in_si("frequency", frequency, "Hz")
-    fall = in_si("gravity", gravity, "m/s^2")
-    within = in_si("tolerance", tolerance, "dimensionless")
-    # Also those that this contact does not need.
-    bodies = {
-        "mass": (mass, "kg"),
-        "radius": (radius, "m"),
-        "density": (density, "kg/m^3"),
-        "table_youngs_modulus": (table_youngs_modulus, "Pa"),
-    }
-    for name, (value, unit) in bodies.items():
-        if value is not None:
-            in_si(name, value, unit)
+    restitution = positive("restitution", restitution, "")
+    if restitution >= 1:
+        raise ValueError(f"restitution = {restitution!r}: must be between 0 and 1")
+    rate = 2 * np.pi * positive("frequency", frequency, "Hz")
+    fall = positive("gravity", gravity, "m/s²")
+    tolerance = positive("tolerance", tolerance, "")
     check_table(table)
     if _one_of(stroke=stroke, acceleration=acceleration) == "stroke":
-        amplitude = in_si("stroke", stroke, "m") * rate**2 / fall / _half_stroke(table)
+        amplitude = positive("stroke", stroke, "m") * rate**2 / fall / _half_stroke(table)
     else:
-        amplitude = in_si("acceleration", acceleration, "m/s^2") / fall / table.acceleration
+        amplitude = positive("acceleration", acceleration, "m/s²") / fall / table.acceleration
     contact = _one_of(
         contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
     )
@@ -327,7 +276,7 @@ def on_shaker(
         if table_youngs_modulus is not None:
             compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
         # The force of Hertz is 4/3 E* √R p^(3/2); lengths are in units of g/Ω², times in 1/Ω.
-        force = 4 / 3 * np.sqrt(in_si("radius", radius, "m")) / compliance
+        force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
         force *= np.sqrt(fall) / rate**3 / _mass(mass, radius, density)
         # With any duration, because the damping depends on r alone.
         hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
@@ -338,16 +287,16 @@ def on_shaker(
     else:
         spring = SpringDamper(1.0, restitution=restitution)
         if contact == "stiffness":
-            square = in_si("stiffness", stiffness, "N/m") / _mass(mass, radius, density)
+            square = positive("stiffness", stiffness, "N/m") / _mass(mass, radius, density)
             ratio = np.sqrt(square) / rate
         else:
-            lasts = rate * in_si("contact_duration", contact_duration, "s")
+            lasts = rate * positive("contact_duration", contact_duration, "s")
             ratio = float(spring.free(1.0)) / lasts
 
         def contacts(times: Values) -> Any:
             return spring.at(frequency_ratio=ratio * times)
 
-    return _answer(contacts, amplitude, n, within, rate, fall, table)
+    return _answer(contacts, amplitude, n, tolerance, rate, fall, table)
 
 
 def _half_stroke(table: Table) -> float:
@@ -355,7 +304,7 @@ def _half_stroke(table: Table) -> float:
     return (highest - lowest) / 2
 
 
-def _one_of(**quantities: float | str | None) -> str:
+def _one_of(**quantities: float | None) -> str:
     given = [name for name, value in quantities.items() if value is not None]
     if len(given) != 1:
         raise ValueError(f"exactly one of {', '.join(quantities)} must be given")
@@ -364,17 +313,18 @@ def _one_of(**quantities: float | str | None) -> str:
 
 def _mass(mass: Any, radius: Any, density: Any) -> float:
     if mass is not None:
-        return in_si("mass", mass, "kg")
+        return positive("mass", mass, "kg")
     if radius is None or density is None:
         raise ValueError("the mass, or radius and density, must be given")
-    return 4 / 3 * np.pi * in_si("radius", radius, "m") ** 3 * in_si("density", density, "kg/m^3")
+    volume = 4 / 3 * np.pi * positive("radius", radius, "m") ** 3
+    return volume * positive("density", density, "kg/m³")
 
 
-def _compliance(modulus: float | str | None, ratio: float, body: str) -> float:
+def _compliance(modulus: float | None, ratio: float, body: str) -> float:
     """(1 - ν²)/E of a body in contact, with the beginning of the names of its quantities."""
     if not -1 < ratio <= 0.5:
         raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")
-    return (1 - ratio**2) / in_si(f"{body}youngs_modulus", modulus, "Pa")
+    return (1 - ratio**2) / positive(f"{body}youngs_modulus", modulus, "Pa")
 
 
 def _answer(

@@ -6,22 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import RESONANCES, SINGULAR, TESTS, OrbitEquations
-from bouncing_ball_beyond.forms import RESONANT, degeneracy
+from bouncing_ball_beyond.equations import KINDS, SINGULAR, OrbitEquations
 from bouncing_ball_beyond.march import Solution, ends_at, newton
-
-DEGENERATE = {
-    "saddle-node": ("cusp", "1:1 resonance"),
-    "period doubling": ("generalized period doubling", "1:2 resonance"),
-}
-"""On curves of a kind: where a or b of the normal form is zero, and where both multipliers are the
-same."""
-
-CUSP, GENERALIZED = (names[0] for names in DEGENERATE.values())
-
-
-ALL_TESTS = TESTS | {GENERALIZED: degeneracy}
-"""Those on curves as well; a cusp has none."""
 
 
 class Crossings(NamedTuple):
@@ -44,27 +30,12 @@ def crossings_of(
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
     others = sorted({"grazing of a flight", "grazing of a release"} - {equations.kind})
-    if equations.kind == "period doubling":
-        others.append(GENERALIZED)
-    columns = [*tests.T, *(ALL_TESTS[name](every, z, None) for name in others)]
-    names = [*equations.watched, *others]
-    if equations.kind == "saddle-node":
-        # At a cusp both parameters turn back.
-        rates = slopes[:, equations.size :]
-        signs = np.where(np.sum(rates[1:] * rates[:-1], axis=1) < 0, -1.0, 1.0)
-        columns.append(np.cumprod([1.0, *signs]) * np.linalg.norm(rates, axis=1))
-        names.append(CUSP)
-    values = np.array(columns)
-    if equations.kind in RESONANCES:
-        resonance = values[equations.kinds.index(equations.kind)]
-        resonance[np.abs(resonance) < RESONANT] = 0.0
+    names = [*equations.kinds, *others]
+    values = np.array([*tests.T, *(KINDS[name].test(every, z, None) for name in others)])
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
     # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
     crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
-    if CUSP in names:
-        # The parameters turn back as well where the halves of orbits swap.
-        crossed[-1] &= ~crossed[names.index("period halving")]
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
     kinds = np.array(names)[which]
@@ -79,17 +50,13 @@ def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
     return ends[0] + x * (slopes[0] + x * (chord - slopes[0] - bend + x * bend))
 
 
-def _tests_of(
-    kinds: NDArray, equations: OrbitEquations, solution: Solution, turns: NDArray
-) -> NDArray:
-    """The tests of orbits, each that of its kind; ``turns`` are directions of the parameters."""
-    rates = solution.tangent[:, equations.size :]
-    # At a cusp the parameters turn back.
-    values = np.sum(rates * turns, axis=1)
-    for name in np.unique(kinds[kinds != CUSP]):
+def _tests_of(kinds: NDArray, equations: OrbitEquations, solution: Solution) -> NDArray:
+    """The tests of orbits, each that of its kind."""
+    values = np.empty(len(kinds))
+    for name in np.unique(kinds):
         these = kinds == name
         linear = solution.linear.rows(these)
-        values[these] = ALL_TESTS[name](equations.rows(these), solution.z[these], linear)
+        values[these] = KINDS[name].test(equations.rows(these), solution.z[these], linear)
     return values
 
 
@@ -107,10 +74,6 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     chord = (ends[1] - ends[0]) / units
     normal = chord / units / np.sum(chord**2, axis=1, keepdims=True)
     slopes = crossings.slopes / np.sum(normal * crossings.slopes, axis=2, keepdims=True)
-    # At a cusp, the parameters change in this direction and back.
-    turns = np.diff(slopes[..., equations.size :], axis=0)[0]
-    cusps = crossings.kind == CUSP
-    values[:, cusps] = np.sum(slopes[:, cusps, equations.size :] * turns[cusps], axis=-1)
     weights = values.copy()
     each = np.arange(len(chord))
     place = np.array([0 * each, 0 * each + 1.0])
@@ -135,7 +98,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
             solution = solution._replace(linear=equations.linear(solution.z))
         found &= solution.found
         z = np.where(found[:, np.newaxis], solution.z, guess)
-        value = _tests_of(crossings.kind, equations, solution, turns)
+        value = _tests_of(crossings.kind, equations, solution)
         nearer = np.abs(value) < least
         nearest[nearer] = z[nearer]
         least[nearer] = np.abs(value)[nearer]

@@ -86,7 +86,7 @@ def leg(ball, amplitude, tau, u, harmonics=SINE):
     Also the greatest height up to it.
     """
     leaves, gap, speed, lifted = tau, 0.0, 0.0, -np.inf
-    if ball.lasts:
+    if ball.has_duration:
         leaves, gap, speed, lifted = contact(ball, amplitude, tau, u, harmonics)
     else:
         speed = ball.restitution * u

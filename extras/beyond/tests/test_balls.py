@@ -196,8 +196,8 @@ def test_all_digits_near_resonance_and_critical_damping(ratio, zeta):
     """Values and all first derivatives of contacts against 60 digits, from short to long."""
     with mpmath.workdps(60):
         step = mpmath.mpf(10) ** -18
-        for own_time in (1e-6, 0.8, 3.0, np.pi, 9.0):
-            given = [own_time / ratio, 0.7, -0.1 / ratio, 1.3, 1.8, 1.0, ratio, zeta]
+        for scaled_duration in (1e-6, 0.8, 3.0, np.pi, 9.0):
+            given = [scaled_duration / ratio, 0.7, -0.1 / ratio, 1.3, 1.8, 1.0, ratio, zeta]
             found = np.array(in_contact(*given))
             expected = sixty_digits(*given)
             derivatives = np.empty((len(given), 2))
@@ -343,7 +343,7 @@ def test_parameters_and_other_values():
     assert Corrected(ball).parameters == ball.parameters
     assert Rigid(0.5).at(restitution=0.6) == Rigid(0.6)
     assert isinstance(Rigid([0.5, 0.6]).restitution, np.ndarray)
-    assert [each.lasts for each in (ball, instant, Rigid(0.5))] == [True, False, False]
+    assert [each.has_duration for each in (ball, instant, Rigid(0.5))] == [True, False, False]
 
 
 def test_a_restitution_of_one_is_no_damping():

@@ -11,7 +11,7 @@ from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.branches import FollowedBranch
 from bouncing_ball_beyond.continuation import cascade, follow, limits
-from bouncing_ball_beyond.march import TURN
+from bouncing_ball_beyond.march import LARGEST_TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
 
@@ -398,7 +398,7 @@ def test_no_special_orbit_hides_before_the_end_of_a_branch():
     )
     # Rounding decides on tr/(1 + det) at the end itself, but nothing is divided by zero.
     turns = np.array([each.turn for each in branch.orbits])
-    assert np.abs(np.diff(np.arctan(turns[:-1]))).max() < TURN
+    assert np.abs(np.diff(np.arctan(turns[:-1]))).max() < LARGEST_TURN
 
 
 def test_no_special_orbit_hides_where_multipliers_are_large():

@@ -5,8 +5,8 @@ import pytest
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond import motions
+from bouncing_ball_beyond.bounces import Balls
 from bouncing_ball_beyond.impact_map import impact_map
-from bouncing_ball_beyond.simulation import Balls
 from bouncing_ball_beyond.tables import SINE, Table
 
 BALLS = {
@@ -36,10 +36,10 @@ def case(request):
 def test_contacts_are_those_of_the_integration(case):
     found, tau, u = case
     assert len(found.pieces) >= 3
-    own_time, duration, gap, speed = np.array(found.leaves(tau, u))
+    scaled_duration, duration, gap, speed = np.array(found.leaves(tau, u))
     expected = found.ball.leaves(tau, u, 1.2, found.table)
     # Rounding of integrations, which is some hundred times that of numbers.
-    assert np.allclose(own_time, expected[0], rtol=2e-13)
+    assert np.allclose(scaled_duration, expected[0], rtol=2e-13)
     assert np.allclose(duration, expected[1], rtol=2e-13)
     assert np.all(np.abs(gap - expected[2]) <= 1e-12 * duration * u)
     assert np.all(np.abs(speed - expected[3]) <= 1e-12 * u)
@@ -50,8 +50,8 @@ def test_slopes_are_those_of_the_integration(case):
     slopes, known = found.slopes(tau, u)
     assert np.array_equal(known, found.knows(u)) and np.isnan(slopes[..., ~known]).all()
     balls = Balls(found.ball, 1.2, 0 * tau, tau, u, found.table)
-    own_time = found.leaves(tau, u)[0]
-    given = tau[known], u[known], own_time[known]
+    scaled_duration = found.leaves(tau, u)[0]
+    given = tau[known], u[known], scaled_duration[known]
     expected = motions.slopes_of_contact(balls, *given)
     # Differentiation of a polynomial of degree n multiplies rounding by up to n².
     allowed = 15**2 * 1e-13 * np.maximum(np.abs(expected).max(axis=2, keepdims=True), 1.0)

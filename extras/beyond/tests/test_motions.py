@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import motions, simulation
-from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond import bounces, motions, simulation
+from bouncing_ball_beyond.one_ball import PERIOD
 
 
 def test_the_kinds_of_motions():
@@ -91,21 +91,23 @@ def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
     found = bb.motion_of(ball, amplitude=2.0, impacts=20_000)
     assert found.kind == "chaotic"
     _, balls = simulation.first_impacts(ball, 2.0, 0.0, -3.0, None)
-    record, _, _ = simulation.follow(balls, 20_000)
+    record, _, _ = bounces.bounce(balls, 20_000)
     tau, u = record[1000::4, 1, 0], record[1000::4, 2, 0]
     many = np.full(tau.size, 2.0)
     rates = []
     for impacts in (4, 12):
         ends = []
         for shift in (0.0, 1e-9):
-            row = simulation.Balls(ball, many, 0 * tau, tau + 0.8 * shift, u + 0.6 * shift)
-            ends.append(simulation.follow(row, impacts)[2])
-        angle = TURN * (ends[1].turns - ends[0].turns) + (ends[1].phase - ends[0].phase)
+            row = bounces.Balls(ball, many, 0 * tau, tau + 0.8 * shift, u + 0.6 * shift)
+            ends.append(bounces.bounce(row, impacts)[2])
+        angle = PERIOD * (ends[1].turns - ends[0].turns) + (ends[1].phase - ends[0].phase)
         distance = np.hypot(angle, ends[1].speed - ends[0].speed)
-        rates.append([np.log(distance).mean(), (TURN * ends[0].turns + ends[0].phase - tau).mean()])
+        rates.append(
+            [np.log(distance).mean(), (PERIOD * ends[0].turns + ends[0].phase - tau).mean()]
+        )
     # The direction of a deviation settles in the first impacts.
     growth, time = np.diff(rates, axis=0)[0]
-    assert abs(TURN * growth / time / found.lyapunov_exponent - 1) < 0.05
+    assert abs(PERIOD * growth / time / found.lyapunov_exponent - 1) < 0.05
 
 
 def test_the_error_of_an_exponent_covers_its_scatter():
@@ -150,7 +152,7 @@ def test_exponents_of_sections_with_a_known_scatter():
 )
 def test_tangent_maps_are_differences_of_simulated_impacts(ball):
     _, balls = simulation.first_impacts(ball, [1.2, 2.5], 1.0, -3.0, None)
-    record, _, _ = simulation.follow(balls, 4)
+    record, _, _ = bounces.bounce(balls, 4)
     maps = motions.tangent_maps(balls, record, motions.lift_offs(balls, record))
     step = 1e-6
     for j, (angle, speed) in enumerate(((step, 0.0), (0.0, step))):
@@ -158,9 +160,9 @@ def test_tangent_maps_are_differences_of_simulated_impacts(ball):
             ends = []
             for sign in (1, -1):
                 state = record[i, 1] + sign * angle, record[i, 2] + sign * speed
-                start = simulation.Balls(ball, balls.amplitude, np.zeros(2), *state)
-                after = simulation.follow(start, 1)[2]
-                ends.append(np.array([TURN * after.turns + after.phase, after.speed]))
+                start = bounces.Balls(ball, balls.amplitude, np.zeros(2), *state)
+                after = bounces.bounce(start, 1)[2]
+                ends.append(np.array([PERIOD * after.turns + after.phase, after.speed]))
             slope = (ends[0] - ends[1]) / (2 * step)
             assert np.abs(slope - maps[:, j, i]).max() < 1e-6 * (1 + np.abs(slope).max())
 
@@ -187,7 +189,7 @@ def test_a_locked_ball_repeats_from_lift_off_to_lift_off():
     (rests,) = (impacts.contact_duration.values > 0).nonzero()
     assert np.diff(rests)[1:].tolist() == [int(found.impacts)] * (rests.size - 2)
     time = (impacts.time + impacts.contact_duration).values[rests]
-    assert np.abs(np.diff(time)[1:] - TURN * int(found.periods)).max() < 1e-9
+    assert np.abs(np.diff(time)[1:] - PERIOD * int(found.periods)).max() < 1e-9
 
 
 def test_a_compliant_contact_that_lasts_longer_than_two_free_ones_is_locked():
@@ -220,7 +222,7 @@ def test_what_is_not_known_has_a_reason():
     assert slow.kind == "undecided"
     assert slow.reason.item() in (motions.MARGINAL, motions.NO_RECURRENCE)
     lost = bb.motion_of(bb.Rigid(0.5), amplitude=5.0)
-    assert (lost.kind, lost.reason) == ("locked", motions.ROUNDING)
+    assert (lost.kind, lost.reason) == ("locked", motions.LOST_TO_ROUNDING)
     assert lost.impacts == 0
 
 
@@ -351,14 +353,14 @@ def test_basins_keep_the_number_of_impacts_and_refuse_arrays():
 def test_a_summary_of_many_impacts_needs_no_history():
     """The greatest number of impacts that are kept at a time does not grow with those followed."""
     most = []
-    follow = motions.follow
+    bounce = motions.bounce
 
     def watched(balls, impacts):
         most.append(impacts * balls.phase.size)
-        return follow(balls, impacts)
+        return bounce(balls, impacts)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motions, "follow", watched)
+        patch.setattr(motions, "bounce", watched)
         found = bb.motion_of(bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000)
     assert found.followed >= 60_000
-    assert max(most) <= motions.ROWS
+    assert max(most) <= motions.IMPACTS_AT_ONCE

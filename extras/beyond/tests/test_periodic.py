@@ -12,6 +12,7 @@ from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.chains import dense, solve_bordered
 from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.equations import OrbitEquations
@@ -25,7 +26,6 @@ from bouncing_ball_beyond.periodic import (
     orbits,
 )
 from bouncing_ball_beyond.root_time import solve_panel
-from bouncing_ball_beyond.simulation import Balls, follow
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
 ROUNDED = 1e-12
@@ -128,7 +128,7 @@ def test_a_contact_may_resume_after_a_release_by_the_force():
     ball = SpringDamper(11.27338, restitution=0.364216, release="force")
     equations = OrbitEquations(ball, 2, 1)
     first = Balls(ball, np.array([1.20411]), np.zeros(1), np.array([0.5]), np.array([3.0]))
-    record, _, _ = follow(first, 400)
+    record, _, _ = bounce(first, 400)
     turns, phase, u, T, *_ = record[-2:, :, 0].T
     z = np.append(np.stack([2 * np.pi * (turns - turns[0]) + phase, u, T], axis=-1), 1.20411)
     solution = newton(equations, z[np.newaxis])
@@ -187,7 +187,7 @@ def test_the_list_of_orbits_with_one_impact_is_complete(ball, amplitude, n):
     random = np.random.default_rng(1)
     size = 5000
     columns = [random.uniform(0, 2 * np.pi, size), random.uniform(0, 2.2 * np.pi * n, size)]
-    if ball.lasts:
+    if ball.has_duration:
         columns.append(random.uniform(0, 2 * np.pi * n * ball.frequency_ratio, size))
     z = np.stack([*columns, np.full(size, amplitude)], axis=-1)
     solution = newton(equations, z, iterations=15)

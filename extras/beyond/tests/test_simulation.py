@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import one_ball, simulation
-from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond import bounces, one_ball, simulation
+from bouncing_ball_beyond.one_ball import PERIOD
 
 
 def first_crossing(function, times):
@@ -153,12 +153,12 @@ def test_instants_of_laws_are_where_they_are_defined(law):
     ball = bb.Corrected(law)
     phase = rng.uniform(-np.pi, np.pi, 3000)
     u = 10 ** rng.uniform(-2, 1, 3000)
-    balls = simulation.Balls(ball, rng.uniform(0.5, 6, 3000), 0 * u, phase, u)
-    leaving = simulation.leave(balls)
+    balls = bounces.Balls(ball, rng.uniform(0.5, 6, 3000), 0 * u, phase, u)
+    leaving = bounces.leave(balls)
     going = np.isfinite(leaving.duration)
     balls = balls.take(going)
     leaving = simulation.Leaving(*(x[going] for x in leaving))
-    t, speed = simulation.fly(balls, leaving)
+    t, speed = bounces.fly(balls, leaving)
     amplitude = balls.amplitude
     phase = leaving.phase
     table = amplitude * (np.sin(phase) - np.sin(phase + t) + t * np.cos(phase))
@@ -218,7 +218,7 @@ def test_a_ball_that_rests_leaves_where_the_table_falls_faster_than_it():
     ball = bb.Rigid(0.4)
     found = bb.simulate(ball, amplitude=amplitude, phase=3.0, relative_velocity=-0.1, impacts=60)
     rests = int(np.argmax(found.contact_duration.values > 0))
-    leaves = (found.impact_phase + found.contact_duration)[rests] % TURN
+    leaves = (found.impact_phase + found.contact_duration)[rests] % PERIOD
     assert abs(leaves - lift_off) < 1e-13
     assert found.relative_bounce_velocity[rests] == 0
     lands, u = flight(amplitude, lift_off, 0.0, 0.0)
@@ -314,11 +314,11 @@ def test_one_by_one_side_by_side_and_by_the_general_contact(release):
     """Scalar loops, arrays, and releases found by another bound give the same impacts."""
     rng = np.random.default_rng(3)
     ball = bb.SpringDamper(rng.uniform(1.5, 60, 80), restitution=0.6, release=release)
-    balls = simulation.Balls(
+    balls = bounces.Balls(
         ball, rng.uniform(0.1, 3, 80), np.zeros(80), rng.uniform(-3, 3, 80), rng.uniform(0, 5, 80)
     )
-    side_by_side, going, _ = simulation.follow(balls, 5)
-    columns = [simulation.follow(balls.take([j]), 5)[0][..., 0] for j in range(80)]
+    side_by_side, going, _ = bounces.bounce(balls, 5)
+    columns = [bounces.bounce(balls.take([j]), 5)[0][..., 0] for j in range(80)]
     one_by_one = np.stack(columns, axis=-1)
     assert np.array_equal(np.isnan(one_by_one), np.isnan(side_by_side))
     assert np.allclose(one_by_one, side_by_side, rtol=1e-8, atol=1e-8, equal_nan=True)
@@ -356,7 +356,7 @@ def test_balls_rest_side_by_side_as_one_by_one(ball):
     found = bb.simulate(ball, amplitude=amplitude, phase=phase, **given)
     rests = found.contact_duration > 0
     assert rests.any("impact").mean() > 0.5
-    leaves = (found.impact_phase + found.contact_duration).where(rests) % TURN
+    leaves = (found.impact_phase + found.contact_duration).where(rests) % PERIOD
     falls = amplitude * np.sin(leaves) > 1 + 1e-9
     assert np.abs(leaves - np.arcsin(1 / amplitude)).where(~falls).max() < 1e-12
     # The time to the next impact is that of the rest and of the flight.
@@ -379,7 +379,7 @@ def test_a_ball_that_is_laid_on_the_table(many):
     assert np.abs(found.contact_duration[many:, 0] - (end - 3.0)).max() < 1e-8
     stays = bb.simulate(bb.Rigid(0.5), **given)
     assert (stays.status[:many] == "permanent contact").all()
-    lift_off = np.arcsin(0.5) + TURN
+    lift_off = np.arcsin(0.5) + PERIOD
     assert np.abs(stays.contact_duration[many:, 0] - (lift_off - 3.0)).max() < 1e-13
 
 
@@ -411,9 +411,9 @@ def test_plain_python_gives_the_numbers_of_compiled_loops(monkeypatch):
 
 def test_late_impacts_keep_the_digits_of_the_phase():
     """After a transient the ball is on the 1-T orbit, also after 80,000 periods."""
-    balls = simulation.Balls(bb.Rigid(0.65), *(np.array([x]) for x in (1.0, 0.0, 1.0, 3.0)))
+    balls = bounces.Balls(bb.Rigid(0.65), *(np.array([x]) for x in (1.0, 0.0, 1.0, 3.0)))
     for _ in range(4):
-        record, _, balls = simulation.follow(balls, 20_000)
+        record, _, balls = bounces.bounce(balls, 20_000)
     orbit = bb.orbit(bb.Rigid(0.65), amplitude=1.0)
     assert np.abs(record[1000:, 1] - orbit.phase).max() < 1e-13
     assert abs(record[-1, 0, 0] - 80_000) < 100

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond import one_ball, oscillator
-from bouncing_ball_beyond.one_ball import PATIENCE, REACH, ROUNDING, SLOWEST
+from bouncing_ball_beyond.one_ball import EPS, PATIENCE, REACH, SLOWEST
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 H = 1e-30
 """The imaginary part of a complex step: that of f(x + iH) is H f′(x)."""
 
-FEW = 40
+FEW_BALLS = 40
 """Fewer balls are followed by scalar loops: a step on arrays costs as much as this many."""
 
 
@@ -48,14 +48,14 @@ class Signature(NamedTuple):
 class Ball:
     """What all balls have."""
 
-    lasts: ClassVar[bool] = False
+    has_duration: ClassVar[bool] = False
     """Whether contacts have a duration."""
 
-    sinks: ClassVar[bool] = False
+    below_table: ClassVar[bool] = False
     """Whether impacts are instants below the level of the table, which stand for contacts."""
 
     @property
-    def integrated(self) -> bool:
+    def ends_analytically(self) -> bool:
         """Whether contacts are integrated, and end analytically in their start."""
         return False
 
@@ -107,7 +107,11 @@ class Ball:
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def left(self, u: Values) -> Values:
+    def delay(self, centroid: Values) -> Values:
+        """How long after the start of an impact its force has its centroid."""
+        return centroid
+
+    def remaining_contact(self, u: Values) -> Values:
         """How long a contact would last after the instant that stands for it; 0 for others."""
         return 0.0 * u
 
@@ -115,7 +119,7 @@ class Ball:
         """Whether releases of its contacts are found by the closed form of a linear contact."""
         return False
 
-    def looped(self, table: Table) -> tuple | None:
+    def loop_parameters(self, table: Table) -> tuple | None:
         """r, ϖ and ζ, with which :func:`.one_ball.impacts` follows it; None if it does not."""
         return None
 
@@ -182,9 +186,9 @@ class Ball:
             gap = -self.kappa * speed
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
-    def at_ratio(self, n: Any = 1) -> Callable:
-        """The function from ϖ, or from a number in its place, to the ball; ValueError for a ball
-        whose impacts have no duration."""
+    def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
+        """The function from ϖ, or from a number in its place, to the ball, by r and t_c of its free
+        impact; ValueError for a ball whose impacts have no duration."""
         raise ValueError(
             f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw or a function to one"
         )
@@ -295,9 +299,9 @@ class Rigid(Ball):
             )
         return {}
 
-    def looped(self, table: Table) -> tuple | None:
+    def loop_parameters(self, table: Table) -> tuple | None:
         """r alone, if it is a number."""
-        is_looped = table.compiled and not callable(self.restitution)
+        is_looped = table.is_sine and not callable(self.restitution)
         return (self.restitution, 0.0, 0.0) if is_looped else None
 
     def _restitution(self, u: Values) -> Values:
@@ -370,7 +374,7 @@ class SpringDamper(Ball):
     damping_ratio: float | np.ndarray | None = None
     release: str = "displacement"
 
-    lasts: ClassVar[bool] = True
+    has_duration: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if (self.restitution is None) == (self.damping_ratio is None):
@@ -451,9 +455,9 @@ class SpringDamper(Ball):
         near = oscillator.resonates(self.frequency_ratio, self.zeta, table.orders)
         return bool(np.all((self.zeta <= oscillator.UNDERDAMPED) & ~near))
 
-    def looped(self, table: Table) -> tuple | None:
+    def loop_parameters(self, table: Table) -> tuple | None:
         """ϖ and ζ of contacts with a closed form."""
-        if table.compiled and self.has_closed_form():
+        if table.is_sine and self.has_closed_form():
             return 0.0, self.frequency_ratio, self.zeta
         return None
 
@@ -463,7 +467,7 @@ class SpringDamper(Ball):
         T = np.where(duration < np.inf, duration * self.frequency_ratio, np.nan)
         return T, duration, -self.kappa * speed, speed
 
-    def at_ratio(self, n: Any = 1) -> Callable:
+    def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
         """The function from ϖ to the ball."""
         return lambda ratio: self.at(frequency_ratio=ratio)
 
@@ -508,10 +512,10 @@ def safe_steps(
     reach = REACH * step
     closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
     step = np.maximum(step, np.fmin(reach, closer))
-    near = jerk * step * step * step <= -ROUNDING * slope * t
+    near = jerk * step * step * step <= -EPS * slope * t
     if near.any():
         step[near] = root_of_parabola(f[near], slope[near], -second[near])
-    return step, near | (step <= ROUNDING * t)
+    return step, near | (step <= EPS * t)
 
 
 @np.errstate(all="ignore")  # a contact without a load may vanish in time
@@ -532,19 +536,19 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
     forced = oscillator.forcing(table, waves, *of_ball, resonance(ball))
     rows = np.array(np.broadcast_arrays(0 * u, *given, *forced))
     of_time = oscillator.closed_motion if closed else oscillator.doubled_motion
-    fewest = FEW if closed and table.compiled else 1
+    fewest = FEW_BALLS if closed and table.is_sine else 1
     given[:] = np.broadcast_arrays(*given, amplitude, ball.frequency_ratio, ball.zeta, ball.kappa)
     duration = np.full(u.shape, np.inf)
     speed = np.full(u.shape, np.nan)
-    left = np.arange(u.size)
-    while left.size >= fewest:
+    todo = np.arange(u.size)
+    while todo.size >= fewest:
         s, gap, u, *waves = rows[:-4]
         ratio = ball.frequency_ratio
         zeta = ball.zeta
         kappa = ball.kappa
         resonant = resonance(ball)
         motion = of_time(s, gap, u, table, waves, 1.0, ratio, zeta)
-        f, slope, second, third, bend, jerk, lasts = oscillator.bounds(
+        f, slope, second, third, bend, jerk, stays = oscillator.bounds(
             motion, table, rows[-4:], ratio, zeta, kappa, resonant
         )
         above = np.maximum(f, 0.0)
@@ -552,16 +556,16 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
         if not closed:
             step = np.fmin(step, np.divide(2, ratio * resonant))
         rows[0] = s + step
-        done = last | lasts | ~(rows[0] < PATIENCE)
+        done = last | stays | ~(rows[0] < PATIENCE)
         if done.any():
-            released = left[last]
+            released = todo[last]
             duration[released] = rows[0, last]
             speed[released] = (motion.speed + step * (second + step * third / 2))[last]
             (going,) = (~done).nonzero()
-            left = left[going]
+            todo = todo[going]
             rows = rows.take(going, axis=1)
             ball = ball.rows(going)
-    for i in left:
+    for i in todo:
         duration[i], speed[i] = one_ball.release(*(each[i] for each in given))
     return duration, speed
 
@@ -583,7 +587,7 @@ class Corrected(Ball):
 
     of: Ball
 
-    sinks: ClassVar[bool] = True
+    below_table: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not isinstance(self.of, Ball):
@@ -611,7 +615,11 @@ class Corrected(Ball):
         """The gap -u t_c(u) of the instant."""
         return -u * self.of.signature(u).centroid
 
-    def left(self, u: Values) -> Values:
+    def delay(self, centroid: Values) -> Values:
+        """Zero: the instant is at the centroid."""
+        return 0 * centroid
+
+    def remaining_contact(self, u: Values) -> Values:
         """D - t_c."""
         signature = self.of.signature(u)
         return signature.duration - signature.centroid

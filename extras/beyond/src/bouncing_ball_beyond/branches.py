@@ -100,7 +100,7 @@ class FollowedBranch:
     @cached_property
     def stable(self) -> NDArray:
         """Whether the orbits are stable, shape (points,)."""
-        return self.equations.stable(self.equations.linear(self.z))
+        return self.equations.stable(self.equations.linearized(self.z))
 
     @cached_property
     def admissible(self) -> NDArray:

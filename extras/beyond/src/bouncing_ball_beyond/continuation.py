@@ -11,7 +11,7 @@ import numpy as np
 from bouncing_ball_beyond.balls import Ball, brief, check_whole_numbers, whole_number
 from bouncing_ball_beyond.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
-from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts
 from bouncing_ball_beyond.starts import STARTS, Task
@@ -144,7 +144,7 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
     if to is None:
         turn = path.name.startswith("phase_")
-        to = value + TURN if turn else usual_range(path, value, low, high)[1]
+        to = value + PERIOD if turn else usual_range(path, value, low, high)[1]
     goals = np.atleast_1d(np.asarray(to, float))
     for goal in goals:
         if not (low <= goal <= high and np.isfinite(goal)):
@@ -274,11 +274,11 @@ def _between_limits(equations: OrbitEquations) -> list:
     ways = [(near_instants, amplitude) for amplitude in amplitudes]
     ways += [(shortest_contacts, amplitude) for amplitude in [*amplitudes, *around]]
     for search, amplitude in ways:
-        left = np.flatnonzero(~done)
-        if not left.size:
+        todo = np.flatnonzero(~done)
+        if not todo.size:
             break
-        orbits, done[left] = search(equations.rows(left), amplitude[left], 1)
-        for row, each in zip(left, orbits, strict=True):
+        orbits, done[todo] = search(equations.rows(todo), amplitude[todo], 1)
+        for row, each in zip(todo, orbits, strict=True):
             if each and (done[row] or isinstance(found[row], OrbitNotFound)):
                 found[row] = each
     return found

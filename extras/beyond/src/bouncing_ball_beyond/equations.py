@@ -35,7 +35,7 @@ VANISHED = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class Linear:
+class LinearizedLegs:
     """Legs (rows, k, q), their derivatives (rows, k, q, q + 2 + p) by the q unknowns of the impact,
     τ and u of the next one and the p parameters, and their times of flight (rows, k)."""
 
@@ -43,7 +43,7 @@ class Linear:
     derivatives: NDArray
     flights: NDArray
 
-    def rows(self, which: Any) -> "Linear":
+    def rows(self, which: Any) -> "LinearizedLegs":
         """Some of the rows."""
         taken = self.legs[which], self.derivatives[which], self.flights[which]
         return type(self)(*taken)
@@ -92,6 +92,12 @@ class Flights(NamedTuple):
         return np.fmin(times, self.flight[..., np.newaxis])
 
 
+def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) -> NDArray:
+    """The row z of impacts, without the T of instants, and the values of what may change."""
+    columns = [times, speeds, T] if ball.has_duration else [times, speeds]
+    return np.append(np.stack(columns, axis=-1).ravel(), values)
+
+
 def _some(values: Any, which: Any) -> Any:
     """The values of some rows; a number is that of all."""
     return values[which] if np.ndim(values) else values
@@ -125,7 +131,7 @@ class OrbitEquations:
     @cached_property
     def unknowns(self) -> int:
         """The number q of unknowns of an impact."""
-        return 3 if self.ball.lasts else 2
+        return 3 if self.ball.has_duration else 2
 
     @cached_property
     def size(self) -> int:
@@ -179,9 +185,9 @@ class OrbitEquations:
     def scales(self, z: NDArray) -> NDArray:
         """Units of the unknowns in which steps are measured, shape (rows, N)."""
         units = np.full(z.shape, np.sqrt(self.impacts))
-        if self.ball.lasts:
-            lasts = np.s_[:, 2 : self.size : 3]
-            units[lasts] *= np.maximum(np.abs(z[lasts]) / LASTING, 1.0)
+        if self.ball.has_duration:
+            has_duration = np.s_[:, 2 : self.size : 3]
+            units[has_duration] *= np.maximum(np.abs(z[has_duration]) / LASTING, 1.0)
         units[:, self.size :] = np.maximum(np.abs(z[:, self.size :]), 1e-2)
         return units
 
@@ -198,7 +204,7 @@ class OrbitEquations:
         steps = 1j * H * np.eye(inner + len(self.along))
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
-    def linear(self, z: NDArray) -> Linear:
+    def linearized(self, z: NDArray) -> LinearizedLegs:
         """The legs, contacts with the flights after them, and their derivatives: the contact ends
         where its release is zero, and the flight with the gap and the speed of the next impact."""
         q = self.unknowns
@@ -207,7 +213,7 @@ class OrbitEquations:
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1) + of_legs
         values = z[:, self.size :] + of_parameters
         legs, flights = self._legs(y, *self.at(values))
-        return Linear(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
+        return LinearizedLegs(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z: NDArray) -> NDArray:
         """The legs alone, shape (rows, k, q)."""
@@ -225,14 +231,14 @@ class OrbitEquations:
         flights = y[..., q] - leaves
         gap, rate = flight(flights, leaves, impact.gap, impact.speed, amplitude, table)
         legs = np.empty((*y.shape[:-1], q), y.dtype)
-        if self.ball.lasts:
+        if self.ball.has_duration:
             legs[..., 0] = impact.release
         legs[..., q - 2] = gap - ball.start(y[..., q + 1])
         legs[..., q - 1] = rate + y[..., q + 1]
         return legs, flights
 
     def bordered(
-        self, z: NDArray, linear: Linear, normal: NDArray, condition: tuple | None = None
+        self, z: NDArray, linear: LinearizedLegs, normal: NDArray, condition: tuple | None = None
     ) -> NDArray:
         """The step of Newton's method to the plane through z across a normal, and the tangent with
         normal · tangent = 1, shape (rows, N, 2); NaN for singular equations.
@@ -250,13 +256,13 @@ class OrbitEquations:
             right = np.concatenate([special, right[:, points:]], axis=1)
         return self.solve(linear, border, right)
 
-    def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
+    def solve(self, linear: LinearizedLegs, border: NDArray, right: NDArray) -> NDArray:
         """The solutions of the linear equations and the border, for -legs and for no legs."""
         legs = np.zeros((*linear.legs.shape, 2))
         legs[..., 0] = -linear.legs
         return solve_bordered(linear.derivatives, legs, border, right)
 
-    def excess(self, z: NDArray, linear: Linear) -> NDArray:
+    def excess(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
         """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
         if self.kind not in MULTIPLIERS:
             return KINDS[self.kind].test(self, z, linear)
@@ -275,10 +281,10 @@ class OrbitEquations:
         nudges = np.concatenate([np.zeros((1, length)), *np.multiply.outer(nodes, np.eye(length))])
         nearby = (z + nudges[:, np.newaxis] * shift).reshape(-1, length)
         each = self.rows(np.tile(np.arange(rows), len(nudges)))
-        linear = each.linear(nearby)
+        linear = each.linearized(nearby)
         values = each.excess(nearby, linear)
         rates = np.ones(len(nearby))
-        if self.kind in MULTIPLIERS and self.ball.lasts:
+        if self.kind in MULTIPLIERS and self.ball.has_duration:
             rates = linear.derivatives[..., 0, 2].prod(axis=-1)
         here, beside = np.split(np.stack([values * rates, rates]), [rows], axis=1)
         beside = beside.reshape(2, len(nodes), length, rows)
@@ -298,7 +304,7 @@ class OrbitEquations:
     )
     """The kinds of special orbits that a march watches: they cost little, or end a curve."""
 
-    def tests(self, z: NDArray, linear: Linear) -> NDArray:
+    def tests(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
         """What is zero at the special orbits that a march watches, shape (rows, tests); 1 for those
         of the kind of a curve."""
         columns = [
@@ -309,16 +315,16 @@ class OrbitEquations:
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
         """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
-        linear = self.linear(z)
+        linear = self.linearized(z)
         legs = linear.legs.reshape(len(z), self.size)
         return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
 
-    def turn(self, linear: Linear) -> NDArray:
+    def turn(self, linear: LinearizedLegs) -> NDArray:
         """tr/(1 + det): 1 where a multiplier is 1, -1 where one is -1, between them if stable."""
         trace, determinant = linear.trace_and_determinant
         return trace / (1 + determinant)
 
-    def stable(self, linear: Linear) -> NDArray:
+    def stable(self, linear: LinearizedLegs) -> NDArray:
         """Whether no neighbouring motion leaves the orbits, shape (rows,)."""
         trace, determinant = linear.trace_and_determinant
         # The determinant of an elastic ball is 1 up to rounding.
@@ -348,7 +354,7 @@ class OrbitEquations:
 
     def contact_clearance(self, z: NDArray) -> NDArray:
         """How far release functions are below zero where they turn back: the least of all."""
-        if not self.ball.lasts:
+        if not self.ball.has_duration:
             return np.full(len(z), FAR)
         x, ball, amplitude, table = self.split(z)
         length = x[..., 2]
@@ -373,7 +379,7 @@ class OrbitEquations:
         height = height.max(axis=-1)
         lifts = amplitude * sum(np.abs(size) for size in table.sizes)
         low = height < lifts.max(axis=-1)
-        if not self.ball.lasts or not low.any():
+        if not self.ball.has_duration or not low.any():
             return height
         if not low.all():
             height[low] = self.rows(low).max_height(z[low])
@@ -408,11 +414,11 @@ class OrbitEquations:
         return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
 
     def least_release(
-        self, linear: Linear | None, z: NDArray, flights: Flights | None = None
+        self, linear: LinearizedLegs | None, z: NDArray, flights: Flights | None = None
     ) -> NDArray:
         """How well balls leave after impacts, the least of all: the rate of the release, δ′ of an
         instant, which needs no derivatives, or the summit after one below the table."""
-        if linear is not None and self.ball.lasts:
+        if linear is not None and self.ball.has_duration:
             return linear.derivatives[..., 0, 2].min(axis=-1)
         flights = flights or self.ends(z)
         if np.all(flights.gap >= 0):
@@ -450,10 +456,10 @@ class OrbitEquations:
         z[:, : self.size : self.unknowns] += 2 * np.pi * np.reshape(turns, (-1, 1))
         return z
 
-    def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
+    def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
-        if linear is None and self.ball.lasts:
-            linear = self.linear(z)
+        if linear is None and self.ball.has_duration:
+            linear = self.linearized(z)
         x, ball, *_ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
@@ -650,8 +656,8 @@ class PeriodicOrbit:
         return self._ends.leaves[0], self._ends.speed[0]
 
     @cached_property
-    def _linear(self) -> Linear:
-        return self.equations.linear(self.z[np.newaxis])
+    def _linear(self) -> LinearizedLegs:
+        return self.equations.linearized(self.z[np.newaxis])
 
     def _each(self, values: NDArray) -> float | NDArray:
         """A float for one impact, an array for several."""
@@ -797,7 +803,7 @@ class Kind(NamedTuple):
     """A kind of special orbit: what is zero there, a function of equations, orbits and their
     derivatives, and why branches end there, empty if they go on."""
 
-    test: Callable[[Any, NDArray, Linear], NDArray]
+    test: Callable[[Any, NDArray, Any], NDArray]
     end: str = ""
 
 

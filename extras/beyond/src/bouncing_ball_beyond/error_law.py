@@ -317,7 +317,7 @@ def _first_stretch(
     # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
     end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
     end = np.fmin(end, 4 * np.pi / impact.duration)
-    if table.compiled:
+    if table.is_sine:
         # The error is concave, and largest where Y₁ rises as fast as the depth of the instant, or
         # ψ₁ falls as fast as it is late: at these values of C - s.
         deeper = shift * impact.line + impact.speed * impact.centroid
@@ -381,7 +381,8 @@ def ball_at_ratio(
     """The function from ϖ, or from the number in its place, to the ball."""
     checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
     if isinstance(contacts, Ball):
-        return contacts.at_ratio(n)
+        impact = free_impact(contacts, n)
+        return contacts.at_ratio(impact.restitution, impact.centroid)
     if not callable(contacts):
         raise ValueError(
             f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw or a function to one"
@@ -443,7 +444,7 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     if slow.any():
         more = newton(equations.rows(slow), solution.z[slow], iterations=40)
         solution.z[slow] = more.z
-        solution = solution._replace(linear=equations.linear(solution.z))
+        solution = solution._replace(linear=equations.linearized(solution.z))
         solution.found[slow] = more.found
     good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
     # On compliant contacts Newton's method may run to a solution that is no orbit.
@@ -469,13 +470,12 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
         amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
         amplitude = amplitude * (1 + share)
         phase = phase + turn
-    if table.compiled:
+    if table.is_sine:
         # On a sine one instant has the velocity x and the push y.
         amplitude, phase = table.amplitude_at(x, y)
-    # The impacts of a corrected ball are at the centroids, and all others start before them.
-    delay = 0.0 if row.sinks else impact.centroid
+    delay = row.delay(impact.centroid)
     guess = [phase - delay, impact.half + x - (1 - y) * delay]
-    if row.lasts:
+    if row.has_duration:
         guess.append(row.free(guess[1]))
     rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
     z, good = special_near(OrbitEquations(row, 1, periods, table=table), kind, rows)
@@ -491,7 +491,7 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     leaves = ends.leaves[:, 0]
     table = equations.table
     velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
-    if ball.sinks:
+    if ball.below_table:
         signature = equations.ball.signature(speed)
         approach = amplitude * table(touch, 1) - speed + signature.centroid
         after = signature.duration - signature.centroid
@@ -561,7 +561,7 @@ def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) 
     equations = OrbitEquations(row, 1, periods, table=table)
     z = rows_of_orbits(equations, amplitudes)
     with np.errstate(invalid="ignore"):
-        stable = equations.stable(equations.linear(z))
+        stable = equations.stable(equations.linearized(z))
     return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
 
 

@@ -56,7 +56,7 @@ def curvature(
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
-    derivatives = twice.linear(rows).derivatives[:, : equations.impacts]
+    derivatives = twice.linearized(rows).derivatives[:, : equations.impacts]
     first = np.tensordot(FIRST, derivatives, axes=1) / step
     second = np.tensordot(SECOND, derivatives, axes=1) / step**2
     return Curvature(derivatives[len(NODES) // 2], first, second)
@@ -139,7 +139,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     z = orbit.z
     multiplier = MULTIPLIERS[orbit.kind]
     q = equations.unknowns
-    derivatives = equations.linear(z[np.newaxis]).derivatives[0]
+    derivatives = equations.linearized(z[np.newaxis]).derivatives[0]
     v, w = _vectors(derivatives, multiplier)
     step = _longest_step(equations, z, v)
     coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
@@ -163,7 +163,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
 
 # Grazing flights
 
-SAMPLES = 2001
+FLIGHT_SAMPLES = 2001
 """Samples of a flight in the search for its lowest point."""
 
 TOUCHES = 1e-9
@@ -183,7 +183,7 @@ class Touch(NamedTuple):
 
 def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
     """Where a flight of an orbit touches the table; OrbitNotFound if none does."""
-    if equations.ball.sinks:
+    if equations.ball.below_table:
         raise OrbitNotFound(
             "an impact of the corrected model takes effect below the table: at a grazing flight"
             " there are no orbits with one impact more"
@@ -192,7 +192,7 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
     leaves, gap, speed, last, amplitudes = (each[0] for each in ends[:5])
     amplitude = float(amplitudes[0])
     table = ends.table.rows(0).rows(0)
-    times = np.linspace(0, last, SAMPLES)
+    times = np.linspace(0, last, FLIGHT_SAMPLES)
     heights = flight(times, leaves, gap, speed, amplitude, table)[0]
     least = (heights[1:-1] < heights[:-2]) & (heights[1:-1] <= heights[2:])
     if not least.any():
@@ -219,7 +219,7 @@ def one_impact_more(
     """
     at = _touch(equations, z)
     added = np.array([at.time, 0.0])
-    if equations.ball.lasts:
+    if equations.ball.has_duration:
         _, ball, amplitude, table = equations.split(z[np.newaxis])
         free = float(np.ravel(ball.signature(SLOW).duration)[0])
         u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
@@ -298,13 +298,13 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     # The least gap is a smooth function: a third of all digits is enough for the sign.
     step = 1e-6 * max(1.0, abs(z[-1]))
     below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
-    r = -1.0 if orbit.ball.lasts else float(orbit.ball.signature(0.0).restitution)
+    r = -1.0 if orbit.ball.has_duration else float(orbit.ball.signature(0.0).restitution)
     return GrazingForm(
         leg=at.leg,
         phase=float(np.pi - (np.pi - at.time) % (2 * np.pi)),
         acceleration=at.acceleration,
         coefficient=(1 + r) * float(np.sqrt(2 * at.acceleration)),
-        slope=0.0 if orbit.ball.lasts else float(direction[-1]),
+        slope=0.0 if orbit.ball.has_duration else float(direction[-1]),
         along=path.name,
         opens_upwards=opens_upwards,
         persists=opens_upwards == bool(above < below),

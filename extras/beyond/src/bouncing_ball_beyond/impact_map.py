@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.tables import Table
 
-FACTOR, DEGREE = 2.0, 15
+MAP_FACTOR, MAP_DEGREE = 2.0, 15
 """The range of speeds of a piece of the map, and its degree in ln u. A pole at ln u = x ± iπ, like
 that of a restitution 1/(1 + Cu), leaves an error of 18⁻¹⁶."""
 
@@ -35,7 +35,7 @@ PIECES = 12
 LEFT_OUT = 1e-16
 """Harmonics whose coefficients are smaller, over the largest value, are left out."""
 
-TAIL = 1e-13
+LAST_COEFFICIENTS = 1e-13
 """The largest last coefficients of a piece, over the largest value: rounding of integrations."""
 
 
@@ -56,7 +56,7 @@ class ImpactMap:
     def _places(self, u: NDArray) -> tuple[NDArray, NDArray]:
         """The numbers of the pieces and the places in them, from -1 to 1; others are no pieces."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            octaves = np.log(self.top / u) / np.log(FACTOR)
+            octaves = np.log(self.top / u) / np.log(MAP_FACTOR)
         number = np.floor(octaves)
         return number, 1 - 2 * (octaves - number)
 
@@ -74,7 +74,7 @@ class ImpactMap:
             (at,) = (number == k).nonzero()
             known[at] = True
             waves = np.exp(1j * np.outer(tau[at], np.arange(piece.shape[1])))
-            found[:, at] = _sum(piece, chebyshev.chebvander(x[at], DEGREE), waves)
+            found[:, at] = _sum(piece, chebyshev.chebvander(x[at], MAP_DEGREE), waves)
         (others,) = (~known).nonzero()
         if others.size:
             given = tau[others], u[others], self.amplitude, self.table
@@ -91,9 +91,9 @@ class ImpactMap:
             known |= at
             harmonics = np.arange(piece.shape[1])
             waves = np.exp(1j * np.outer(tau[at], harmonics))
-            powers = chebyshev.chebvander(x[at], DEGREE)
+            powers = chebyshev.chebvander(x[at], MAP_DEGREE)
             by_x = chebyshev.chebder(piece[1:], axis=2)
-            stretch = 2 / (np.log(FACTOR) * u[at])
+            stretch = 2 / (np.log(MAP_FACTOR) * u[at])
             found[:, 0, at] = _sum(1j * harmonics[:, np.newaxis] * piece[1:], powers, waves)
             found[:, 1, at] = _sum(by_x, powers[:, :-1], waves) * stretch
         return found, known
@@ -112,7 +112,7 @@ def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> Impact
     """
     pieces: list[Any] = []
     while len(pieces) < PIECES:
-        piece = _piece(ball, amplitude, table, top * FACTOR ** -len(pieces))
+        piece = _piece(ball, amplitude, table, top * MAP_FACTOR ** -len(pieces))
         if piece is None:
             break
         pieces.append(piece)
@@ -121,10 +121,10 @@ def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> Impact
 
 def _piece(ball: Ball, amplitude: float, table: Table, top: float) -> NDArray | None:
     """The coefficients on the range of speeds below ``top``; None if they do not fall."""
-    x = chebyshev.chebpts1(DEGREE + 1)
-    u = top * FACTOR ** ((x - 1) / 2)
+    x = chebyshev.chebpts1(MAP_DEGREE + 1)
+    u = top * MAP_FACTOR ** ((x - 1) / 2)
     longest = ONE_SWING * ball.free(u)
-    to_coefficients = np.linalg.inv(chebyshev.chebvander(x, DEGREE))
+    to_coefficients = np.linalg.inv(chebyshev.chebvander(x, MAP_DEGREE))
     phases = PHASES
     while phases <= MOST_PHASES:
         tau = np.arange(phases) * 2 * np.pi / phases
@@ -140,9 +140,9 @@ def _piece(ball: Ball, amplitude: float, table: Table, top: float) -> NDArray | 
         # δ at the release is zero but for rounding, or a part of the way in a contact.
         largest[2] = largest[1] * largest[3]
         sizes = np.abs(piece) / largest[:, np.newaxis, np.newaxis]
-        if sizes[:, :, -2:].max() > TAIL:
+        if sizes[:, :, -2:].max() > LAST_COEFFICIENTS:
             return None
-        if sizes[:, -2:].max() <= TAIL:
+        if sizes[:, -2:].max() <= LAST_COEFFICIENTS:
             last = np.flatnonzero(sizes.max(axis=(0, 2)) > LEFT_OUT)[-1]
             return piece[:, : last + 1]
         phases *= 2

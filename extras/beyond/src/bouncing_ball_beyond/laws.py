@@ -24,9 +24,9 @@ from bouncing_ball_beyond.root_time import (
     Guess,
     Rows,
     event_rate,
-    follow,
-    follow_to,
-    linearised,
+    integrate_contacts,
+    integrate_to,
+    linearize,
     load_of,
     rates,
     values_by_row,
@@ -37,7 +37,7 @@ from bouncing_ball_beyond.tables import SINE, Table, Values
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "after", "load", "start_speed")
 """Names that parameters must not have."""
 
-LIMITS = (-46.0, 23.0)
+LN_DEPTHS = (-46.0, 23.0)
 """The range of ln p in which the depth of an impact is looked for: p from 1e-20 to 1e10."""
 
 HALVINGS = 9
@@ -46,18 +46,18 @@ HALVINGS = 9
 FIRST_PANEL = 0.4
 """The length of the first panel of a contact in units of P^{1/m}/u."""
 
-FACTOR, DEGREE = 8.0, 23
+SIGNATURE_FACTOR, SIGNATURE_DEGREE = 8.0, 23
 """The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
 ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴.
 """
 
-NEIGHBOURS = 2.0
+GUESS_FACTOR = 2.0
 """The range of speeds of contacts that are guessed from one free impact."""
 
 SPARE = 1e-9
 """The largest last Legendre coefficients of v of a free impact over its speed."""
 
-FEW = 8
+FEW_KINKS = 8
 """So many intervals of a check may have a kink; if there are more, a force is not analytic."""
 
 ALIKE = 1e-11
@@ -124,7 +124,7 @@ class ForceLaw(Ball):
     needs: tuple = ()
     units: Mapping = field(default_factory=dict)
 
-    lasts: ClassVar[bool] = True
+    has_duration: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.release not in ("displacement", "force"):
@@ -214,7 +214,7 @@ class ForceLaw(Ball):
         return None
 
     @property
-    def integrated(self) -> bool:
+    def ends_analytically(self) -> bool:
         return not self.kinks
 
     @property
@@ -230,13 +230,9 @@ class ForceLaw(Ball):
         powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
 
-    def at_ratio(self, n: Values = 1) -> Callable:
+    def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
         """The function from a number in the place of ϖ to the law with another stiffness."""
-        # The error law needs this module.
-        from bouncing_ball_beyond.error_law import free_impact
-
-        impact = free_impact(self, n)
-        share = np.pi * impact.restitution / ((1 + impact.restitution) * impact.centroid)
+        share = np.pi * restitution / ((1 + restitution) * centroid)
         # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
         powers = {name: length + time for name, (_, length, time) in self.known_units.items()}
         return lambda ratio: self.at(
@@ -291,7 +287,7 @@ class ForceLaw(Ball):
         first = (FIRST_PANEL * depth ** (1 / self.root) / np.abs(rows.given["u"]))[moves]
         some = motion.of(moves), start[:, moves], by[..., moves], first, after[moves]
         state = np.array([*start])
-        state[:, moves] = follow(*some, after=after[moves])[0][1:3]
+        state[:, moves] = integrate_contacts(*some, after=after[moves])[0][1:3]
         q, v = state.reshape(2, *rows.shape)
         return -(q**self.root), -v
 
@@ -301,8 +297,8 @@ class ForceLaw(Ball):
         if self._scales is None or self.kinks or np.iscomplexobj(u) or not np.all(u > 0):
             return self._followed(0.0, u, 0.0, 0.0)[0]
         length, time = self._scales
-        own_time = self._origin.known_signature(u * (time / length))[8]
-        return time * length ** (1 / self.root - 1) * own_time
+        scaled_duration = self._origin.known_signature(u * (time / length))[8]
+        return time * length ** (1 / self.root - 1) * scaled_duration
 
     def signature(self, u: Values) -> Signature:
         """r, D, t_c and σ of free impacts, of one law for all laws that differ from it by the units
@@ -321,12 +317,12 @@ class ForceLaw(Ball):
 
     def known_signature(self, u: Values) -> NDArray:
         """The signature of one ball, u d/du of it and T at real speeds, shape (9, ...), for a law
-        without kinks from polynomials in ln u on ranges of :data:`FACTOR` in u.
+        without kinks from polynomials in ln u on ranges of :data:`SIGNATURE_FACTOR` in u.
         """
         if self.kinks:
             speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
             return self._computed(speeds)[:, place.reshape(u.shape)]
-        number = np.floor(np.log(u) / np.log(FACTOR))
+        number = np.floor(np.log(u) / np.log(SIGNATURE_FACTOR))
         found = np.full((9, *u.shape), np.nan)
         for k in np.unique(number[np.isfinite(number)]):
             at = number == k
@@ -336,31 +332,33 @@ class ForceLaw(Ball):
             if coefficients is None:
                 found[:, at] = self._computed(u[at])
             else:
-                x = 2 * (np.log(u[at]) / np.log(FACTOR) - k) - 1
+                x = 2 * (np.log(u[at]) / np.log(SIGNATURE_FACTOR) - k) - 1
                 found[:, at] = chebyshev.chebval(x, coefficients)
         return found
 
     def _computed(self, u: Values) -> NDArray:
         """As :meth:`known_signature`, by free impacts at each speed."""
         values = np.array(self.computed_signature(u * (1 + 1j * H)))
-        own_time = self._followed(0.0, u, 0.0, 0.0)[0]
-        return np.concatenate([values.real, values.imag / H, own_time[np.newaxis]])
+        scaled_duration = self._followed(0.0, u, 0.0, 0.0)[0]
+        return np.concatenate([values.real, values.imag / H, scaled_duration[np.newaxis]])
 
     def _range(self, number: float) -> NDArray | None:
         """Coefficients of :meth:`known_signature` in a range; None if impacts do not end."""
-        points = chebyshev.chebpts1(DEGREE + 1)
-        speeds = FACTOR ** (number + (points + 1) / 2)
+        points = chebyshev.chebpts1(SIGNATURE_DEGREE + 1)
+        speeds = SIGNATURE_FACTOR ** (number + (points + 1) / 2)
         if np.isnan(self._followed(0.0, speeds[[0, -1]], 0.0, 0.0)[0]).any():
             return None
-        return np.linalg.solve(chebyshev.chebvander(points, DEGREE), self._computed(speeds).T)
+        return np.linalg.solve(
+            chebyshev.chebvander(points, SIGNATURE_DEGREE), self._computed(speeds).T
+        )
 
     @np.errstate(all="ignore")
     def guess(self, u: NDArray, T: NDArray) -> Guess | None:
         """Free impacts of one ball, about those at the speeds u and of the lengths T; None if some
         do not end."""
-        numbers, which = np.unique(np.floor(np.log(u) / np.log(NEIGHBOURS)), return_inverse=True)
+        numbers, which = np.unique(np.floor(np.log(u) / np.log(GUESS_FACTOR)), return_inverse=True)
         for k in set(numbers) - self._free_impacts.keys():
-            self._free_impacts[k] = self._free_impact(NEIGHBOURS ** (k + 0.5))
+            self._free_impacts[k] = self._free_impact(GUESS_FACTOR ** (k + 0.5))
         most = min(len(self._free_impacts[k]) for k in numbers)
         if not most:
             return None
@@ -390,7 +388,7 @@ class ForceLaw(Ball):
             if gauss is finest or np.abs(coefficients[order - 2 :, 1]).max() < SPARE * u:
                 nodes = legendre.legval(2 * gauss.nodes - 1, coefficients)[..., np.newaxis]
                 push = rates(motion, nodes)[1][:, 0] * T / u
-                matrix = linearised(motion._replace(gauss=gauss), nodes, T).matrix()[0]
+                matrix = linearize(motion._replace(gauss=gauss), nodes, T).matrix()[0]
                 found.append((push, np.linalg.inv(matrix)))
         return found
 
@@ -427,8 +425,8 @@ class ForceLaw(Ball):
         """About the depth P at which the force would stop a ball: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
-        low = np.full(shape, LIMITS[0])
-        width = LIMITS[1] - LIMITS[0]
+        low = np.full(shape, LN_DEPTHS[0])
+        width = LN_DEPTHS[1] - LN_DEPTHS[0]
         for _ in range(HALVINGS):
             width = width / 2
             depth = np.exp(low + width)
@@ -538,14 +536,16 @@ class ForceLaw(Ball):
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
             # A table at rest has no period; most impacts last some three times P/u, and end before.
             period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
-            ends, slopes = follow(motion, start, by, first, period, longest)
+            ends, slopes = integrate_contacts(motion, start, by, first, period, longest)
         else:
             # So many panels are about the least that impacts need.
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
             by_until = rows.steps.get("T", np.zeros((rows.directions, rows.size)))
             guess = self._guessed(rows) if guessed else None
-            ends, slopes = follow_to(motion, start, by, first, period, given["T"], by_until, guess)
+            ends, slopes = integrate_to(
+                motion, start, by, first, period, given["T"], by_until, guess
+            )
         s, q, v, t = rows.joined(ends, slopes)
         given = {**self.values, **values, **table.parameters, "table": table}
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, given))
@@ -594,7 +594,7 @@ def _depth_of_one(law: ForceLaw) -> float:
         raise ValueError(f"force: must have the shape of p and v, {p.shape}, not {np.shape(force)}")
     with np.errstate(all="ignore"):
         depth = float(law.depth(1.0))
-    if not LIMITS[0] + 1 < np.log(depth) < LIMITS[1] - 1:
+    if not LN_DEPTHS[0] + 1 < np.log(depth) < LN_DEPTHS[1] - 1:
         raise ValueError("force: stops no ball of the speed 1 at any depth")
     return depth
 
@@ -621,7 +621,7 @@ def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Cal
     line, at = np.argwhere(wrong)[0]
     p, v = (each[line, at : at + 2].mean() for each in points)
     where = f"p = {p:.2g}, v = {v:.2g}"
-    if np.count_nonzero(wrong) <= FEW:
+    if np.count_nonzero(wrong) <= FEW_KINKS:
         raise ValueError(
             f"force: has a kink or a jump near {where}; declare by kinks what is zero there"
         )

@@ -13,9 +13,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.equations import KINDS, SINGULAR, Linear, OrbitEquations
+from bouncing_ball_beyond.equations import KINDS, SINGULAR, LinearizedLegs, OrbitEquations
 
-ROUNDING = 4 * np.finfo(float).eps
+RESIDUAL_ROUNDING = 4 * np.finfo(float).eps
 """Rounding errors of the equations, relative to their largest terms."""
 
 TOLERANCE = 1e-11
@@ -43,7 +43,7 @@ changes of the parameter."""
 STRAIGHT = 0.95
 """The least cosine of the angle between the tangents at the ends of a step."""
 
-TURN = 0.3
+LARGEST_TURN = 0.3
 """The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
 
 FADED = 1e-6
@@ -68,7 +68,7 @@ class Solution(NamedTuple):
     z: NDArray
     found: NDArray
     tangent: NDArray
-    linear: Linear
+    linear: LinearizedLegs
 
 
 @np.errstate(all="ignore")
@@ -89,7 +89,7 @@ def newton(
     if equations.kind:
         return _special(equations, z, normal, iterations)
     for _ in range(iterations):
-        linear = equations.linear(z)
+        linear = equations.linearized(z)
         solution = equations.bordered(z, linear, normal)
         step = solution[..., 0]
         defect = np.abs(linear.legs).max(axis=(1, 2))
@@ -97,7 +97,7 @@ def newton(
         # Lengths in the equations are of the size of Λ, or of the times and the speeds.
         _, amplitude, _ = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
-        exact = defect < ROUNDING * (1 + size)
+        exact = defect < RESIDUAL_ROUNDING * (1 + size)
         step = np.where((exact & ~(moved < NOISE))[:, np.newaxis], 0.0, step)
         z = z + step
         # Steps become small, or they are made of nothing but rounding errors of the equations.
@@ -115,35 +115,35 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
-    left = np.arange(len(z))
+    todo = np.arange(len(z))
     part = equations
     gradient, step = np.ones((2, *z.shape))
     slow = ~found
     size_before = np.ones(len(z))
     for _ in range(iterations):
-        linear = part.linear(z[left])
-        value = part.excess(z[left], linear)
-        gradient[left] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
+        linear = part.linearized(z[todo])
+        value = part.excess(z[todo], linear)
+        gradient[todo] += (value / np.sum(step**2, axis=1))[:, np.newaxis] * step
         if slow.any():
-            _, gradient[left[slow]] = part.rows(slow).condition(z[left[slow]])
-        condition = value, gradient[left]
-        solution = part.bordered(z[left], linear, normal[left], condition)
+            _, gradient[todo[slow]] = part.rows(slow).condition(z[todo[slow]])
+        condition = value, gradient[todo]
+        solution = part.bordered(z[todo], linear, normal[todo], condition)
         step = solution[..., 0]
-        size = np.abs(step).max(axis=1) / (1 + np.abs(z[left]).max(axis=1))
+        size = np.abs(step).max(axis=1) / (1 + np.abs(z[todo]).max(axis=1))
         step[size > LONG] = np.nan
-        z[left] += step
-        tangent[left] = solution[..., 1]
-        moved = (np.abs(step) / part.sizes(z[left])).max(axis=1)
-        found[left] = moved < np.where(slow, SPECIAL, TOLERANCE)
-        going = ~found[left] & np.isfinite(moved)
-        slow = (moved >= FAST * size_before[left])[going] | (len(equations.along) > 1)
-        size_before[left] = moved
+        z[todo] += step
+        tangent[todo] = solution[..., 1]
+        moved = (np.abs(step) / part.sizes(z[todo])).max(axis=1)
+        found[todo] = moved < np.where(slow, SPECIAL, TOLERANCE)
+        going = ~found[todo] & np.isfinite(moved)
+        slow = (moved >= FAST * size_before[todo])[going] | (len(equations.along) > 1)
+        size_before[todo] = moved
         step = step[going]
-        left = left[going]
-        if not left.size:
+        todo = todo[going]
+        if not todo.size:
             break
-        part = equations.rows(left)
-    return Solution(z, found, tangent, equations.linear(z))
+        part = equations.rows(todo)
+    return Solution(z, found, tangent, equations.linearized(z))
 
 
 class Start(NamedTuple):
@@ -167,7 +167,7 @@ class Start(NamedTuple):
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
-    linear = equations.linear(z)
+    linear = equations.linearized(z)
     normal = np.ones(z.shape)
     for _ in range(2):
         normal = unit(equations.bordered(z, linear, normal)[..., 1])
@@ -192,7 +192,9 @@ class Points(NamedTuple):
         return Points(*(each[which] for each in self))
 
 
-def points_at(equations: OrbitEquations, z: NDArray, tangents: NDArray, linear: Linear) -> Points:
+def points_at(
+    equations: OrbitEquations, z: NDArray, tangents: NDArray, linear: LinearizedLegs
+) -> Points:
     """Orbits with their tests."""
     return Points(z, tangents, equations.tests(z, linear), equations.halves(z))
 
@@ -237,7 +239,7 @@ def march(
     goes beyond an end, where multipliers tell nothing, has a point just before it.
     """
     equations = start.equations
-    here = points_at(equations, start.z, start.direction, equations.linear(start.z))
+    here = points_at(equations, start.z, start.direction, equations.linearized(start.z))
     first = here
     rows = np.arange(len(start.z))
     paths = [[here.take([row])] for row in rows]
@@ -266,13 +268,13 @@ def march(
             values = there.z[:, equations.size :]
             inside = ((values >= low) & (values <= high)).all(axis=1)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
-        good &= (turned < TURN) | (length < 1e-6)
+        good &= (turned < LARGEST_TURN) | (length < 1e-6)
         fades = np.zeros(rows.size, bool)
-        if equations.ball.lasts and equations.kind != IMPACT:
+        if equations.ball.has_duration and equations.kind != IMPACT:
             speed = equations.kinds.index(IMPACT)
             before, after = (each.tests[:, speed] for each in (here, there))
             fades = good & (0 < after) & (after < FADED) & (after > before / 2) & (after < before)
-        easy = (cosine > 0.99) & (turned < TURN / 2)
+        easy = (cosine > 0.99) & (turned < LARGEST_TURN / 2)
         moved = zip(here, there, strict=True)
         here = Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
         longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)

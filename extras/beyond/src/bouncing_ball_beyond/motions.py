@@ -18,24 +18,23 @@ from scipy.special import stdtrit
 
 from bouncing_ball_beyond import oscillator
 from bouncing_ball_beyond.balls import Ball, H, check_ball, checked, whole_number
-from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.bounces import Balls, bounce
+from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.impact_map import impact_map
-from bouncing_ball_beyond.one_ball import TURN
+from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, solved
 from bouncing_ball_beyond.rests import orbit_with_rest
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
-    Balls,
     axis,
     dataset,
     described,
     first_impacts,
-    follow,
     grid_of,
 )
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
-NEAR = 1e-7
+RETURNED = 1e-7
 """The distance, an angle and a speed over 1 + Λ, within which a ball has returned: far above
 rounding errors, and far below the distance of two orbits whose multipliers have the margin."""
 NEAR_BEFORE = 1e-5
@@ -44,13 +43,13 @@ CANDIDATES = 8
 """The number of returns to within this distance that are tried, from the latest one on."""
 MARGIN = 1e-3
 """The multipliers of a motion that repeats are below 1 by this margin."""
-FORGOTTEN = np.log(NEAR / 2.0**-52)
+FORGOTTEN = np.log(RETURNED / 2.0**-52)
 """The logarithm of the growth of deviations over which a rounding error becomes visible."""
 SECTION = 25
 SECTIONS = 1024
 """Impacts of a section over which the growth of deviations is summed up, at least, and the number
 of sections of a motion, at most."""
-ROWS = 1 << 16
+IMPACTS_AT_ONCE = 1 << 16
 """Impacts that are followed at a time, of all balls together."""
 RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
 """The map with which a deviation starts again after a lift-off; its numbers do not matter."""
@@ -64,8 +63,8 @@ BLOCK = 1 << 14
 ERRORS = 5.0
 """The exponent of a chaotic motion is positive by so many standard errors: by chance once in three
 million."""
-SETTLED = 5.0
-TELLING = 20.0
+SETTLING_LENGTHS = 5.0
+TELLING_LENGTHS = 20.0
 """Relaxation lengths that are left out before an exponent is computed, and that tell its error. In
 one of them areas contract by e, and energies approach their mean by as much."""
 EVEN = (0.7548776662466927, 0.5698402909980532)
@@ -85,7 +84,7 @@ PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
 )
 NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
 MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
-ROUNDING = "rounding errors grow to the size of the motion before it repeats"
+LOST_TO_ROUNDING = "rounding errors grow to the size of the motion before it repeats"
 RESUMES = "a contact resumes below the level of the table, where its law does not say"
 TRANSIENT = "it looks chaotic, but a ball beside it comes to rest or repeats: it may be a transient"
 
@@ -105,7 +104,7 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
         slopes[..., others] = slopes_of_contact(one, tau[others], u[others], T[others])
     else:
         slopes = slopes_of_contact(balls, tau, u, T)
-    if not ball.lasts:
+    if not ball.has_duration:
         slopes = np.where(duration > 0, 0.0, slopes)
     later, dgap, dw = slopes
     later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]
@@ -124,12 +123,12 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
 def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArray:
     """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, *tau.shape)."""
     ball = balls.ball
-    unknowns = 3 if ball.lasts else 2
+    unknowns = 3 if ball.has_duration else 2
     steps = 1j * H * np.eye(3)[:, :unknowns].reshape(3, unknowns, *np.ones(tau.ndim, int))
     given = tau + steps[0], u + steps[1], T + steps[2], balls.amplitude
     impact = ball.contact(*given, table=balls.table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
-    if not ball.lasts:
+    if not ball.has_duration:
         return slopes
     # T follows from the zero of the release function.
     released: Any = impact.release
@@ -164,7 +163,7 @@ def slopes_of_oscillator(
 def lift_offs(balls: Balls, record: NDArray) -> NDArray:
     """Where balls leave by the lift-off after a rest, shape (impacts, balls)."""
     _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
-    if balls.ball.lasts:
+    if balls.ball.has_duration:
         return np.zeros(tau.shape, bool)
     rests = (duration > 0) & (w == 0)
     push = -balls.amplitude * balls.table(np.where(rests, tau + duration, 0.0), 2)
@@ -200,7 +199,7 @@ def ends_of(balls: Balls, impacts: int) -> dict:
 def is_worth_a_map(balls: Balls, impacts: int) -> bool:
     """Whether balls are one ball of an integrated contact on one table, with many impacts."""
     ball = balls.ball
-    if balls.phase.size * impacts < WORTH_A_MAP or not ball.integrated:
+    if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
         return False
     if ball.has_closed_form(balls.table) or any(map(np.ndim, ball.parameters.values())):
         return False
@@ -238,9 +237,9 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, secti
         count = min(
             max(seen // section, 1),
             -(-(impacts - seen) // section),
-            max(ROWS // track["lane"].size // section, 1),
+            max(IMPACTS_AT_ONCE // track["lane"].size // section, 1),
         )
-        record, going, after = follow(balls, count * section)
+        record, going, after = bounce(balls, count * section)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)
         track = _take(track, going)
@@ -248,14 +247,14 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, secti
         lifts = lift_offs(balls, record)
         maps = tangent_maps(balls, record, lifts)
         again = recurrence(balls, record, after, maps)
-        lap = stretch(track, record, after, maps, lifts, section)
+        lap = grow_deviations(track, record, after, maps, lifts, section)
         track["marginal"] = again["marginal"]
         _store_periodic(found, track["lane"], record, after, again, seen)
         locked = _store_locked(found, track, record, after, lifts, lap, seen)
         seen += len(record)
-        (left,) = (~locked & ~again["repeats"]).nonzero()
-        balls = after.take(left)
-        track = _take(track, left)
+        (todo,) = (~locked & ~again["repeats"]).nonzero()
+        balls = after.take(todo)
+        track = _take(track, todo)
     _store_others(found, balls, track, seen)
 
 
@@ -275,7 +274,7 @@ def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
     return products, logarithms
 
 
-def stretch(
+def grow_deviations(
     track: dict, record: NDArray, after: Balls, maps: NDArray, lifts: NDArray, section: int
 ) -> NDArray:
     """Carry the deviations of balls over some more impacts; return the greatest climb between the
@@ -307,7 +306,7 @@ def stretch(
 def times(record: NDArray, after: Balls) -> NDArray:
     """The times of all impacts of a record and of the one after it."""
     turns = np.vstack([record[:, 0], after.turns])
-    return TURN * turns + np.vstack([record[:, 1], after.phase])
+    return PERIOD * turns + np.vstack([record[:, 1], after.phase])
 
 
 def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> dict:
@@ -330,7 +329,7 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
         some = some[turn.max(axis=0) < NEAR_BEFORE]
         scale = 1 + balls.amplitude[some]
         angle = (phase[n] - phase[n - k])[some]
-        angle -= TURN * np.round(angle / TURN)
+        angle -= PERIOD * np.round(angle / PERIOD)
         change = (speed[n] - speed[n - k])[some] * scale
         lap = maps[:, :, n - k :, some]
         (a, b), (c, d) = product(lap)
@@ -344,10 +343,10 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
     passed = times(record, after)
     passed = passed[n] - passed[n - lag, np.arange(m)]
     return {
-        "repeats": (distance < NEAR) & (radius < 1 - MARGIN),
+        "repeats": (distance < RETURNED) & (radius < 1 - MARGIN),
         "marginal": (lag > 0) & (np.abs(radius - 1) < MARGIN),
         "impacts": lag,
-        "periods": np.round(passed / TURN).astype(int),
+        "periods": np.round(passed / PERIOD).astype(int),
         "radius": radius,
         "areas": areas,
     }
@@ -355,7 +354,7 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
 
 def apart(angle: NDArray, speed: Values) -> NDArray:
     """The distance of states by differences of their phases, and of their speeds over 1 + Λ."""
-    return np.maximum(np.abs(angle - TURN * np.round(angle / TURN)), np.abs(speed))
+    return np.maximum(np.abs(angle - PERIOD * np.round(angle / PERIOD)), np.abs(speed))
 
 
 def largest_multiplier(trace: NDArray, determinant: NDArray) -> NDArray:
@@ -396,7 +395,7 @@ def _store_periodic(
     (some,) = again["repeats"].nonzero()
     again = _take(again, some)
     sticks = np.zeros((len(record), some.size), bool)
-    if after.ball.lasts:
+    if after.ball.has_duration:
         ball = after.ball.rows(some)
         # A contact that no free impact leaves has no such length, which is NaN.
         sticks = record[:, 3, some] > 2 * ball.free(np.abs(record[:, 2, some]))
@@ -423,15 +422,15 @@ def _store_locked(
     row = np.arange(lap.size)
     n = len(lifts)
     last = n - 1 - lifts[::-1].argmax(axis=0)
-    at = TURN * record[:, 0] + record[:, 1] + record[:, 4]
+    at = PERIOD * record[:, 0] + record[:, 1] + record[:, 4]
     # A table may have several phases at which balls leave it: a motion repeats at one of them.
     with np.errstate(invalid="ignore"):
         phase = np.where(lifts, record[:, 1] + record[:, 4], np.nan)
-        same = apart(phase - phase[last, row], 0.0) < NEAR
+        same = apart(phase - phase[last, row], 0.0) < RETURNED
     earlier = lifts & same & (np.arange(n)[:, np.newaxis] < last)
     before = n - 1 - earlier[::-1].argmax(axis=0)
     twice = earlier.any(axis=0)
-    before_all = apart(track["lifted_at"] - phase[last, row], 0.0) < NEAR
+    before_all = apart(track["lifted_at"] - phase[last, row], 0.0) < RETURNED
     number = np.where(twice, seen + before, np.where(before_all, track["lifted"], -1))
     time = np.where(twice, at[before, row], track["lifted_at"])
     lifted = lifts.any(axis=0)
@@ -446,8 +445,8 @@ def _store_locked(
         locked,
         kind=LOCKED,
         impacts=np.where(known, (track["lifted"] - number)[locked], 0),
-        periods=np.where(known, np.round((track["lifted_at"] - time)[locked] / TURN), 0),
-        reason=np.where(known, "", ROUNDING),
+        periods=np.where(known, np.round((track["lifted_at"] - time)[locked] / PERIOD), 0),
+        reason=np.where(known, "", LOST_TO_ROUNDING),
         lyapunov_exponent=-np.inf,
         lyapunov_error=0.0,
         exponent_sum=-np.inf,
@@ -468,7 +467,7 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
         elif rate > ERRORS * scatter and growth.sum() > FORGOTTEN:
             reason = ""
         elif rate < -ERRORS * scatter and track["most"][j] > FORGOTTEN:
-            reason = ROUNDING
+            reason = LOST_TO_ROUNDING
         else:
             reason = NO_RECURRENCE
         _store_end(
@@ -478,9 +477,9 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
             j,
             kind=UNDECIDED if reason else CHAOTIC,
             reason=reason,
-            lyapunov_exponent=TURN * rate,
-            lyapunov_error=TURN * error,
-            exponent_sum=TURN * areas.sum() / time.sum(),
+            lyapunov_exponent=PERIOD * rate,
+            lyapunov_error=PERIOD * error,
+            exponent_sum=PERIOD * areas.sum() / time.sum(),
             followed=seen,
         )
 
@@ -502,7 +501,7 @@ def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, flo
     (2.0, 0.3)
     """
     lengths = -np.cumsum(areas)
-    first = max(growth.size // 4, int(np.searchsorted(lengths, SETTLED)))
+    first = max(growth.size // 4, int(np.searchsorted(lengths, SETTLING_LENGTHS)))
     first = min(first, max(growth.size - 2, 0))
     rate = growth[first:].sum() / time[first:].sum()
     if growth.size < 2:
@@ -515,7 +514,7 @@ def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, flo
         errors.append(error * np.array([1.0, stdtrit(n - 1, 0.975) / 1.96]))
         residual = residual[: n // 2 * 2].reshape(-1, 2).sum(axis=1)
     widest = np.max(errors, axis=0)[1]
-    tells = lengths[-1] - lengths[first] >= TELLING
+    tells = lengths[-1] - lengths[first] >= TELLING_LENGTHS
     return rate, errors[0][0], widest if tells else np.nan
 
 
@@ -664,7 +663,7 @@ def lyapunov(
     ends = ends_of(balls, impacts)
     (chaotic,) = (ends["kind"] == CHAOTIC).nonzero()
     beside = np.repeat(chaotic, neighbours)
-    shift = NEAR * np.tile(np.arange(1, neighbours + 1), chaotic.size)
+    shift = RETURNED * np.tile(np.arange(1, neighbours + 1), chaotic.size)
     states = {"phase": ends["end_phase"][beside], "speed": ends["end_speed"][beside] + shift}
     kinds = ends_of(replace(balls.take(beside), **states), impacts)["kind"]
     kinds = kinds.reshape(chaotic.size, neighbours)
@@ -693,7 +692,7 @@ def fastest(ball: Ball, amplitude: Values, table: Table = SINE) -> Values:
     >>> float(fastest(Rigid(0.5), 2.0))
     6.0
     """
-    r = np.nan_to_num(ball.signature(TURN).restitution)
+    r = np.nan_to_num(ball.signature(PERIOD).restitution)
     return (1 + r) * np.maximum(amplitude * table.bounds[1], 1.0) / np.maximum(1 - r, 0.05)
 
 
@@ -768,7 +767,7 @@ def basins(
     )
     checked("relative_velocity_max", fast, 0, np.inf, low_allowed=False)
     grid, ball, (amplitude, u, tau) = grid_of(
-        ball, amplitude=amplitude, speed=fast * middle, phase=TURN * middle - np.pi
+        ball, amplitude=amplitude, speed=fast * middle, phase=PERIOD * middle - np.pi
     )
     balls = Balls(ball, amplitude, 0 * tau, tau, u, table)
     which, motions = told_apart(balls, ends_of(balls, impacts))
@@ -798,7 +797,7 @@ def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
         fastest_impact = np.nan, np.nan
         if k:
             # A ball on the same motion ends at one of the impacts of this one.
-            phase, u = follow(balls.take(np.array([first])), k)[0][:, 1:3, 0].T
+            phase, u = bounce(balls.take(np.array([first])), k)[0][:, 1:3, 0].T
             amplitude = balls.amplitude[first]
             near = np.full(same.size, np.inf)
             for each, speed in zip(phase, u, strict=True):
@@ -858,7 +857,7 @@ def orbit_diagram(
     if grid.ndim != 1:
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
     value, start = np.mgrid[: grid.size, : whole_number("starts", starts)].reshape(2, -1)
-    phase = TURN * (EVEN[0] * (start + 1) % 1)
+    phase = PERIOD * (EVEN[0] * (start + 1) % 1)
     several = ball.rows(value)
     speed = fastest(several, amplitude[value], table) * (EVEN[1] * (start + 1) % 1)
     balls = Balls(several, amplitude[value], 0 * phase, phase, speed, table)
@@ -880,7 +879,7 @@ def orbit_diagram(
     balls = Balls(ball.rows(value), amplitude[value], 0.0 * value, *state, table)
     (moving,) = np.isfinite(balls.phase).nonzero()
     impact = np.full((2, value.size, samples), np.nan)
-    impact[:, moving] = np.moveaxis(follow(balls.take(moving), samples)[0][:, 1:3], 0, -1)
+    impact[:, moving] = np.moveaxis(bounce(balls.take(moving), samples)[0][:, 1:3], 0, -1)
     variables = dict(zip(("impact_phase", "impact_speed"), impact, strict=True))
     grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
     recorded = dataset(grid, variables, OF_MOTIONS, impact=np.arange(samples))
@@ -933,16 +932,15 @@ def orbit_of_motion(
     m = int(ends["periods"][0])
     if not k:
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
-    if ends["kind"][0] == LOCKED and not ball.lasts:
-        if not ball.sinks:
+    if ends["kind"][0] == LOCKED and not ball.has_duration:
+        if not ball.below_table:
             found = orbit_with_rest(ball, amplitude=amplitude, table=table)
             if found.periods == m:
                 return found
         raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
     state = ends["end_phase"], ends["end_speed"]
     on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)
-    turns, tau, u, T = follow(on_orbit, k)[0][:, :4, 0].T
-    columns = [TURN * turns + tau, u, T] if ball.lasts else [TURN * turns + tau, u]
-    z = np.append(np.stack(columns, axis=1).ravel(), balls.amplitude)
+    turns, tau, u, T = bounce(on_orbit, k)[0][:, :4, 0].T
+    z = row_of(ball, PERIOD * turns + tau, u, T, balls.amplitude)
     equations = OrbitEquations(ball, k, m, table=table)
     return solved(equations, z, "the orbit on which the ball ends")

@@ -58,14 +58,14 @@ def law_of_impact(
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
-    r, lasts, v = np.broadcast_arrays(
+    r, duration_of_impact, v = np.broadcast_arrays(
         checked("restitution", restitution, 0, 1, low_allowed=False),
         checked("duration", duration, 0, np.inf, low_allowed=False),
         checked("speed", speed, 0, np.inf, low_allowed=False),
     )
     found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
     damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)
-    length = lasts * v / unit.reshape(r.shape)
+    length = duration_of_impact * v / unit.reshape(r.shape)
     return law_of(damping.reshape(r.shape)[()], length[()], v[()])
 
 

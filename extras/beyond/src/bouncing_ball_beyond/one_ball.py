@@ -3,17 +3,17 @@ r"""One ball from impact to impact: first landings and first releases as scalar 
 Both are first zeros of functions f ≥ 0 with f″ ≥ -K from now on and \|f‴\| ≤ J, of which no step
 passes one (docs/impacts.md). Where numba is installed, :func:`compile_loops` compiles them, which
 gives the same numbers; its cache notices only changes of the file of the function that is called.
-Many balls, and other tables: :mod:`.simulation`.
+Many balls, and other tables: :mod:`.bounces`.
 """
 
 import math
 
 from numpy.typing import NDArray
 
-TURN = 2 * math.pi
+PERIOD = 2 * math.pi
 REACH = 4.0
 """The reach H of the second bound, in steps of the first one."""
-PATIENCE = 100 * TURN
+PATIENCE = 100 * PERIOD
 """A contact without a release for this long is a lasting one."""
 SLOWEST = 1e-12
 """The closing speed that is given to a ball without one, which is laid on the table."""
@@ -23,12 +23,12 @@ sum has a relative error of the order of the square.
 """
 STEPS = 20_000
 """Steps after which a search ends as undecided: these are hundreds of oscillations."""
-ROUNDING = 2.0**-52
+EPS = 2.0**-52
 COLUMNS = (
     "turns",
     "phase",
     "speed",
-    "own_time",
+    "scaled_duration",
     "duration",
     "gap",
     "bounce_speed",
@@ -60,9 +60,9 @@ def safe_step(
     step = root_of_parabola(f, slope, bend)
     reach = REACH * step
     step = max(step, min(reach, root_of_parabola(f, slope, min(bend, jerk * reach / 3 - second))))
-    if slope < 0 and jerk * step * step * step <= ROUNDING * -slope * t:
+    if slope < 0 and jerk * step * step * step <= EPS * -slope * t:
         return root_of_parabola(f, slope, -second), True
-    return step, step <= ROUNDING * t
+    return step, step <= EPS * t
 
 
 def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
@@ -167,7 +167,7 @@ def contact(
 
 
 def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: float) -> tuple:
-    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it lasts for ever, from what
+    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it stays for ever, from what
     :func:`contact` returns; see :func:`.oscillator.bounds`.
     """
     position, rate, push, shove = motion
@@ -189,8 +189,8 @@ def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: fl
     growth = 1 + 4 * zeta * zeta
     bend = ratio * math.sqrt(growth) * energy
     jerk = ratio * math.sqrt(1 + growth) * bend + forced
-    lasts = energy / ratio + forced <= 1 / stiffness
-    return f, slope, second, third, bend + forced, jerk, lasts
+    stays = energy / ratio + forced <= 1 / stiffness
+    return f, slope, second, third, bend + forced, jerk, stays
 
 
 def release(
@@ -211,8 +211,8 @@ def release(
     s = 0.0
     while s < PATIENCE:
         motion = contact(s, gap, u, x, y, 1.0, ratio, zeta)
-        f, slope, second, third, bend, jerk, lasts = bounds(motion, amplitude, ratio, zeta, kappa)
-        if lasts:
+        f, slope, second, third, bend, jerk, stays = bounds(motion, amplitude, ratio, zeta, kappa)
+        if stays:
             break
         step, last = safe_step(s, max(f, 0.0), slope, -second - kappa * third, bend, jerk)
         s += step
@@ -242,12 +242,12 @@ def until_lift_off(phase: float, amplitude: float) -> float:
     """How long a ball rests: until Λ sin τ rises to 1, or for ever (Eq. 9)."""
     if amplitude <= 1:
         return math.inf
-    wait = (math.asin(1 / amplitude) - phase) % TURN
+    wait = (math.asin(1 / amplitude) - phase) % PERIOD
     # Rounding must not postpone the lift-off by a turn.
-    return 0.0 if wait > TURN - CHATTER**2 else wait
+    return 0.0 if wait > PERIOD - CHATTER**2 else wait
 
 
-def rest(w: float, restitution: float, phase: float, amplitude: float) -> tuple[float, float]:
+def settle(w: float, restitution: float, phase: float, amplitude: float) -> tuple[float, float]:
     """How long a ball rests after an instant that leaves it with the speed w, or a negative time,
     and the phase at which it leaves.
     """
@@ -263,8 +263,8 @@ def rest(w: float, restitution: float, phase: float, amplitude: float) -> tuple[
 
 def reduced(phase: float) -> tuple[float, float]:
     """The number of turns of the table in a phase, and what is left of it, from -π to π."""
-    turns = float(math.floor(phase / TURN + 0.5))
-    return turns, phase - turns * TURN
+    turns = float(math.floor(phase / PERIOD + 0.5))
+    return turns, phase - turns * PERIOD
 
 
 def fly(gap: float, w: float, x: float, y: float, amplitude: float, kappa: float) -> tuple:
@@ -303,7 +303,7 @@ def impacts(
             gap = 0.0
             duration = 0.0
             if w <= CHATTER * (1 + amplitude) * (1 + amplitude):
-                stay, leaves = rest(w, restitution, phase, amplitude)
+                stay, leaves = settle(w, restitution, phase, amplitude)
                 rests = stay >= 0
             if rests:
                 w = 0.0
@@ -344,7 +344,7 @@ LOOPS = (
     release,
     settling,
     until_lift_off,
-    rest,
+    settle,
     reduced,
     fly,
     impacts,

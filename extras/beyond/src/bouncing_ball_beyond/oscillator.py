@@ -304,5 +304,5 @@ def bounds(
     growth = 1 + 4 * zeta * zeta
     bend = ratio * np.sqrt(growth) * energy
     jerk = ratio * np.sqrt(1 + growth) * bend + jerk_forced
-    lasts = energy / ratio + held <= (1 - resonant) / stiffness
-    return f, slope, second, third, bend + bend_forced, jerk, lasts
+    stays = energy / ratio + held <= (1 - resonant) / stiffness
+    return f, slope, second, third, bend + bend_forced, jerk, stays

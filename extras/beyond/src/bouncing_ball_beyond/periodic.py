@@ -14,7 +14,13 @@ from bouncing_ball_beyond.balls import (
     whole_number,
 )
 from bouncing_ball_beyond.continuation import limits
-from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
+from bouncing_ball_beyond.equations import (
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    alone,
+    row_of,
+)
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import (
     all_orbits,
@@ -85,7 +91,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     found: list = [None] * len(near)
     admissible = np.zeros(len(near), bool)
     # With a number r and a sine the instants are the impacts, so that there are no others.
-    if equations.ball.lasts or equations.ball.looped(equations.table) is None:
+    if equations.ball.has_duration or equations.ball.loop_parameters(equations.table) is None:
         found, admissible = shortest_contacts(equations, amplitude, sign)
     missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
@@ -181,8 +187,7 @@ def orbit_near(
     periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
     if periods < 1:
         raise OrbitNotFound("the guess takes no time: its velocities are not those of flights")
-    columns = [times[:-1], u, T] if ball.lasts else [times[:-1], u]
-    z = np.append(np.stack(columns, axis=-1).ravel(), amplitude)
+    z = row_of(ball, times[:-1], u, T, amplitude)
     equations = OrbitEquations(ball, len(u), periods, table=table)
     what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"
     return solved(equations, z, what)

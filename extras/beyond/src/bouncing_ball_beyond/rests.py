@@ -11,21 +11,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, check_ball, whole_number
+from bouncing_ball_beyond.bounces import Balls, bounce, reduced
 from bouncing_ball_beyond.chains import solved_or_nan
 from bouncing_ball_beyond.equations import (
     FAR,
     Flights,
-    Linear,
+    LinearizedLegs,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
     flight,
 )
 from bouncing_ball_beyond.march import newton
+from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.periodic import one_amplitude
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
-TAIL = 1e-2
+SLOW_BOUNCE = 1e-2
 """The last bounces that are slower than this do not tell where a flight or an impact grazes."""
 
 SOON = 1e-6
@@ -80,7 +82,7 @@ class RestEquations(OrbitEquations):
         time = x[..., 0] - leaves
         return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
 
-    def linear(self, z: NDArray) -> Linear:
+    def linearized(self, z: NDArray) -> LinearizedLegs:
         """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight,
         without the last slow bounces.
         """
@@ -97,15 +99,15 @@ class RestEquations(OrbitEquations):
     @staticmethod
     def _tail(speeds: NDArray) -> NDArray:
         """Which of the speeds are those of the last slow bounces, shape (rows, k)."""
-        return np.cumprod(np.abs(speeds[:, ::-1]) < TAIL, axis=1)[:, ::-1].astype(bool)
+        return np.cumprod(np.abs(speeds[:, ::-1]) < SLOW_BOUNCE, axis=1)[:, ::-1].astype(bool)
 
-    def solve(self, linear: Linear, border: NDArray, right: NDArray) -> NDArray:
+    def solve(self, linear: LinearizedLegs, border: NDArray, right: NDArray) -> NDArray:
         legs = np.stack([-linear.legs[..., 0], 0 * linear.legs[..., 0]], axis=-1)
         matrix = np.concatenate([linear.derivatives, border], axis=1)
         return solved_or_nan(matrix, np.concatenate([legs, right], axis=1))
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        linear = self.linear(z)
+        linear = self.linearized(z)
         return linear.legs[..., 0], linear.derivatives
 
     def rest(self, z: NDArray) -> NDArray:
@@ -145,14 +147,14 @@ class RestEquations(OrbitEquations):
     def halves(self, z: NDArray) -> NDArray:
         return np.ones((len(z), 1))
 
-    def admissible(self, z: NDArray, linear: Linear | None = None) -> NDArray:
+    def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
         """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
-        linear = linear or self.linear(z)
+        linear = linear or self.linearized(z)
         good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
         return good & (self.rest(z) > 0) & (self.fall(z) > 0) & (self.clearance(z) > 0)
 
 
-class _Superstable(Linear):
+class _Superstable(LinearizedLegs):
     """Equations of orbits whose multipliers are zero, because the ball leaves without a memory."""
 
     @property
@@ -225,13 +227,10 @@ def orbit_with_rest(
     >>> orbit.periods, round(orbit.rest, 6)
     (1, 0.449792)
     """
-    # The simulation is not needed by other orbits.
-    from bouncing_ball_beyond.simulation import TURN, Balls, follow, reduced
-
     check_ball(ball)
     check_table(table)
     amplitude = one_amplitude(amplitude)
-    if ball.lasts or ball.sinks:
+    if ball.has_duration or ball.below_table:
         raise ValueError(f"ball = {ball!r}: must have instantaneous impacts, such as Rigid(0.3)")
     impacts = None if impacts is None else whole_number("impacts", impacts)
     starts = table.lift_offs(amplitude)
@@ -245,7 +244,7 @@ def orbit_with_rest(
     for _ in range(CYCLES):
         # A ball that is laid on the table where it lifts off leaves at once.
         laid = Balls(ball, zero + amplitude, zero, zero + start, zero, table)
-        record = follow(laid, MOST)[0][1:, :, 0]
+        record = bounce(laid, MOST)[0][1:, :, 0]
         turns, phase, u, _, rests, _, w, _ = record.T
         ends = np.flatnonzero((rests > 0) & (w == 0))
         if not len(ends) or not np.isfinite(rests[ends[0]]):
@@ -254,9 +253,9 @@ def orbit_with_rest(
                 f" lift-off at the phase {start:.6g}"
             )
         at = ends[0]
-        times = TURN * turns + phase
+        times = PERIOD * turns + phase
         length = times[at] + rests[at] - start
-        if abs(length - TURN * round(length / TURN)) < SOON:
+        if abs(length - PERIOD * round(length / PERIOD)) < SOON:
             break
         start = float(reduced(start + length)[1])
     else:
@@ -271,7 +270,7 @@ def orbit_with_rest(
         slow = float(ball.contact(tau, fast, None, amplitude, table=table).speed)
         hops.append((tau + 2 * slow / (1 + amplitude * float(table(tau, 2))), slow))
     hops = hops[:impacts]
-    equations = RestEquations(ball, len(hops), round(length / TURN), table=table)
+    equations = RestEquations(ball, len(hops), round(length / PERIOD), table=table)
     columns = np.array(hops).ravel()
     z = np.concatenate([columns, [start, amplitude]])
     solution = newton(equations, z[np.newaxis], iterations=40)

@@ -12,7 +12,7 @@ import xarray as xr
 from bouncing_ball_beyond import named_laws
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.branches import FollowedBranch, SpecialCurve
-from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.paths import OF_TABLES, Path, path_of
 from bouncing_ball_beyond.periodic import PeriodicOrbit
@@ -92,7 +92,7 @@ def to_dataset(found: Found) -> xr.Dataset:
         name: [np.atleast_1d(getattr(each, name)) for each in orbits] for name in OF_IMPACTS
     }
     of_impacts["impact_time"] = [each.times for each in orbits]
-    if first.ball.lasts:
+    if first.ball.has_duration:
         of_impacts["scaled_duration"] = [each.z[2 : each.equations.size : 3] for each in orbits]
     of_orbits = {name: [getattr(each, name) for each in orbits] for name in OF_ORBITS}
     resting = [each for each in orbits if isinstance(each, RestOrbit)]
@@ -225,11 +225,10 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
 
 def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> PeriodicOrbit:
     """The orbit of one row."""
-    columns = [row.impact_time.values, -row.relative_impact_velocity.values]
-    if ball.lasts:
-        columns.append(row.scaled_duration.values)
+    T = row.scaled_duration.values if ball.has_duration else None
+    impacts = row.impact_time.values, -row.relative_impact_velocity.values, T
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})
-    given = len(columns[0]), int(row.periods), float(row.amplitude)
+    given = row.sizes["impact"], int(row.periods), float(row.amplitude)
     on = table.at(**{name: float(row[name]) for name in table.parameters})
     values = [float(row[path.name]) for path in paths]
     kind = OrbitEquations
@@ -237,4 +236,4 @@ def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> P
         kind = RestEquations
         values.insert(0, float(row.lift_off_time))
     equations = kind(here, *given, tuple(paths), on)
-    return equations.orbit(np.append(np.stack(columns, axis=-1), values), str(row.kind.values))
+    return equations.orbit(row_of(ball, *impacts, *values), str(row.kind.values))

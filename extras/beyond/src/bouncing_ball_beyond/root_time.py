@@ -35,7 +35,7 @@ from scipy.optimize import elementwise
 from bouncing_ball_beyond.balls import H
 from bouncing_ball_beyond.tables import Table, Values
 
-ROUGH = 1e-7
+RESOLVED = 1e-7
 """The largest last Legendre coefficients of v over its greatest value. The square is rounding."""
 
 SMOOTH, FALLING = 1e-13, 0.02
@@ -45,14 +45,14 @@ from the middle to the end. Beyond a kink it is (1/2)² to (1/2)³, and their sq
 SWEEPS = 20
 """The largest number of sweeps of a panel."""
 
-CONVERGED, SETTLED = 1e-13, 1e-12
+CONVERGED, ACCEPTED_CHANGE = 1e-13, 1e-12
 """Changes of v in a sweep over its greatest value: where the sweeps stop, and what is enough."""
 
 EARLY, WANTED, LONGER = 3, 0.03, 2.0
 """The change in the sweep EARLY that the next panel should have, and the largest ratio of lengths.
 With these, contacts of four laws took the least number of sweeps."""
 
-NEAR = 1e-13
+EVENT_STEP = 1e-13
 """The last step of Newton's method to an event, over the length of the panel in which it is."""
 
 FAR_OFF = 0.5
@@ -76,7 +76,7 @@ SAFE = 8.0
 """It is also permanent if all its further changes, so many times, cannot lift the ball: see
 :meth:`_Contacts.compare_periods`."""
 
-ROWS = 1000
+CONTACTS_AT_ONCE = 1000
 """So many contacts are followed at a time: their nodes fit into a processor's cache."""
 
 FEW_CONTACTS = 50
@@ -123,7 +123,7 @@ WHOLE = tuple(Gauss.of_order(n) for n in (32, 48, 64, 80))
 class Guess(NamedTuple):
     """Whole contacts as they would be without a load: F at their nodes, shape (nodes, rows).
 
-    Row i has the matrix inverses[which[i]], the inverse of that of :meth:`Linearised.matrix`.
+    Row i has the matrix inverses[which[i]], the inverse of that of :meth:`LinearizedPanel.matrix`.
     """
 
     gauss: Gauss
@@ -303,7 +303,7 @@ class Panel(NamedTuple):
             whole[..., at] = part
 
 
-class Linearised(NamedTuple):
+class LinearizedPanel(NamedTuple):
     """The linearised collocation of panels: δF = F_q δq + F_v δv + F_t δt + what is known.
 
     ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (nodes, 1, rows), and
@@ -365,8 +365,8 @@ class Linearised(NamedTuple):
         return self.solved(known)
 
 
-def linearised(motion: ContactMotion, nodes: tuple, h: NDArray) -> Linearised:
-    """:class:`Linearised` about a motion, by complex steps of the force."""
+def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPanel:
+    """:class:`LinearizedPanel` about a motion, by complex steps of the force."""
     q, v, t = nodes
     given = motion.given
     m = motion.root
@@ -380,7 +380,7 @@ def linearised(motion: ContactMotion, nodes: tuple, h: NDArray) -> Linearised:
     by_v = -lever * motion.force(p, v + 1j * H, a, given).imag / H
     by_t = lever * felt * given["amplitude"] * waveform(given)(given["tau"] + t, 3)
     by_q, by_v, by_t, bend = (each[:, np.newaxis] for each in (by_q, by_v, by_t, bend))
-    return Linearised(by_q, by_v, by_t, bend, h, motion.gauss)
+    return LinearizedPanel(by_q, by_v, by_t, bend, h, motion.gauss)
 
 
 def _end_of(start: Sequence, h: NDArray, slopes: tuple, weights: NDArray) -> tuple:
@@ -423,7 +423,7 @@ def solve_panel(
         force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
             missing = (force - push)[:, np.newaxis]
-            force = push + linearised(motion, (q, v, t), h).solved(missing)[:, 0]
+            force = push + linearize(motion, (q, v, t), h).solved(missing)[:, 0]
         elif guess:
             force = push + guess.corrected(force - push)
         push = force
@@ -473,7 +473,7 @@ def carried(
 
     Both have the shape (3, directions, rows).
     """
-    linear = linearised(motion, nodes, h)
+    linear = linearize(motion, nodes, h)
     q0, v0, t0 = by
     alone = q0 + h * motion.gauss.nodes[:, np.newaxis, np.newaxis] * v0
     # Of what is given, τ alone is felt as the time is.
@@ -515,9 +515,9 @@ def _resolved(motion: ContactMotion, panel: Panel, size: NDArray) -> tuple[NDArr
     fall = motion.given["gravity"] * (panel.end[2] - panel.nodes[2][0])
     rounded = np.fmax(1.0, fall / size)
     falls = last <= FALLING * middle
-    smooth = (last <= ROUGH) & falls | (last <= SMOOTH * rounded)
-    good = smooth & (panel.change <= SETTLED * size * rounded)
-    by_tail = (ROUGH / np.maximum(last, TINY)) ** (1 / order)
+    smooth = (last <= RESOLVED) & falls | (last <= SMOOTH * rounded)
+    good = smooth & (panel.change <= ACCEPTED_CHANGE * size * rounded)
+    by_tail = (RESOLVED / np.maximum(last, TINY)) ** (1 / order)
     by_sweeps = (WANTED * size / np.maximum(panel.early, TINY)) ** (1 / (2 * EARLY + 2))
     factor = 0.9 * np.minimum(by_tail, by_sweeps)
     factor = np.where(np.isfinite(factor), np.clip(factor, 0.25, LONGER), 0.25)
@@ -582,7 +582,7 @@ def _maxima(
     bracket = x[node], x[node + 1], x[node + 2]
     found = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
     # Inside a panel the motion is only as right as the last coefficients are small.
-    reached = found.f_x <= ROUGH * np.abs(below[:, row]).max(0)
+    reached = found.f_x <= RESOLVED * np.abs(below[:, row]).max(0)
     return row[reached], found.x[reached]
 
 
@@ -631,7 +631,7 @@ def _next_panel(
             at = rows[found == k]
             begin = [y[at] for y in start]
             short = place[found == k]
-            within = NEAR * length[at]
+            within = EVENT_STEP * length[at]
             push = panel.of(at).pushed(short / panel.length[at], motion.gauss)
             given = motion.of(at), begin, short, events[k], within
             panel.replace_some(at, solve_panel(*given, push=push, newton=newton))
@@ -784,7 +784,7 @@ def whole_panel(
 
 
 @np.errstate(all="ignore")
-def follow_to(
+def integrate_to(
     motion: ContactMotion,
     start: NDArray,
     by: NDArray,
@@ -794,7 +794,7 @@ def follow_to(
     by_until: NDArray,
     guess: Guess | None,
 ) -> tuple[NDArray, NDArray]:
-    """As :func:`follow`, contacts up to root times, with the derivatives of these.
+    """As :func:`integrate_contacts`, contacts up to root times, with the derivatives of these.
 
     Those that end as free impacts do are found in one panel each.
     """
@@ -813,12 +813,12 @@ def follow_to(
             slopes[1:, :, at] = carried(*given, guess=guess.of(at))
     if left.size:
         some = motion.of(left), start[:, left], by[..., left], length[left], period[left]
-        ends[:, left], slopes[..., left] = follow(*some, until=until[left])
+        ends[:, left], slopes[..., left] = integrate_contacts(*some, until=until[left])
     return ends, slopes + _pace(motion, ends[1:]) * (by_until - slopes[0])
 
 
 @np.errstate(all="ignore")
-def follow(
+def integrate_contacts(
     motion: ContactMotion,
     start: NDArray,
     by: NDArray,
@@ -885,7 +885,7 @@ def follow(
         active = np.flatnonzero(~(contacts.ended | contacts.lost))
         if not active.size:
             break
-        for here in np.array_split(active, -(-active.size // ROWS)):
+        for here in np.array_split(active, -(-active.size // CONTACTS_AT_ONCE)):
             # Most balls have left the table after few panels, and the others lie on it.
             contacts.advance(here, lies=attempt >= PATIENT)
     now[:, ~contacts.ended] = np.nan

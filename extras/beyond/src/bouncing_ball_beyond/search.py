@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
+from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrbit
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
@@ -63,10 +64,9 @@ def guess_of_instants(
             psi = table.phase_of_slope((u - np.pi * periods) / amplitude, side)
             if np.all(np.abs(step) < 1e-7 * u):
                 break
-    # The impacts of a corrected ball are at the centroids themselves.
-    touch = psi if ball.sinks else psi - np.where(known, centroid, 0.0)
+    touch = psi - ball.delay(np.where(known, centroid, 0.0))
     columns = [touch, u, amplitude]
-    if ball.lasts:
+    if ball.has_duration:
         free = ball.free(u)
         columns.insert(2, np.where(np.isfinite(free), free, np.pi))
     return np.stack(np.broadcast_arrays(*columns), axis=-1)
@@ -136,7 +136,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
 
     def impacts(tau: NDArray, u: NDArray) -> NDArray:
         columns = [tau, u, np.full(tau.size, amplitude)]
-        if equations.ball.lasts:
+        if equations.ball.has_duration:
             # Contacts of an orbit are shorter than its period.
             within: dict[str, Any] = {"periods": equations.periods, "table": table}
             columns.insert(2, equations.ball.first_release(tau, u, amplitude, **within))
@@ -151,16 +151,13 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
-    # The simulation is not needed by orbits with one impact.
-    from bouncing_ball_beyond.simulation import Balls, follow
-
     turn = 2 * np.pi
     fastest = 1.1 * np.pi * equations.periods + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
     none = np.zeros(tau.size)
     first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel(), equations.table)
-    record, going, after = follow(first, equations.impacts)
+    record, going, after = bounce(first, equations.impacts)
     turns, phase, speed, T, *_ = np.moveaxis(record[..., going], 1, 0)
     times = turn * turns + phase
     length = turn * after.turns + after.phase - times[0]

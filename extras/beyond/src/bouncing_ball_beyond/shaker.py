@@ -290,8 +290,8 @@ def on_shaker(
             square = positive("stiffness", stiffness, "N/m") / _mass(mass, radius, density)
             ratio = np.sqrt(square) / rate
         else:
-            lasts = rate * positive("contact_duration", contact_duration, "s")
-            ratio = float(spring.free(1.0)) / lasts
+            contact_time = rate * positive("contact_duration", contact_duration, "s")
+            ratio = float(spring.free(1.0)) / contact_time
 
         def contacts(times: Values) -> Any:
             return spring.at(frequency_ratio=ratio * times)

@@ -95,7 +95,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
             solution.z[lost] = guess[lost]
             solution.tangent[lost] = slopes[0, lost]
             solution.found[lost] = True
-            solution = solution._replace(linear=equations.linear(solution.z))
+            solution = solution._replace(linear=equations.linearized(solution.z))
         found &= solution.found
         z = np.where(found[:, np.newaxis], solution.z, guess)
         value = _tests_of(crossings.kind, equations, solution)

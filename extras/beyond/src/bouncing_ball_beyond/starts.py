@@ -49,7 +49,7 @@ def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     sign, and after it this vector with the other sign.
     """
     q = equations.unknowns
-    derivatives = equations.linear(z).derivatives[..., : q + 3].copy()
+    derivatives = equations.linearized(z).derivatives[..., : q + 3].copy()
     rows, k, _, _ = derivatives.shape
     derivatives[:, -1, :, q : q + 2] *= -1
     # Any column and any row beside the singular matrix, if they are not special.

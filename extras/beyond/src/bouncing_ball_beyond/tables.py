@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_beyond.one_ball import CHATTER, TURN
+from bouncing_ball_beyond.one_ball import CHATTER, PERIOD
 
 SAMPLES = 64
 """Samples in a period of the highest harmonic."""
@@ -22,7 +22,7 @@ JUMP = 2.0
 """The step from the last sample to the first, over all other steps, up to which a period is
 smooth.
 """
-ROUGH = 0.1
+UPPER_SHARE = 0.1
 """The share of the upper harmonics in the acceleration above which samples do not tell how many are
 meant.
 """
@@ -113,7 +113,7 @@ class Table:
     sizes: tuple
     phases: tuple
 
-    compiled = False
+    is_sine = False
     """Whether the loops of :mod:`.one_ball` follow single balls."""
 
     def __init__(self, harmonics: Any) -> None:
@@ -183,7 +183,7 @@ class Table:
         if size <= 1e-12 * np.abs(values).max():
             raise ValueError("values: are all the same: the table would be at rest")
         upper = np.linalg.norm(pulls[k > max(last / 2, 2)]) / size
-        if harmonics is None and upper > ROUGH:
+        if harmonics is None and upper > UPPER_SHARE:
             raise ValueError(
                 f"values: harmonics above {max(last // 2, 2)} have {upper:.0%} of the acceleration,"
                 " by noise, by a jump, or because the end of the period is there twice; give the"
@@ -221,7 +221,7 @@ class Table:
         --------
         >>> time = np.arange(0.0, 0.83, 1e-3)
         >>> signal = 9.81 + 7.0 * np.sin(157.08 * time) + 2.0 * np.sin(471.24 * time)
-        >>> known = {"frequency": 157.08 / TURN, "harmonics": [1, 3]}
+        >>> known = {"frequency": 157.08 / PERIOD, "harmonics": [1, 3]}
         >>> table, amplitude = Table.of_record(time, signal, **known)
         >>> round(amplitude * 9.80665 * table.sizes[0], 4), table.orders
         (7.0, (1, 3))
@@ -246,7 +246,7 @@ class Table:
                 f"time: {len(time)} samples of {np.ptp(time) * frequency:.3g} periods are too few"
                 f" for {len(k)} harmonics"
             )
-        angles = TURN * frequency * np.multiply.outer(time, k)
+        angles = PERIOD * frequency * np.multiply.outer(time, k)
         columns = np.hstack([np.ones((len(time), 1)), np.cos(angles), np.sin(angles)])
         fitted, _, rank, _ = np.linalg.lstsq(columns, acceleration, rcond=1e-6)
         if rank < columns.shape[1]:
@@ -381,14 +381,14 @@ class Table:
     @cached_property
     def grid(self) -> Values:
         """Phases of a period, 64 in each of the highest harmonic."""
-        return np.linspace(0, TURN, SAMPLES * self.orders[-1] + 1)
+        return np.linspace(0, PERIOD, SAMPLES * self.orders[-1] + 1)
 
     @cached_property
     def bounds(self) -> Values:
         """What |W| and its first five derivatives do not exceed."""
-        rest = (self.grid[1] / 2) ** 2 / 2
+        remainder = (self.grid[1] / 2) ** 2 / 2
         sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
-        largest = [np.abs(self(self.grid, m)).max() + rest * sums[m + 2] for m in range(6)]
+        largest = [np.abs(self(self.grid, m)).max() + remainder * sums[m + 2] for m in range(6)]
         return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
 
     def _top(self, order: int, sign: int = 1) -> float:
@@ -436,7 +436,7 @@ class Table:
         """Phases after the steepest one (1) and before it (-1), up to a minimum of W′, and W′."""
         found = {}
         for side in (1, -1):
-            phase = self.steepest + side * np.linspace(0, TURN, 4 * len(self.grid) - 3)
+            phase = self.steepest + side * np.linspace(0, PERIOD, 4 * len(self.grid) - 3)
             rises = side * self(phase, 2) > 0
             rises[0] = False
             phase = phase[: int(np.argmax(rises)) or len(phase)]
@@ -446,7 +446,7 @@ class Table:
     @cached_property
     def _turns(self) -> tuple:
         """Samples from the steepest phase to where W′ is zero, and angles of (W′, -W″)."""
-        phase = self.steepest + np.linspace(0, TURN, 4 * len(self.grid) - 3)
+        phase = self.steepest + np.linspace(0, PERIOD, 4 * len(self.grid) - 3)
         phase = phase[: int(np.argmax(self(phase, 1) <= 0)) + 1]
         angles = np.arctan2(-self(phase, 2), self(phase, 1))
         return phase, np.maximum.accumulate(np.maximum(angles, 0))
@@ -518,24 +518,24 @@ class Table:
         short = ~falls.any(axis=-1) & (np.asarray(amplitude) * self.lift > 1)
         phases[short, 0] = self._top(2, -1)
         falls[short, 0] = True
-        return np.sort(np.where(falls, phases % TURN, np.nan))
+        return np.sort(np.where(falls, phases % PERIOD, np.nan))
 
     def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
         """How long balls that rest stay on the table, and the phases at which they leave."""
         phases = self.lift_offs(amplitude)
-        wait = (phases - np.asarray(phase)[..., np.newaxis]) % TURN
+        wait = (phases - np.asarray(phase)[..., np.newaxis]) % PERIOD
         # Rounding must not postpone the lift-off by a turn.
-        wait = np.where(wait > TURN - CHATTER**2, 0.0, wait)
+        wait = np.where(wait > PERIOD - CHATTER**2, 0.0, wait)
         wait = np.where(np.isnan(wait), np.inf, wait)
         first = wait.argmin(axis=-1)[..., np.newaxis]
         leaves = np.take_along_axis(phases, first, -1)[..., 0]
-        return wait.min(axis=-1), leaves - TURN * np.floor(leaves / TURN + 0.5)
+        return wait.min(axis=-1), leaves - PERIOD * np.floor(leaves / PERIOD + 0.5)
 
 
 class Sine(Table):
     """W = sin τ, the table of the paper: the functions of a table by closed formulas."""
 
-    compiled = True
+    is_sine = True
 
     def __init__(self) -> None:
         super().__init__([(1, 1.0, 0.0)])

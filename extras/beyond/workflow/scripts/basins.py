@@ -8,8 +8,8 @@ import xarray as xr
 from bouncing_ball.datasets import save_stage
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import SpringDamper
+from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.periodic import orbit
-from bouncing_ball_beyond.simulation import Balls, follow
 from studies.variables import described
 
 NEAR = 1e-3
@@ -67,7 +67,7 @@ def ext_basin(parameters: dict) -> xr.Dataset:
     on_orbit = np.zeros(count, bool)
     left = np.arange(count)
     for _ in range(parameters["impacts"] // parameters["block"]):
-        record, going, balls = follow(balls, parameters["block"])
+        record, going, balls = bounce(balls, parameters["block"])
         last = record[-LAST:]
         turned = last[:, 1] - each.phase.values[left]
         away = np.abs(np.exp(1j * turned) - 1) + np.abs(last[:, 2] / each.speed.values[left] - 1)

@@ -232,7 +232,9 @@ def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, 
     found = z[:, -2]
     low, high = (parameters["frequency_ratio"][end] for end in ("min", "max"))
     inside = (found >= low) & (found <= high)
-    stable = inside & (np.abs(equations.turn(equations.linear(z))) < 1) & equations.admissible(z)
+    stable = (
+        inside & (np.abs(equations.turn(equations.linearized(z))) < 1) & equations.admissible(z)
+    )
     shape = len(cases), len(CALIBRATIONS)
     return np.where(inside, found, np.nan).reshape(shape), stable.reshape(shape)
 

@@ -111,20 +111,20 @@ def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, ND
 
 def traces(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     """Traces and determinants of the derivatives of return maps."""
-    trace, determinant = equations.linear(z).trace_and_determinant
+    trace, determinant = equations.linearized(z).trace_and_determinant
     return {"trace": trace, "determinant": determinant}
 
 
 def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     """The quantities of orbits, and height and force in the middle of the contact."""
     impacts, _, amplitudes, _ = equations.split(z)
-    touch, speed, own_time = impacts[:, 0].T
+    touch, speed, scaled_duration = impacts[:, 0].T
     amplitude = amplitudes[:, 0]
     ends = equations.ends(z)
     duration = ends.leaves[:, 0] - touch
     bounce = ends.speed[:, 0]
     ball = equations.ball
-    middle = ball.contact(touch, speed, own_time / 2, amplitude)
+    middle = ball.contact(touch, speed, scaled_duration / 2, amplitude)
     ratio = ball.frequency_ratio
     return {
         "phase": np.pi - (np.pi - touch) % (2 * np.pi),

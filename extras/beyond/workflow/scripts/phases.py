@@ -15,6 +15,7 @@ from scipy.optimize import brentq, root
 
 from bouncing_ball.datasets import save_stage
 from bouncing_ball_beyond.balls import Ball, Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.bounces import Balls, step
 from bouncing_ball_beyond.error_law import (
     FreeImpact,
     contact_values,
@@ -23,7 +24,6 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.simulation import Balls, step
 from bouncing_ball_beyond.tables import Table
 from studies.variables import described
 from studies.waveforms import WAVEFORMS, contact_orbits

@@ -1,7 +1,7 @@
 """Random contacts of all laws, slow and fast, with kinks and force releases, by an integrator.
 
-Small steps of Runge and Kutta's method in plain time share no code with the panels in root time. They
-look at each step whether the contact has ended, so that they pass no end that lasts longer.
+Small steps of Runge and Kutta's method in plain time share no code with the panels in root time. A
+contact is tested for its end at each step, so that no end is passed that lasts longer than a step.
 """
 
 import numpy as np

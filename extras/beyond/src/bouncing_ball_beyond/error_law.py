@@ -117,13 +117,14 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 
 
 def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
-    """Λ, but C/max W′ where it differs from it by rounding, so that C ≤ Λ max W′ at the saddle-node
-    of the restitution model itself."""
+    """Λ, but C/max W′ where it is below it by rounding, so that C ≤ Λ max W′ at the saddle-node of
+    the restitution model itself."""
     amplitude = np.asarray(amplitude, float)
     node = impact.line / table.slope
     # C is a difference of numbers of the size of the speed, which is known to some roundings.
     rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
-    return np.where(np.abs(amplitude - node) <= rounding, node, amplitude)
+    below = (amplitude < node) & (node - amplitude <= rounding)
+    return np.where(below, node, amplitude)
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:

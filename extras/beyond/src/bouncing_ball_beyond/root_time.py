@@ -1,22 +1,26 @@
-"""The motion of a ball in a contact of any force law, in a time in which it is analytic.
+"""Contacts of any force law, in a time in which their motion is analytic (docs/panels.md).
 
-The penetration p = -δ obeys p″ = a - f, with the load a = g + w″(τ + t) and the force f(p, p′)
-per mass. Forces such as p^{3/2} are not smooth at p = 0, where a contact begins and ends, but are
-analytic functions of the root q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
+1. Root time. p″ = a - f(p, p′), with the load a = g + w″(τ + t). Forces such as p^{3/2} are
+   analytic functions of q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
 
-    dq/ds = v,    dv/ds = F = λ (a - f),    dt/ds = λ,    with v = p′,
+       dq/ds = v,    dv/ds = F = λ (a - f),    dt/ds = λ,    with v = p′,
 
-and the motion is analytic up to both ends of a contact. It is followed from panel to panel. On a
-panel of the length h, F is a polynomial with the values F_j at the Gauss nodes, and Picard's sweeps
-find them: integrals of v give q, those of λ give t, and those of F give v. Each sweep adds two
-orders in ωh, with the frequency ω of the oscillation in s. If the last Legendre coefficients of v
-are ε, then the end of the panel is right to the order of ε². A panel ends where the force has a
-kink, so that the force is analytic on each. It also ends at a maximum of the release function that
-may be above zero, so that no release is passed where it barely is.
-
-The derivatives are those of the collocation, whose linear equations are solved by the same sweeps.
-A contact up to a known end is one panel, if it is like a free impact of its speed: then the inverse
-of the linear equations of this one makes each step of the sweeps nearly one of Newton's method.
+   and the motion is analytic up to both ends of a contact.
+2. A panel (:func:`solve_panel`). On a panel of the length h, F is a polynomial with the values F_j
+   at the Gauss nodes. Sweeps find them: integrals of F give v, those of v give q, and those of λ
+   give t. A sweep adds two orders in ωh, with the frequency ω of the oscillation in s.
+3. Is it resolved? (:func:`_resolved`) If the last Legendre coefficients of v are ε, the end of the
+   panel is right to the order of ε².
+4. Events (:func:`_next_panel`). A panel ends where the force has a kink, at the release, and at the
+   end of a period of the table.
+5. Ends that are barely reached (:func:`_maxima`). It also ends at a maximum of the release function
+   that may be above zero.
+6. Balls that stay (:meth:`_Contacts.compare_periods`).
+7. Derivatives (:func:`carried`). They are those of the collocation.
+8. Contacts up to a known end (:func:`integrate_to`). They are one panel, if they are like a free
+   impact of their speed, whose linear equations then make each sweep nearly a step of Newton's
+   method.
+9. Which linear equations (:func:`by_newton`, :func:`are_solved_directly`). Chosen by their size.
 
 An array of contacts has the shape (rows,), and one of values at nodes (nodes, rows). Derivatives
 are (directions, rows).
@@ -487,11 +491,7 @@ def carried(
     # That in which only the end of a contact moves is still at rest.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
-    if guess:
-        few = linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
-    else:
-        few = newton or h.size <= FEW_CONTACTS
-    if few:
+    if are_solved_directly(linear, newton, guess):
         push[:, moves] = linear.solved(known[:, moves])
     else:
         push[:, moves] = linear.swept(known[:, moves], guess)
@@ -663,6 +663,24 @@ def _turn(q: NDArray, v: NDArray, t: NDArray, given: Mapping) -> Values:
     return t - given["turn"]
 
 
+def by_newton(motion: ContactMotion, contacts: int, lies: bool) -> bool:
+    """Whether panels are solved by Newton's method and not by sweeps.
+
+    For balls that lie on the table a panel is as long as many oscillations, which have died out.
+    With m = 1 the equations are nearly linear, and a matrix for each of a few contacts costs less
+    than the sweeps.
+    """
+    return lies or (motion.root == 1 and contacts <= FEW_CONTACTS)
+
+
+def are_solved_directly(linear: LinearizedPanel, newton: bool, guess: Guess | None) -> bool:
+    """Whether the equations of derivatives are solved by matrices and not by sweeps: those of few
+    panels, or of whole contacts whose matrices fit into a processor's cache."""
+    if guess:
+        return linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
+    return newton or linear.h.size <= FEW_CONTACTS
+
+
 @dataclass
 class _Contacts:
     """Contacts on their way; most arrays have a value for each of them."""
@@ -696,8 +714,7 @@ class _Contacts:
             length = left / pieces
             last = pieces == 1
         side = self.side[:, here]
-        few = motion.root == 1 and here.size <= FEW_CONTACTS
-        newton = lies or few
+        newton = by_newton(motion, here.size, lies)
         panel, which = _next_panel(motion, self.events, side, start, length, newton)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)

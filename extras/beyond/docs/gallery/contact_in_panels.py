@@ -1,0 +1,47 @@
+"""One contact in panels: where they end, and how fast their Legendre coefficients fall."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import bouncing_ball_beyond as bb
+from bouncing_ball_beyond import root_time
+
+law = bb.simscape_contact(stiffness=700.0, damping=6.0, depth=0.03)
+panels = []
+next_panel = root_time._next_panel
+
+
+def recorded(motion, events, side, start, length, newton):
+    """Keep each panel with its start and the event at its end."""
+    panel, which = next_panel(motion, events, side, start, length, newton)
+    panels.append((float(start[2][0]), panel, int(which[0])))
+    return panel, which
+
+
+root_time._next_panel = recorded
+impact = law.first_impact(1.0, 2.0, 0.9)[1]
+# A panel that was too long is followed by one with the same start.
+starts = [start for start, _, _ in panels[1:]] + [np.inf]
+accepted = [each for each, after in zip(panels, starts, strict=True) if after > each[0]]
+
+figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
+for number, (_, panel, event) in enumerate(accepted, 1):
+    colour = f"C{number - 1}"
+    q, v, t = (y[:, 0] for y in panel.nodes)
+    end = float(panel.end[2][0])
+    left.plot(t, q, ".-", color=colour, markersize=4)
+    names = ["kink: p = depth", "release: p + κp′ = 0"]
+    text = names[event] if event >= 0 else ""
+    left.axvline(end, color="grey", linewidth=0.8, linestyle=":")
+    left.annotate(text, (end, 0.069), rotation=90, ha="right", va="top", fontsize=8)
+    sizes = np.abs(root_time.PANEL.coefficients @ v) / np.abs(v).max()
+    right.semilogy(sizes, ".-", color=colour, label=f"panel {number}")
+right.axhline(root_time.RESOLVED, color="grey", linewidth=0.8, linestyle=":")
+right.annotate("largest last coefficient", (11.5, 1.5 * root_time.RESOLVED), fontsize=8)
+right.set(xticks=range(0, 20, 4), ylim=(1e-17, 10))
+left.set(xlabel="time t after the start", ylabel="penetration p", title="Panels and their nodes")
+right.set(
+    xlabel="degree", ylabel="Legendre coefficient of v / max |v|", title="How they are judged"
+)
+right.legend(fontsize=8)
+figure.savefig("contact_in_panels.png")

@@ -24,7 +24,7 @@ multiples of nπ, their saddle-node with r = 0."""
 
 
 def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
-    """The branch of a periodic orbit along a parameter, or the branches of many, side by side.
+    """Follow a periodic orbit along a parameter, or many orbits side by side.
 
     It goes through an orbit, or begins at a special one: stable from a saddle-node, with twice the
     period from a doubling, half of it from a halving, one impact more from the grazing of a flight.
@@ -58,7 +58,7 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
 
 
 def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
-    """The branches of a cascade of period doublings, each up to the doubling where the next begins.
+    """Follow a cascade of period doublings, each branch up to the doubling where the next begins.
 
     Nothing is followed beyond `to`, one value or one for each doubling, and orbits have at most so
     many `impacts`. A sequence of doublings has a list of cascades, with the OrbitNotFound in place
@@ -220,7 +220,7 @@ class Limits(NamedTuple):
 
 
 def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
-    """The saddle-node and the period doubling of the n-T orbits of a ball, as `Limits`.
+    """Find the saddle-node and the period doubling of the n-T orbits of a ball, as `Limits`.
 
     An orbit is followed towards smaller and greater Λ, around the phase at which the table rises
     fastest. In place of a limit there may be an OrbitNotFound with the reason, such as the grazing

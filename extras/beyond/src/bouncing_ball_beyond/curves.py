@@ -35,7 +35,7 @@ def special_curve(
     ranges: Mapping[str, tuple[float, float]] | None = None,
     points: int = 400,
 ) -> SpecialCurve:
-    """The curve of special orbits through one of them, in two parameters, both ways.
+    """Follow a special orbit in two parameters, both ways.
 
     OrbitNotFound if the orbit is no special one from which a curve goes on.
 

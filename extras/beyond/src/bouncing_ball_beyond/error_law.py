@@ -83,7 +83,7 @@ class FreeImpact(NamedTuple):
 
 
 def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
-    """The free impact of a ball whose closing speed is a root of (1 + r(v)) v = 2nπ."""
+    """Compute the free impact of a ball whose closing speed v solves (1 + r(v)) v = 2nπ."""
     if np.any(np.asarray(n) < 1):
         raise ValueError(f"n = {n!r}: must be a whole number from 1")
     half = np.pi * np.asarray(n)
@@ -145,7 +145,7 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 def law_errors(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """The error law: signed relative errors of the restitution model, by :data:`QUANTITIES`.
+    """Compute the signed relative errors of the restitution model by the error law.
 
     They are right to the second order in the duration, and next to the saddle-node to the order
     3/2; NaN where a model has no orbit. At the saddle-node of the restitution model itself the
@@ -277,7 +277,7 @@ def law_thresholds(
     tolerance: float = 0.01,
     table: Table = SINE,
 ) -> dict:
-    """The ϖ from which on the restitution model is within a tolerance, by the error law.
+    """Compute the ϖ above which the restitution model is within a tolerance, by the error law.
 
     By the names in :data:`QUANTITIES` it is |K|/ε, but for the height and for the phase, which feel
     the saddle-node in the first order (Eq. R7 of the article).
@@ -399,7 +399,7 @@ def contact_values(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Quantities of the n-T orbit of a ball and of its bifurcations, exactly, as arrays by name.
+    """Compute quantities of the n-T orbit of a ball and of its bifurcations, as arrays by name.
 
     They are NaN without an orbit on the stable side of the saddle-node, whether or not a ball
     follows it. For a corrected ball, phase, velocity and apparent restitution are those of a
@@ -517,7 +517,7 @@ def exact_errors(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Signed relative errors of a simple model, by the orbits on the contact (Eqs. 37 and 38).
+    """Compute the signed relative errors of a simple model by exact orbits (Eqs. 37 and 38).
 
     Parameters
     ----------
@@ -605,7 +605,7 @@ def error_thresholds(
     samples: int = 49,
     table: Table = SINE,
 ) -> dict:
-    """The ϖ from which on a simple model is within a tolerance: an :class:`ErrorThreshold` each.
+    """Find the ϖ above which a simple model is within a tolerance: an :class:`ErrorThreshold` each.
 
     Parameters
     ----------

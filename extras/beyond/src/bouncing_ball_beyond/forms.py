@@ -117,7 +117,7 @@ class NormalForm:
 
 
 def normal_form(orbit: PeriodicOrbit) -> NormalForm:
-    """The normal form of a saddle-node or a period doubling; ValueError for other orbits.
+    """Compute the normal form of a saddle-node or a period doubling; ValueError for other orbits.
 
     On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
     ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling.

@@ -1,8 +1,8 @@
-"""One Newton's method and one march for all curves of solutions.
+"""Pseudo-arclength continuation of many solution curves at once.
 
-A problem F(z) = 0 has one equation less than unknowns. Its curves, many of them as rows side by
-side, are followed by pseudo-arclength continuation: along the tangent, and by Newton's method on
-the plane across it.
+The solutions of F(z) = 0, with N unknowns and N - 1 equations, form curves. `march` follows many of
+them in parallel, one curve per row. Each step predicts along the tangent; `newton` then corrects on
+the plane perpendicular to the tangent.
 
 Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
 """
@@ -16,54 +16,85 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.equations import KINDS, SINGULAR, LinearizedLegs, OrbitEquations
 
 RESIDUAL_ROUNDING = 4 * np.finfo(float).eps
-"""Rounding errors of the equations, relative to their largest terms."""
+"""Size of the rounding errors of the equations, relative to their largest terms."""
 
 TOLERANCE = 1e-11
-"""The largest last step, in units of `OrbitEquations.sizes`: the next one is one of rounding."""
+"""Newton's method stops if its step is smaller than this, in units of `OrbitEquations.sizes`.
+
+The next step would consist of rounding errors only.
+"""
 
 SPECIAL = 1e-9
-"""The same for special orbits, whose gradients have errors of 1e-7 at most."""
+"""As `TOLERANCE`, for special orbits, whose gradients have errors of up to 1e-7."""
 
 NOISE = 1e-3
-"""The same for a step from an orbit whose equations hold but for rounding: a longer one is made of
-rounding errors over a singular matrix, as at a saddle-node, and is not taken."""
+"""Newton step, in the same units, that is not taken if the equations hold within rounding.
+
+Such a step consists of rounding errors divided by a nearly singular matrix, as at a saddle-node.
+"""
 
 FAST = 0.1
-"""A special orbit at a point needs no new gradient if a step is so much shorter than the last."""
+"""Ratio of successive Newton steps below which the gradient is not computed again.
+
+Applies to special orbits with one free parameter, which are isolated points.
+"""
 
 LONG = 2.0
-"""A step to a special orbit, relative to 1 + |z|, that leads too far away, and seldom back."""
+"""Longest Newton step to a special orbit, relative to 1 + |z|. Longer steps rarely converge."""
 
 FIRST_STEP = 0.1
+"""Length of the first step along a branch, in units of `OrbitEquations.scales`.
+
+In these units the length combines the root mean square change of the unknowns over the impacts and
+the relative change of the parameter.
+"""
+
 LONGEST_STEP = 0.4
+"""Longest step along a branch."""
+
 SHORTEST_STEP = 1e-9
-"""Lengths of steps: root mean squares of the changes of the unknowns over the impacts, and relative
-changes of the parameter."""
+"""Step length below which a branch is given up."""
 
 STRAIGHT = 0.95
-"""The least cosine of the angle between the tangents at the ends of a step."""
+"""Minimum cosine of the angle between the tangents at both ends of a step."""
 
 LARGEST_TURN = 0.3
-"""The largest change of arctan(tr/(1 + det)) in a step, so that no two bifurcations hide in it."""
+"""Largest change of arctan(tr/(1 + det)) in a step. A larger change could hide two bifurcations."""
 
 FADED = 1e-6
-"""The speed of an impact, in g/Ω, below which it has vanished if a step does not even halve it: so
-branches end whose contacts last longer and longer."""
+"""Impact speed, in g/Ω, below which an impact has vanished if a step does not halve the speed.
+
+This ends branches on which contacts become longer and longer.
+"""
 
 BEFORE_END = 1e-3
-"""The share of a step to an end of a branch that is left to the end in a point before it."""
+"""Distance from the end of a branch to the extra point before it, as a fraction of the step."""
 
 
 AT_GOAL = "the end of the window"
+"""Reason for the end of a branch: it left the window of the parameters."""
+
 CLOSED = "the branch is closed: it is back at its start"
-"""Two of the reasons why a branch ends."""
+"""Reason for the end of a branch: it returned to its start."""
 
 IMPACT = "grazing of an impact"
-"""The kind of orbit at which the speed of an impact is zero."""
+"""Kind of special orbit at which the speed of an impact vanishes."""
 
 
 class Solution(NamedTuple):
-    """Orbits by rows, which of them are found, and tangents with normal · tangent = 1."""
+    """Result of Newton's method, one orbit per row.
+
+    Attributes
+    ----------
+    z : array, shape (rows, N)
+        Unknowns.
+    found : array of bool, shape (rows,)
+        Whether the method converged.
+    tangent : array, shape (rows, N)
+        Tangents of the solution curves, scaled to normal · tangent = 1.
+    linear : LinearizedLegs
+        Linearised equations at the last iterate.
+    """
 
     z: NDArray
     found: NDArray
@@ -78,10 +109,23 @@ def newton(
     normal: NDArray | None = None,
     iterations: int = 12,
 ) -> Solution:
-    """Solutions on the planes through rows z across a normal, by Newton's method.
+    """Solve the equations by Newton's method, each row on its own plane.
 
-    By default the last parameter is fixed. With one free parameter, special orbits of a kind are
-    points, and need no plane.
+    Parameters
+    ----------
+    equations : OrbitEquations
+        Equations, one row per orbit.
+    z : array, shape (rows, N)
+        Initial guesses. The planes pass through them.
+    normal : array, shape (rows, N), optional
+        Normals of the planes. By default the last parameter is fixed. Special orbits with one free
+        parameter are isolated points and need no plane.
+    iterations : int
+        Maximum number of iterations.
+
+    Returns
+    -------
+    Solution
     """
     if normal is None:
         normal = np.zeros_like(z)
@@ -94,24 +138,28 @@ def newton(
         step = solution[..., 0]
         defect = np.abs(linear.legs).max(axis=(1, 2))
         moved = (np.abs(step) / equations.sizes(z)).max(axis=1)
-        # Lengths in the equations are of the size of Λ, or of the times and the speeds.
+        # The terms of the equations are as large as Λ, the times or the speeds.
         _, amplitude, _ = equations.at(z[:, equations.size :])
         size = np.abs(z[:, : equations.size]).max(axis=1) + np.abs(amplitude[..., 0])
         exact = defect < RESIDUAL_ROUNDING * (1 + size)
         step = np.where((exact & ~(moved < NOISE))[:, np.newaxis], 0.0, step)
         z = z + step
-        # Steps become small, or they are made of nothing but rounding errors of the equations.
+        # Converged: the step is small, or the residual consists of rounding errors.
         found = (moved < TOLERANCE) | exact
         if (found | np.isnan(moved)).all():
             break
-    # Far away, where times have no digits left, steps are small as well.
+    # If z is so large that the times have no digits left, the step is small without convergence.
     found &= defect < 1e-7
     return Solution(z, found, solution[..., 1], linear)
 
 
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
-    """Special orbits; only rows that are not found yet go on, because their gradients cost: as long
-    as steps to points become shorter fast, they are changed by Broyden's rule."""
+    """Newton's method for special orbits.
+
+    Gradients are expensive. Rows that have converged are therefore not iterated further. While the
+    steps to an isolated special orbit shrink fast (see `FAST`), Broyden's rule updates the gradient
+    instead.
+    """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
     found = np.zeros(len(z), bool)
@@ -147,8 +195,23 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
 
 
 class Start(NamedTuple):
-    """Where branches start, by rows: orbits, directions, the values to be reached, and the reasons
-    for no branch, "" if there is one; ``origin`` are the special orbits before z, if there are any.
+    """Starts of branches, one per row.
+
+    Attributes
+    ----------
+    equations : OrbitEquations
+    z : array, shape (rows, N)
+        First orbits.
+    direction : array, shape (rows, N)
+        Directions in which the branches leave z.
+    goal : array, shape (rows,)
+        Parameter values at which the branches end.
+    reasons : array of str, shape (rows,)
+        Reasons why there is no branch; "" if there is one.
+    step : float or array, shape (rows,)
+        Lengths of the first steps.
+    origin : array, shape (rows, N), optional
+        Special orbits from which the branches emanate, if z is not the first point.
     """
 
     equations: OrbitEquations
@@ -160,13 +223,13 @@ class Start(NamedTuple):
     origin: NDArray | None = None
 
     def take(self, which: Any) -> "Start":
-        """Some of the rows."""
+        """Select rows."""
         taken = {name: each[which] for name, each in self._asdict().items() if np.ndim(each)}
         return self._replace(equations=self.equations.rows(which), **taken)
 
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Directions of curves of orbits through z, also where the parameter turns back; (rows, N)."""
+    """Unit tangents of the solution curves at z, shape (rows, N); also at turning points."""
     linear = equations.linearized(z)
     normal = np.ones(z.shape)
     for _ in range(2):
@@ -175,12 +238,22 @@ def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 
 def unit(vectors: NDArray) -> NDArray:
-    """Rows of the length 1."""
+    """Scale each row to length 1."""
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
 class Points(NamedTuple):
-    """One orbit of each row, with its tests (rows, tests), and differences of its halves."""
+    """One point on each branch.
+
+    Attributes
+    ----------
+    z, tangents : array, shape (rows, N)
+        Orbits and tangents.
+    tests : array, shape (rows, tests)
+        Test functions, which vanish at special orbits (`OrbitEquations.kinds`).
+    halves : array
+        Differences between both halves of the orbit, which vanish at a period halving.
+    """
 
     z: NDArray
     tangents: NDArray
@@ -188,19 +261,23 @@ class Points(NamedTuple):
     halves: NDArray
 
     def take(self, which: Any) -> "Points":
-        """Some of the rows."""
+        """Select rows."""
         return Points(*(each[which] for each in self))
 
 
 def points_at(
     equations: OrbitEquations, z: NDArray, tangents: NDArray, linear: LinearizedLegs
 ) -> Points:
-    """Orbits with their tests."""
+    """Evaluate the test functions at orbits."""
     return Points(z, tangents, equations.tests(z, linear), equations.halves(z))
 
 
 def _same_sign(before: Points, after: Points) -> Points:
-    """The points after a step, whose distances from a period halving change their sign at one."""
+    """Return ``after`` with a test for period halving that changes its sign at one.
+
+    This test, the last one, is the norm of ``halves`` and never negative. A step across a period
+    halving reverses ``halves``, and the test then gets the opposite sign.
+    """
     merged = np.sum(before.halves * after.halves, axis=1) < 0
     tests = after.tests.copy()
     tests[:, -1] *= np.where(merged, -1, 1) * np.sign(before.tests[:, -1])
@@ -210,8 +287,19 @@ def _same_sign(before: Points, after: Points) -> Points:
 def _predicted(
     equations: OrbitEquations, here: Points, step: NDArray, units: NDArray, window: NDArray
 ) -> tuple:
-    """Steps along the tangents, up to the window: their lengths, ends and normals, which of them
-    are the last ones, and the number of the parameter in z that ends them."""
+    """Predict a step along each tangent, cut off at the border of the window.
+
+    Returns
+    -------
+    length : array, shape (rows,)
+        Lengths of the steps.
+    z, normal : array, shape (rows, N)
+        Predicted orbits, and normals of the planes on which to correct them.
+    last : array of bool, shape (rows,)
+        Whether the step ends at the border.
+    bound : array of int, shape (rows,)
+        Column of z with the parameter that reaches the border first.
+    """
     low, high = window.swapaxes(0, 1)
     ahead = unit(here.tangents / units)
     rate = (ahead * units)[:, equations.size :]
@@ -233,10 +321,27 @@ def _predicted(
 def march(
     start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int
 ) -> list[tuple[Points, str]]:
-    """The accepted points of each branch, and why it ends.
+    """Follow branches until they end.
 
-    A step is halved if Newton's method fails, or tangents or multipliers change too much. One that
-    goes beyond an end, where multipliers tell nothing, has a point just before it.
+    A step is halved if Newton's method fails, or if the tangent or the multipliers change too much.
+    Beyond an end of a branch the multipliers have no meaning. A step across an end therefore adds a
+    point just before the end.
+
+    Parameters
+    ----------
+    start : Start
+        Starts of the branches, one per row.
+    window : array, shape (rows, 2, p)
+        Lower and upper limits of the p parameters.
+    until : sequence of str or None
+        Kind of special orbit at which each branch ends, if any.
+    points : int
+        Maximum number of points on a branch.
+
+    Returns
+    -------
+    list of (Points, str)
+        Points of each branch, and the reason why it ends.
     """
     equations = start.equations
     here = points_at(equations, start.z, start.direction, equations.linearized(start.z))
@@ -260,7 +365,7 @@ def march(
             inner = there
             if ending.any():
                 inner = _before_end(equations, here, there, normal)
-            # The determinant is positive up to there, so that tr/(1 + det) has no pole.
+            # Before an end the determinant is positive, so tr/(1 + det) has no pole.
             angles = np.arctan([each.tests[:, 1] - 1 for each in (here, inner)])
             turned = np.abs(angles[1] - angles[0])
             cosine = _cosine(there, here, units)
@@ -294,9 +399,9 @@ def march(
             if not ends[rows[j]] and fades[j]:
                 ends[rows[j]] = f"the speed of an impact has fallen below {FADED:g}"
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
-                ends[rows[j]] = f"all {points} points are used"
+                ends[rows[j]] = f"the maximum of {points} points is reached"
         for j in np.flatnonzero(step < SHORTEST_STEP):
-            ends[rows[j]] = ends[rows[j]] or "no further orbit is found"
+            ends[rows[j]] = ends[rows[j]] or "Newton's method finds no further orbit"
         going = np.array([not ends[row] for row in rows])
         if not going.all():
             rows = rows[going]
@@ -311,7 +416,10 @@ def march(
 
 
 def _before_end(equations: OrbitEquations, here: Points, there: Points, normal: NDArray) -> Points:
-    """Points of steps just before the first of the ends that they cross, NaN if not found."""
+    """Find the point just before the first end that each step crosses.
+
+    The tests are NaN if Newton's method fails.
+    """
     before = here.tests[:, SINGULAR]
     after = there.tests[:, SINGULAR]
     share = np.where(before * after < 0, before / (before - after), 1.0).min(axis=1)
@@ -323,12 +431,15 @@ def _before_end(equations: OrbitEquations, here: Points, there: Points, normal: 
 
 
 def _cosine(points: Points, others: Points, units: NDArray) -> NDArray:
-    """Cosines of the angles between tangents."""
+    """Cosine of the angle between two tangents in each row, in scaled units."""
     return np.sum(unit(points.tangents / units) * unit(others.tangents / units), axis=1)
 
 
 def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None) -> str:
-    """Why a branch ends with a step in which some kinds of special orbits are passed, or ""."""
+    """Reason why a branch ends with this step, or "" if it continues.
+
+    ``passed`` are the kinds of special orbits that the step crossed.
+    """
     for name in passed:
         if ends_at(name, until):
             return str(name)
@@ -338,19 +449,19 @@ def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None) -> 
 
 
 def ends_at(kind: str, until: str | None) -> bool:
-    """Whether a curve ends at a kind of special orbit."""
+    """Whether a branch ends at special orbits of this kind."""
     return kind == until or (kind in KINDS and KINDS[kind].end != "")
 
 
 def _from_start(equations: OrbitEquations, first: Points, here: Points, units: NDArray) -> NDArray:
-    """How far branches are from their starts, up to whole turns of the table."""
+    """Distance of each branch from its start, modulo whole turns of the table."""
     turns = np.round((here.z - first.z)[:, 0] / (2 * np.pi))
     away = equations.later(here.z - first.z, -turns)
     return np.linalg.norm(away / units, axis=1)
 
 
 def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDArray) -> Points:
-    """The points of one row; a closed branch ends exactly at its start."""
+    """Join the points of one branch. A closed branch ends exactly at its start."""
     if end == CLOSED:
         ahead = np.sum(path[0].tangents * (path[-1].z - path[0].z) / units**2) > 0
         turns = np.round((path[-1].z[0, 0] - path[0].z[0, 0]) / (2 * np.pi))

@@ -1,11 +1,13 @@
-"""The motions on which balls end: permanent contact, a motion that repeats, or chaos.
+"""Long-term motions of balls: permanent contact, periodic motion, or chaos.
 
-A motion repeats after k impacts if the ball has returned, if the fixed point is as near,
+Let s = (τ, u) be the state of a ball at an impact, F(s) its state k impacts later, and M the
+derivative of F. The motion is periodic with k impacts if
 
-    s* = s + (I - M)⁻¹ (F(s) - s),
+1. the last k impacts agree with the k impacts before them within `NEAR_BEFORE`;
+2. the distance from s to the fixed point s* = s + (I - M)⁻¹ (F(s) - s) is less than `RETURNED`;
+3. the moduli of both eigenvalues of M (the multipliers) are less than 1 - `MARGIN`.
 
-and if the multipliers of M, the derivative over these impacts, are below 1 by a margin. It is
-locked if the ball also sticks to the table; docs/orbits.md says when it does.
+A periodic motion is *locked* if the ball sticks to the table in each period (docs/orbits.md).
 """
 
 from dataclasses import replace
@@ -35,45 +37,59 @@ from bouncing_ball_beyond.simulation import (
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 RETURNED = 1e-7
-"""The distance, an angle and a speed over 1 + Λ, within which a ball has returned: far above
-rounding errors, and far below the distance of two orbits whose multipliers have the margin."""
-NEAR_BEFORE = 1e-5
-"""The distance of the impacts of the turn before the last one from those of the last one."""
-CANDIDATES = 8
-"""The number of returns to within this distance that are tried, from the latest one on."""
-MARGIN = 1e-3
-"""The multipliers of a motion that repeats are below 1 by this margin."""
-FORGOTTEN = np.log(RETURNED / 2.0**-52)
-"""The logarithm of the growth of deviations over which a rounding error becomes visible."""
-SECTION = 25
-SECTIONS = 1024
-"""Impacts of a section over which the growth of deviations is summed up, at least, and the number
-of sections of a motion, at most."""
-IMPACTS_AT_ONCE = 1 << 16
-"""Impacts that are followed at a time, of all balls together."""
-RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
-"""The map with which a deviation starts again after a lift-off; its numbers do not matter."""
-FAR_BELOW = 1e6
-"""More than the logarithm of the growth in any number of impacts that are followed at a time."""
-WORTH_A_MAP = 20_000
-"""Impacts of one ball from which on their contacts are computed by an :class:`.ImpactMap`, which
-takes as long as some thousand contacts."""
-BLOCK = 1 << 14
-"""Balls that are followed at a time."""
-ERRORS = 5.0
-"""The exponent of a chaotic motion is positive by so many standard errors: by chance once in three
-million."""
-SETTLING_LENGTHS = 5.0
-TELLING_LENGTHS = 20.0
-"""Relaxation lengths that are left out before an exponent is computed, and that tell its error. In
-one of them areas contract by e, and energies approach their mean by as much."""
-EVEN = (0.7548776662466927, 0.5698402909980532)
-"""The fractional parts of multiples of these numbers cover a square evenly."""
-NEIGHBOURS = 32
-"""Balls beside a chaotic one that show whether its chaos is a transient."""
+"""Largest distance of a state from the fixed point of a periodic motion; see `apart`.
 
-LIFT_OFF = 1e-12
-"""Of -w″ = 1 at a lift-off, and of its phase: rounding."""
+It is far above rounding errors. It is far below the distance between two orbits with multipliers
+less than 1 - `MARGIN`.
+"""
+NEAR_BEFORE = 1e-5
+"""Largest distance between corresponding impacts of the last two laps of a periodic motion."""
+CANDIDATES = 8
+"""Maximum number of returns within `NEAR_BEFORE` that are tried, the most recent first."""
+MARGIN = 1e-3
+"""Margin by which the multipliers of a periodic motion must be less than 1."""
+ROUNDING_GROWTH = np.log(RETURNED / 2.0**-52)
+"""Logarithm of the growth that turns a rounding error into a deviation of `RETURNED`."""
+MIN_SECTION = 25
+"""Minimum number of impacts in a section. The growth of deviations is summed over each section."""
+MAX_SECTIONS = 1024
+"""Maximum number of sections of a motion."""
+IMPACTS_AT_ONCE = 1 << 16
+"""Number of impacts computed at once, summed over all balls."""
+RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
+"""Map that restarts a deviation after a lift-off, in an arbitrary direction."""
+RESET_OFFSET = 1e6
+"""Offset that exceeds the logarithm of the growth over all impacts computed at once."""
+WORTH_A_MAP = 20_000
+"""Number of impacts above which an :class:`.ImpactMap` saves time.
+
+Building the map takes as long as about a thousand contacts.
+"""
+BALLS_AT_ONCE = 1 << 14
+"""Maximum number of balls followed at once."""
+SIGNIFICANT = 5.0
+"""Number of standard errors by which the exponent of a chaotic motion must exceed zero.
+
+Chance alone causes such a deviation once in three million cases.
+"""
+SETTLING_LENGTHS = 5.0
+"""Number of relaxation lengths skipped before an exponent is computed.
+
+Over one relaxation length areas contract by a factor of e, and the deviation of the energy from its
+mean shrinks by the same factor.
+"""
+TELLING_LENGTHS = 20.0
+"""Minimum number of relaxation lengths from which the error of an exponent is estimated."""
+LOW_DISCREPANCY = (0.7548776662466927, 0.5698402909980532)
+"""Generators of a low-discrepancy sequence.
+
+The fractional parts of their multiples cover the unit square evenly.
+"""
+NEIGHBOURS = 32
+"""Number of neighbours of a chaotic ball that are followed to detect transient chaos."""
+
+LIFT_OFF_ERROR = 1e-12
+"""Tolerance for rounding errors in the condition -w″ = 1 of a lift-off."""
 
 PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
     "periodic",
@@ -82,15 +98,19 @@ PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
     "chaotic",
     "undecided",
 )
-NO_RECURRENCE = "it has neither repeated nor shown an exponent beyond its error"
-MARGINAL = "it returns, and its neighbours come closer too slowly to tell that it repeats"
-LOST_TO_ROUNDING = "rounding errors grow to the size of the motion before it repeats"
-RESUMES = "a contact resumes below the level of the table, where its law does not say"
-TRANSIENT = "it looks chaotic, but a ball beside it comes to rest or repeats: it may be a transient"
+NO_RECURRENCE = "it has not repeated, and its Lyapunov exponent may be zero within its error"
+MARGINAL = "it returns, but neighbouring motions converge too slowly to prove that it repeats"
+LOST_TO_ROUNDING = "rounding errors grow too large before it repeats"
+RESUMES = "a contact would resume below the table, where the contact law is not defined"
+TRANSIENT = "it looks chaotic, but a neighbour comes to rest or repeats: it may be a transient"
 
 
 def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
-    """Derivatives of each next (τ, u) by (τ, u) of an impact."""
+    """Derivatives of the next impact (τ, u) with respect to the present one.
+
+    Returns an array of the shape (2, 2, impacts, balls). It is zero at a lift-off, where the next
+    impact does not depend on the present one.
+    """
     ball = balls.ball
     table = balls.table
     amplitude = balls.amplitude
@@ -121,7 +141,10 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
 
 
 def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArray:
-    """Derivatives of D, δ and δ′ at the ends of contacts by τ and u, (3, 2, *tau.shape)."""
+    """Derivatives of D, δ and δ′ at the end of a contact with respect to τ and u.
+
+    Computed with complex steps. Returns an array of the shape (3, 2, *tau.shape).
+    """
     ball = balls.ball
     unknowns = 3 if ball.has_duration else 2
     steps = 1j * H * np.eye(3)[:, :unknowns].reshape(3, unknowns, *np.ones(tau.ndim, int))
@@ -130,7 +153,7 @@ def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArra
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
     if not ball.has_duration:
         return slopes
-    # T follows from the zero of the release function.
+    # Eliminate T by implicit differentiation: the release function vanishes at the release.
     released: Any = impact.release
     release = released.imag / H
     return slopes[:, :2] - slopes[:, 2:] * (release[:2] / release[2])
@@ -139,7 +162,11 @@ def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArra
 def slopes_of_oscillator(
     balls: Balls, tau: Values, u: Values, duration: NDArray, w: Values
 ) -> NDArray:
-    """The same for a spring and a damper, by the responses of which its motion is a sum."""
+    """Derivatives as in :func:`slopes_of_contact`, for a spring and a damper in closed form.
+
+    The motion depends linearly on the table and on the initial state, so its derivatives are
+    responses of the same oscillator.
+    """
     ball: Any = balls.ball
     ratio = ball.frequency_ratio
     zeta = ball.zeta
@@ -147,7 +174,8 @@ def slopes_of_oscillator(
     table = balls.table
     start = np.where(u < 0, kappa, 0.0)
     waves = table.turned(table.waves(tau, balls.amplitude))
-    # The response to the shifted table, and that to the start alone, on a table at rest.
+    # With respect to τ: response to the derivative of the table motion.
+    # With respect to u: response to the initial state alone, on a table at rest.
     by_tau = oscillator.closed_motion(duration, 0.0, 0.0, table, waves, 0.0, ratio, zeta)
     by_u = oscillator.closed_motion(
         duration, start, 1.0, table, [0.0] * len(waves), 0.0, ratio, zeta
@@ -161,17 +189,20 @@ def slopes_of_oscillator(
 
 
 def lift_offs(balls: Balls, record: NDArray) -> NDArray:
-    """Where balls leave by the lift-off after a rest, shape (impacts, balls)."""
+    """Whether each contact is a rest that ends with a lift-off, shape (impacts, balls)."""
     _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
     if balls.ball.has_duration:
         return np.zeros(tau.shape, bool)
     rests = (duration > 0) & (w == 0)
     push = -balls.amplitude * balls.table(np.where(rests, tau + duration, 0.0), 2)
-    return rests & (push < 1 + LIFT_OFF)
+    return rests & (push < 1 + LIFT_OFF_ERROR)
 
 
 def product(maps: NDArray) -> NDArray:
-    """The products of maps of the shape (2, 2, impacts, balls), the last one on the left."""
+    """Product of the maps of each ball, shape (2, 2, balls), with the last impact on the left.
+
+    ``maps`` has the shape (2, 2, impacts, balls).
+    """
     while (n := maps.shape[2]) > 1:
         pairs = np.einsum("ijnb,jknb->iknb", maps[:, :, 1::2], maps[:, :, : n - 1 : 2])
         maps = np.concatenate([pairs, maps[:, :, n - n % 2 :]], axis=2)
@@ -179,25 +210,33 @@ def product(maps: NDArray) -> NDArray:
 
 
 def ends_of(balls: Balls, impacts: int) -> dict:
-    """The motions on which balls end that are followed for a number of impacts, or some more."""
+    """Find the motion on which each ball ends.
+
+    Each ball is followed until its motion is known, for at most ``impacts`` impacts, rounded up to
+    whole sections. Returns arrays over the balls by name; `OF_MOTIONS` describes them.
+    """
     impacts = whole_number("impacts", impacts)
     numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
     found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
     found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
-    section = max(SECTION, -(-impacts // SECTIONS))
+    section = max(MIN_SECTION, -(-impacts // MAX_SECTIONS))
     if is_worth_a_map(balls, impacts):
         amplitude = float(balls.amplitude[0])
         top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
         balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
-    for first in range(0, balls.phase.size, BLOCK):
-        lane = np.arange(first, min(first + BLOCK, balls.phase.size))
+    for first in range(0, balls.phase.size, BALLS_AT_ONCE):
+        lane = np.arange(first, min(first + BALLS_AT_ONCE, balls.phase.size))
         _follow_to_end(found, balls.take(lane), lane, impacts, section)
     return found
 
 
 def is_worth_a_map(balls: Balls, impacts: int) -> bool:
-    """Whether balls are one ball of an integrated contact on one table, with many impacts."""
+    """Whether an :class:`.ImpactMap` saves time.
+
+    This is so for many impacts if the contact law must be integrated numerically, and if all balls
+    have the same parameters and the same table amplitude.
+    """
     ball = balls.ball
     if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
         return False
@@ -207,30 +246,33 @@ def is_worth_a_map(balls: Balls, impacts: int) -> bool:
 
 
 def _store(found: dict, which: Any, **values: Any) -> None:
-    """Store values of the balls with these indices."""
+    """Store one value or array per name for the balls ``which``."""
     for name, value in values.items():
         found[name][which] = value
 
 
 def _take(track: dict, which: Any) -> dict:
-    """Some of the balls that are followed."""
+    """Select balls from all arrays of ``track``; balls are the last axis."""
     return {name: each[..., which] for name, each in track.items()}
 
 
 @np.errstate(all="ignore")
 def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
-    """Follow balls until the motion of each is known, and store it. Deviations of long motions
-    overflow, and vanish at a lift-off."""
+    """Follow balls until the motion of each is known, and store it in ``found``.
+
+    Floating-point warnings are off: deviations of long motions overflow, and deviations vanish at a
+    lift-off.
+    """
     zeros = np.zeros(lane.size)
     track = {
-        "lane": lane,  # indices of the balls
-        "vector": np.array([zeros + 1, zeros]),  # a deviation of length 1
-        "climb": zeros,  # the logarithm of its growth above the least since the last lift-off
-        "most": zeros,  # the greatest climb since then
-        "lifted": zeros - 1,  # the number of the impact before the last lift-off, -1 without one
-        "lifted_at": zeros,  # its time
-        "marginal": zeros > 0,  # whether neighbours of a ball that returns come closer too slowly
-        "sections": np.zeros((0, 3, lane.size)),  # growth, time and ln of the areas of sections
+        "lane": lane,  # index of the ball
+        "vector": np.array([zeros + 1, zeros]),  # deviation, scaled to length 1
+        "climb": zeros,  # log growth of the deviation above its minimum since the last lift-off
+        "most": zeros,  # maximum climb since the last lift-off
+        "lifted": zeros - 1,  # number of the impact before the last lift-off, -1 if there is none
+        "lifted_at": zeros,  # time of the last lift-off
+        "marginal": zeros > 0,  # whether neighbours of a returning ball converge too slowly
+        "sections": np.zeros((0, 3, lane.size)),  # log growth, time, log of the area contraction
     }
     seen = 0
     while track["lane"].size and seen < impacts:
@@ -259,8 +301,10 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, secti
 
 
 def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
-    """The products of all maps up to each impact, as matrices of the size 1 and the logarithms of
-    their sizes, by doublings of the number of factors.
+    """Products of all maps up to each impact.
+
+    Returns scaled products, shape (2, 2, impacts, balls), and the logarithms of the scale factors,
+    shape (impacts, balls). Each pass doubles the number of factors.
     """
     products = maps.copy()
     logarithms = np.zeros(maps.shape[2:])
@@ -277,19 +321,20 @@ def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
 def grow_deviations(
     track: dict, record: NDArray, after: Balls, maps: NDArray, lifts: NDArray, section: int
 ) -> NDArray:
-    """Carry the deviations of balls over some more impacts; return the greatest climb between the
-    last two lift-offs.
+    """Propagate the deviation of each ball over the recorded impacts, and update ``track``.
+
+    Returns the maximum climb between the last two lift-offs, shape (balls,).
     """
-    # A deviation starts again at a lift-off, in a direction that does not matter.
+    # A lift-off erases the deviation. Restart it in an arbitrary direction.
     smooth = np.where(lifts | ~np.isfinite(maps).all(axis=(0, 1)), RESTART, maps)
     products, logarithms = running_products(smooth)
     vectors = np.einsum("ijnb,jb->inb", products, track["vector"])
     length = np.hypot(*vectors)
     growth = np.diff(logarithms + np.log(length), axis=0, prepend=0.0)
     growth = np.where(lifts, 0.0, growth)
-    # Behind each lift-off the sum of the growth is far below all sums before.
+    # Shift the sums down at each lift-off, so that the running minimum restarts there.
     number = lifts.cumsum(axis=0)
-    sums = growth.cumsum(axis=0) - FAR_BELOW * number
+    sums = growth.cumsum(axis=0) - RESET_OFFSET * number
     climb = sums - np.minimum(np.minimum.accumulate(sums, axis=0), -track["climb"])
     most, lap = (np.where(number == number[-1] - k, climb, 0.0).max(axis=0) for k in (0, 1))
     lap = np.where(number[-1] == 1, np.maximum(lap, track["most"]), lap)
@@ -304,13 +349,22 @@ def grow_deviations(
 
 
 def times(record: NDArray, after: Balls) -> NDArray:
-    """The times of all impacts of a record and of the one after it."""
+    """Times of the recorded impacts and of the next impact, shape (impacts + 1, balls)."""
     turns = np.vstack([record[:, 0], after.turns])
     return PERIOD * turns + np.vstack([record[:, 1], after.phase])
 
 
 def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> dict:
-    """The first recurrence of each ball, seen from the impact after those recorded."""
+    """Find the shortest lap after which each ball returns to the state of its next impact.
+
+    Returns arrays over the balls:
+
+    - ``repeats``: whether the motion is periodic;
+    - ``marginal``: whether the ball returns but ``radius`` differs from 1 by less than `MARGIN`;
+    - ``impacts``, ``periods``: impacts and table periods in a lap, 0 if the ball does not return;
+    - ``radius``: largest modulus of the multipliers of a lap;
+    - ``areas``: logarithm of the area contraction over a lap.
+    """
     n, _, m = record.shape
     half = n // 2
     phase = np.vstack([record[:, 1], after.phase])
@@ -322,7 +376,7 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
     radius = np.zeros(m)
     areas = np.zeros(m)
     for k in np.flatnonzero(near.any(axis=1)) + 1:
-        # Several turns have the same fixed point: the shortest one counts.
+        # Multiples of a lap have the same fixed point, so keep the shortest lap.
         (some,) = (near[k - 1] & (distance > NEAR_BEFORE)).nonzero()
         last = phase[:, some], speed[:, some]
         turn = apart(*(each[n + 1 - k :] - each[n + 1 - 2 * k : n + 1 - k] for each in last))
@@ -353,23 +407,27 @@ def recurrence(balls: Balls, record: NDArray, after: Balls, maps: NDArray) -> di
 
 
 def apart(angle: NDArray, speed: Values) -> NDArray:
-    """The distance of states by differences of their phases, and of their speeds over 1 + Λ."""
+    """Distance between two states.
+
+    It is the maximum of ``angle``, the difference of their phases modulo 2π, and ``speed``, the
+    difference of their speeds divided by 1 + Λ.
+    """
     return np.maximum(np.abs(angle - PERIOD * np.round(angle / PERIOD)), np.abs(speed))
 
 
 def largest_multiplier(trace: NDArray, determinant: NDArray) -> NDArray:
-    """The greatest modulus of the two multipliers."""
+    """Largest modulus of the eigenvalues of a 2×2 matrix, from its trace and determinant."""
     root = np.sqrt(trace * trace / 4 - determinant + 0j)
     return np.maximum(np.abs(trace / 2 + root), np.abs(trace / 2 - root))
 
 
 def contraction(maps: NDArray) -> NDArray:
-    """The logarithms of the moduli of determinants."""
+    """Logarithm of the absolute determinant of each map: the contraction of areas."""
     return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
 
 
 def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, seen: int) -> None:
-    """Store the balls that stay on the table."""
+    """Store balls that stay on the table or whose contact would resume below it."""
     resting = np.delete(np.arange(lane.size), going)
     count = np.isfinite(record[:, 0, resting]).sum(axis=0)
     stays = np.isinf(record[count - 1, 4, resting])
@@ -384,20 +442,23 @@ def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, 
 
 
 def _store_end(found: dict, lane: NDArray, after: Balls, which: Any, **values: Any) -> None:
-    """Store the motions of balls that go on bouncing."""
+    """Store results and the state at the next impact, for balls that keep bouncing."""
     _store(found, lane, end_phase=after.phase[which], end_speed=after.speed[which], **values)
 
 
 def _store_periodic(
     found: dict, lane: NDArray, record: NDArray, after: Balls, again: dict, seen: int
 ) -> None:
-    """Store the balls that repeat; contacts stick that last longer than two free impacts."""
+    """Store balls whose motion is periodic.
+
+    A ball sticks in a contact if the contact lasts more than twice as long as a free impact.
+    """
     (some,) = again["repeats"].nonzero()
     again = _take(again, some)
     sticks = np.zeros((len(record), some.size), bool)
     if after.ball.has_duration:
         ball = after.ball.rows(some)
-        # A contact that no free impact leaves has no such length, which is NaN.
+        # This is NaN, and the comparison false, if a ball never leaves a free impact.
         sticks = record[:, 3, some] > 2 * ball.free(np.abs(record[:, 2, some]))
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
@@ -418,12 +479,15 @@ def _store_periodic(
 def _store_locked(
     found: dict, track: dict, record: NDArray, after: Balls, lifts: NDArray, lap: NDArray, seen: int
 ) -> NDArray:
-    """Store the balls that stick for the second time, and remember the others that stick."""
+    """Store balls that lift off twice at the same phase; record the other lift-offs in ``track``.
+
+    Returns whether each ball was stored, shape (balls,).
+    """
     row = np.arange(lap.size)
     n = len(lifts)
     last = n - 1 - lifts[::-1].argmax(axis=0)
     at = PERIOD * record[:, 0] + record[:, 1] + record[:, 4]
-    # A table may have several phases at which balls leave it: a motion repeats at one of them.
+    # Balls may leave the table at several phases. A motion repeats when one phase recurs.
     with np.errstate(invalid="ignore"):
         phase = np.where(lifts, record[:, 1] + record[:, 4], np.nan)
         same = apart(phase - phase[last, row], 0.0) < RETURNED
@@ -437,7 +501,7 @@ def _store_locked(
     track["lifted"] = np.where(lifted, seen + last, track["lifted"])
     track["lifted_at"] = np.where(lifted, at[last, row], track["lifted_at"])
     locked = lifted & (number >= 0)
-    known = lap[locked] < FORGOTTEN
+    known = lap[locked] < ROUNDING_GROWTH
     _store_end(
         found,
         track["lane"][locked],
@@ -456,17 +520,18 @@ def _store_locked(
 
 
 def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
-    """Store the balls that have neither repeated nor come to rest: chaotic ones, if their
-    neighbours separate exponentially.
+    """Store balls that neither repeat nor come to rest.
+
+    A ball is chaotic if neighbouring motions separate exponentially. Otherwise it is undecided.
     """
     for j, lane in enumerate(track["lane"]):
         growth, time, areas = track["sections"][:, :, j].T
         rate, scatter, error = exponent(growth, time, areas)
         if track["marginal"][j]:
             reason = MARGINAL
-        elif rate > ERRORS * scatter and growth.sum() > FORGOTTEN:
+        elif rate > SIGNIFICANT * scatter and growth.sum() > ROUNDING_GROWTH:
             reason = ""
-        elif rate < -ERRORS * scatter and track["most"][j] > FORGOTTEN:
+        elif rate < -SIGNIFICANT * scatter and track["most"][j] > ROUNDING_GROWTH:
             reason = LOST_TO_ROUNDING
         else:
             reason = NO_RECURRENCE
@@ -485,14 +550,28 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
 
 
 def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, float, float]:
-    """The growth per unit of time over sections of a motion, its standard error between sections,
-    and an error of which twice is an interval of 95 %.
+    """Estimate a growth rate from the sections of a motion.
 
-    Nearly elastic balls change their energy slowly. What they do in the first relaxation lengths is
-    left out, with the first quarter of the sections, and neighbouring sections are not independent:
-    the error is the largest one for blocks of 1, 2, 4, ... sections (Flyvbjerg and Petersen, J.
-    Chem. Phys. 91, 461, 1989), multiplied by the quotient of the quantiles of Student's and of the
-    normal distribution. It is NaN if the sections are too few relaxation lengths.
+    Nearly elastic balls change their energy slowly. The first quarter of the sections and the first
+    `SETTLING_LENGTHS` relaxation lengths are therefore ignored, whichever is longer. Neighbouring
+    sections are correlated, so the error is the maximum over blocks of 1, 2, 4, ... sections
+    (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). It is multiplied by the ratio of the
+    quantiles of Student's t and normal distributions.
+
+    Parameters
+    ----------
+    growth, time, areas : array, shape (sections,)
+        Log growth, duration and log area contraction of each section.
+
+    Returns
+    -------
+    rate : float
+        Growth per unit time.
+    scatter : float
+        Standard error, if sections were independent.
+    error : float
+        Standard error that allows for correlation: ±2 errors are a 95 % interval. NaN if fewer than
+        `TELLING_LENGTHS` relaxation lengths remain.
 
     Examples
     --------
@@ -551,7 +630,7 @@ def motion_of(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """The motion on which a ball ends, after a first impact as in :func:`.simulate`.
+    """Find the motion on which a ball ends, after a first impact as in :func:`.simulate`.
 
     Parameters
     ----------
@@ -625,7 +704,7 @@ def lyapunov(
     neighbours: int = NEIGHBOURS,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """The Lyapunov exponents of the motion on which a ball ends, as in :func:`motion_of`.
+    """Compute the Lyapunov exponents of the motion on which a ball ends; see :func:`motion_of`.
 
     Parameters
     ----------
@@ -705,7 +784,7 @@ def basins(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """The motions on which balls end that start from a grid of first impacts, and their shares.
+    """Find the motions on which balls end from a grid of first impacts, and their shares.
 
     Parameters
     ----------
@@ -823,7 +902,7 @@ def orbit_diagram(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """The motions on which balls end along Λ or a parameter of the ball, from several starts.
+    """Find the motions on which balls end while Λ or a parameter of the ball varies.
 
     Parameters
     ----------
@@ -857,9 +936,9 @@ def orbit_diagram(
     if grid.ndim != 1:
         raise ValueError("amplitude, ball: exactly one parameter must be an array")
     value, start = np.mgrid[: grid.size, : whole_number("starts", starts)].reshape(2, -1)
-    phase = PERIOD * (EVEN[0] * (start + 1) % 1)
+    phase = PERIOD * (LOW_DISCREPANCY[0] * (start + 1) % 1)
     several = ball.rows(value)
-    speed = fastest(several, amplitude[value], table) * (EVEN[1] * (start + 1) % 1)
+    speed = fastest(several, amplitude[value], table) * (LOW_DISCREPANCY[1] * (start + 1) % 1)
     balls = Balls(several, amplitude[value], 0 * phase, phase, speed, table)
     passes = [ends_of(balls, impacts)]
     for step in (1, -1):
@@ -896,7 +975,7 @@ def orbit_of_motion(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> PeriodicOrbit:
-    """The periodic orbit on which a ball ends, confirmed by Newton's method.
+    """Find the periodic orbit on which a ball ends, and correct it by Newton's method.
 
     A locked motion with instantaneous impacts is an orbit with a rest, a :class:`.RestOrbit`.
 

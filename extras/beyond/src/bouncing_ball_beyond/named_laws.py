@@ -44,7 +44,7 @@ MOST_DAMPED = 1e4
 def law_of_impact(
     law_of: Callable, restitution: Values, duration: Values, speed: Values
 ) -> ForceLaw:
-    """The law whose free impact at a speed has a restitution coefficient and a duration.
+    """Find the law whose free impact at a speed has a restitution coefficient and a duration.
 
     ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and a
     damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P nor v.

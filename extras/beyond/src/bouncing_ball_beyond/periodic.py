@@ -48,7 +48,7 @@ def orbit(
     side: str = "stable",
     table: Table = SINE,
 ) -> Any:
-    """The n-T orbit of a ball at the amplitude Λ of the table, with one impact in n periods.
+    """Find the n-T orbit of a ball, with one impact in n periods of the table.
 
     OrbitNotFound if all arguments are numbers and there is none.
 
@@ -128,7 +128,7 @@ def one_amplitude(amplitude: Any) -> float:
 def orbits(
     ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
 ) -> list[PeriodicOrbit]:
-    """Orbits with k impacts in m periods of the table that a ball follows, stable and unstable.
+    """Find the orbits with k impacts in m periods that a ball follows, stable and unstable.
 
     With one impact the list is complete; with several this is a search from 2592 first impacts, and
     orbits may be missed. With a contact law it takes seconds, and several impacts up to a minute.
@@ -163,7 +163,7 @@ def orbit_near(
     velocities: ArrayLike,
     table: Table = SINE,
 ) -> PeriodicOrbit:
-    """The periodic orbit near a guess: phases and absolute velocities before its impacts.
+    """Find the periodic orbit near a guess: phases and absolute velocities before its impacts.
 
     Both have the shape (impacts,). The number of periods follows from the velocities.
     OrbitNotFound if Newton's method does not converge.

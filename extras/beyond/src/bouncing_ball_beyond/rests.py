@@ -215,7 +215,7 @@ class RestOrbit(PeriodicOrbit):
 def orbit_with_rest(
     ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
 ) -> RestOrbit:
-    """The motion of a ball of instants between two rests on the table, if it repeats after one.
+    """Find the periodic motion with one rest of a ball with instantaneous impacts.
 
     After so many `impacts` the bounces are summed up; by default after those of the simulation,
     which leaves an error of 1e-15. OrbitNotFound if the ball does not leave, or come to rest.

@@ -71,7 +71,7 @@ Found = PeriodicOrbit | FollowedBranch | Sequence
 
 
 def to_dataset(found: Found) -> xr.Dataset:
-    """The dataset of an orbit, of a branch or curve with its special orbits, or of several orbits.
+    """Convert an orbit, a branch, a curve or a list of orbits to a labelled dataset.
 
     It has a row for each orbit along ``point``, with quantities of its impacts along ``impact``;
     special orbits have a ``kind``, and are at their places. Attributes are ball and table of the
@@ -179,7 +179,7 @@ def decoded(values: dict[str, Any]) -> Any:
 
 
 def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
-    """The orbit, branch, curve or list of orbits of which a dataset, or its netCDF file, was made.
+    """Restore what :func:`to_dataset` converted, from the dataset or its netCDF file.
 
     A ball with a function of its user's is not in the file and is given again; ValueError if it is
     missing, or if the dataset has no orbits.

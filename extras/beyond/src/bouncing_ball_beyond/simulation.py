@@ -143,22 +143,22 @@ def simulate(
     impacts: int = 100,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """The impacts of a ball that begins with a given first impact.
+    """Follow a ball from impact to impact, starting with a given first impact.
 
     Parameters
     ----------
     ball : Ball
-        Its parameters may be arrays.
+        A ball. Its parameters may be arrays.
     amplitude : float or array
-        Excitation amplitude Λ ≥ 0. Here and below a list is an axis of the result with the name of
-        the argument, and several span a grid; an ``xarray.DataArray`` has its own axes.
+        Excitation amplitude Λ ≥ 0. A list of values becomes an axis of the result with the name of
+        the argument, and several lists span a grid. An ``xarray.DataArray`` keeps its own axes.
     phase : float or array
         Phase of the table at the first impact.
     velocity, relative_velocity : float or array
-        At most one of both: the velocity of the ball before it, by default -π in units of g/Ω, or
-        that relative to the table, δ′ ≤ 0.
+        Velocity of the ball before the first impact in units of g/Ω, or its velocity δ′ ≤ 0
+        relative to the table. Give at most one of both; the default is ``velocity`` = -π.
     impacts : int
-        Largest number of impacts.
+        Maximum number of impacts.
     table : Table
         The waveform of the table, by default a sine.
 
@@ -168,13 +168,15 @@ def simulate(
         ``time``, ``impact_phase``, ``impact_velocity``, ``bounce_velocity``, ``contact_duration``
         and ``flight_time`` of each ``impact``, and ``relative_impact_velocity`` and
         ``relative_bounce_velocity``, NaN after the last one; and the ``status`` of the ball,
-        "bouncing" or "permanent contact". Bounces that end on the table are summed up in the
-        ``contact_duration`` of one impact, with the rest up to the lift-off.
+        "bouncing" or "permanent contact". A ball may come to rest after infinitely many bounces.
+        Their total time, with the rest up to the lift-off, is then the ``contact_duration`` of one
+        impact.
 
     Raises
     ------
     ValueError
-        If Λ is negative, an argument is no number, or the ball rises from the table at first.
+        If Λ is negative, if an argument is not a number, or if the ball rises from the table at
+        the first impact.
 
     Examples
     --------
@@ -214,7 +216,7 @@ def history(
     samples: int = 200,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """A ball over time, from a first impact as in :func:`simulate`.
+    """Compute the height of a ball over time, from a first impact as in :func:`simulate`.
 
     Parameters
     ----------
@@ -251,7 +253,7 @@ def drop(
     samples: int = 200,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """A ball that is dropped at rest above the table, over time.
+    """Drop a ball at rest above the table, and compute its height over time.
 
     Parameters
     ----------

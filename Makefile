@@ -9,9 +9,15 @@ RUN := $(VENV)/bin/python -m
 SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
 PIP := $(RUN) pip install --quiet --disable-pip-version-check --require-hashes
 BUILT := --only-binary :all: --no-binary connection-pool --no-build-isolation
-UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate
+UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
+
+# Snakemake starts a Python whose path has no space.
+FOLDER := $(if $(filter /%,$(VENV)),$(VENV),$(CURDIR))
+ifneq ($(words $(FOLDER)),1)
+$(error The path of Python has a space: move this folder, or make VENV=/another/path)
+endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
@@ -83,8 +89,8 @@ lowest:
 
 # For maintainers, with uv; `make lock UPGRADE=--upgrade` takes the newest versions.
 lock:
-	$(UV) $(UPGRADE) pyproject.toml --extra slurm --output-file requirements.lock
-	$(UV) $(UPGRADE) pyproject.toml --extra test --extra lint --extra slurm --constraint requirements.lock --output-file requirements-develop.lock
+	$(UV) pyproject.toml --extra slurm --output-file requirements.lock
+	$(UV) pyproject.toml --extra test --extra lint --extra slurm --constraint requirements.lock --output-file requirements-develop.lock
 	printf 'flit_core\nsetuptools\nwheel\n' | $(UV) - --constraint requirements.lock --output-file requirements-build.lock
 
 clean:

@@ -12,6 +12,7 @@ import shutil
 from pathlib import Path
 
 import xarray as xr
+import yaml
 from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 
@@ -72,6 +73,7 @@ PARTS = {
         "extras/beyond/docs/gallery",
         "extras/beyond/docs/impact-as-an-instant",
         "extras/beyond/docs/impacts",
+        "extras/beyond/docs/panels",
         "extras/beyond/docs/error-law",
         "extras/beyond/docs/speed",
         "extras/beyond/docs/api",
@@ -145,22 +147,16 @@ def mathml(as_block):
     return write, None
 
 
-# Where the front page leads.
-LINKS = [
-    ("What this is and how to run it", "README.html"),
-    ("The article", "paper.html"),
-    ("its supplement", "supplement.html"),
-    ("all claims", "figures/claims.html"),
-    ("Past the paper", "extras/beyond/README.html"),
-    ("Contacts for physics engines", "extras/contacts/README.html"),
-]
-
-
 def home(app, failure):
     """The front page is that of the results of the replication, with its pictures and data."""
     folder = Path(app.outdir)
     names = sorted((ROOT / "figures").glob("*.nc"))
-    page = pages.filled_in("html", {path.stem: read(path) for path in names}, links=LINKS)
+    config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
+    stages = [section for section in config.values() if isinstance(section, dict)]
+    entries = {
+        name: entry for stage in stages for name, entry in stage.items() if name != "title"
+    }
+    page = pages.filled_in("html", {path.stem: read(path) for path in names}, entries)
     # The tables in Markdown are pages of the site.
     page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', page)
     (folder / "index.html").write_text(page, encoding="utf-8")

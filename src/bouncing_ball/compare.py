@@ -339,7 +339,8 @@ def compare(
             change = "the picture differs"
             if not file.endswith(PICTURES):
                 change = first_change(project.top / file, results / file)
-            line = f"{name}: {change}; {why.of([], code, versions())}"
+            makers = without_models(project, results, name, code)
+            line = f"{name}: {change}; {why.of([], makers, versions())}"
             # Both pictures of a figure have the same line.
             report.lines.extend({line} - {*report.lines})
     return report
@@ -384,6 +385,17 @@ def dataset_lines(
             reason = f"follows from {', '.join(differ)}"
         lines.append("; ".join([*found[:1], reason]))
     return lines
+
+
+def without_models(
+    project: Project, results: Path, name: str, code: Mapping[str, str]
+) -> dict[str, str]:
+    """The code without the files that computed the dataset of a picture or table, which agrees."""
+    path = results / f"figures/{name}.nc"
+    if not (project.top / f"figures/{name}.nc").exists():
+        return dict(code)
+    computed_by = record(read(path), "code")
+    return {file: content for file, content in code.items() if file not in computed_by}
 
 
 def same_bytes(first: Path, second: Path) -> bool:

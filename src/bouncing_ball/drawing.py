@@ -175,9 +175,11 @@ def pale(colour: str) -> str:
 # Panels
 
 
-def panels(height: float, rows: int = 1, columns: int = 1, **options: Any) -> tuple[Figure, Any]:
-    """Create a figure of the width `WIDTH` and a height in inches, and its panel or panels."""
-    figure = Figure(figsize=(WIDTH, height))
+def panels(
+    height: float, rows: int = 1, columns: int = 1, width: float = WIDTH, **options: Any
+) -> tuple[Figure, Any]:
+    """Create a figure of a height and a width in inches, and its panel or panels."""
+    figure = Figure(figsize=(width, height))
     # This canvas keeps its renderer. Otherwise each measurement of a text would create one.
     FigureCanvasAgg(figure)
     return figure, figure.subplots(rows, columns, **options)

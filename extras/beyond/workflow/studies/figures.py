@@ -36,6 +36,9 @@ TITLES: Mapping[str, str] = {
 }
 """The quantities whose errors are shown, as titles of panels."""
 
+WHOLE_WIDTH = 7.0
+"""Width in inches of a figure with several columns of panels."""
+
 CONTACT = COLOURS[1]
 MODELS: Mapping[str, Look] = {
     "restitution": {"color": COLOURS[0], "linewidth": 1.0},
@@ -68,7 +71,7 @@ WAVES: Mapping[str, Look] = {
 
 def ext_answers(data: xr.Dataset) -> Figure:
     """A branch of orbits in both models and by the error law; shifts of the period doubling."""
-    figure, (branch, shifts) = panels(3.3, columns=2, width_ratios=(1.2, 1))
+    figure, (branch, shifts) = panels(3.3, width=WHOLE_WIDTH, columns=2, width_ratios=(1.2, 1))
     for model, name in BRANCH_NAMES.items():
         one = data.sel(branch=model)
         look = BRANCHES[model]
@@ -138,7 +141,7 @@ RELEASES: Mapping[str, Look] = {
 
 def ext_impact(data: xr.Dataset) -> Figure:
     """The force in one contact with both ends; restitution coefficient and duration over ζ."""
-    figure, (force, restitution, duration) = panels(2.5, columns=3)
+    figure, (force, restitution, duration) = panels(2.5, width=WHOLE_WIDTH, columns=3)
     load = data.free_force
     pulls = load.where(load <= 0)
     body: Look = {"facecolor": "0.9", "edgecolor": TABLE, "hatch": "////", "linewidth": 0}
@@ -275,7 +278,7 @@ def ext_orders(data: xr.Dataset) -> Figure:
 
     The last panel has those of the height at the saddle-node of the restitution model.
     """
-    figure, slots = panels(2.9, columns=4, sharex=True, sharey=True)
+    figure, slots = panels(2.9, width=WHOLE_WIDTH, columns=4, sharex=True, sharey=True)
     *panels_of, at_node = slots.flat
     ratio = data.frequency_ratio
     orbit = data.sel(place="orbit")
@@ -367,7 +370,9 @@ def ext_map(data: xr.Dataset) -> Figure:
     """
     columns = data.sizes["n"]
     options: Look = {"sharex": True, "sharey": True, "height_ratios": (1, 1.2)}
-    figure, slots = panels(5.6, rows=2, columns=columns, squeeze=False, **options)
+    figure, slots = panels(
+        5.6, width=WHOLE_WIDTH, rows=2, columns=columns, squeeze=False, **options
+    )
     paper = parameters(data)["paper"]
     for (stable, high), n in zip(slots.T, data.n.values, strict=True):
         family = data.sel(n=n)
@@ -440,7 +445,7 @@ LAWS: Mapping[str, Look] = {
 def ext_laws(data: xr.Dataset) -> Figure:
     """Errors of both models on contacts of five laws, over D + κ as a share of the cycle."""
     shown = ("max_height", "period_doubling")
-    figure, slots = panels(3.2, columns=2, sharex=True, sharey=True)
+    figure, slots = panels(3.2, width=WHOLE_WIDTH, columns=2, sharex=True, sharey=True)
     given = parameters(data)
     share = 1 / (2 * given["n"] * data.centroid_ratio)
     for axes, quantity in zip(slots, shown, strict=True):
@@ -480,7 +485,7 @@ def ext_phase(data: xr.Dataset) -> Figure:
     the right the velocity is that at the touch (open) and later by θ (filled), for tables of three
     waveforms. By the law the second one is the level (C - s)/C.
     """
-    figure, (plane, level) = panels(2.9, columns=2, width_ratios=(1, 1.35))
+    figure, (plane, level) = panels(2.9, width=WHOLE_WIDTH, columns=2, width_ratios=(1, 1.35))
     line = float(data.restitution_line)
     top = 1.08 * float(data.touch_y.max())
     plane.plot([line, line], [0, top], color=COLOURS[0], label="restitution model")

@@ -1,6 +1,6 @@
 """Bodies of other materials, with defaults or with a restitution by number, in engines.
 
-``python tests/engine_pairs.py`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m, at 16
+``python tests/engine_pairs.py [ENGINE]...`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m, at 16
 instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine. Then it
 drops them with friction and a speed along the table. The rows are saved in
 docs/validation/diagnoses.csv. The exit status is 1 if one differs.
@@ -305,7 +305,8 @@ def table(cases, rub):
 
 
 def main():
-    rows = table(CASES, Rub()) + table([case for case in CASES if case[0] != "gazebo"], RUBBED)
+    cases = [case for case in CASES if not sys.argv[1:] or case[0] in sys.argv[1:]]
+    rows = table(cases, Rub()) + table([case for case in cases if case[0] != "gazebo"], RUBBED)
     save("diagnoses", HEAD, rows)
     differ = sum(row[-1] == KEPT[False] for row in rows)
     print(f"{len(rows) - differ} of {len(rows)} diagnoses agree with their engines.")

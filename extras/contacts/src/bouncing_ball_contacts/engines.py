@@ -532,7 +532,7 @@ _PUSHED_UP = Sliding(
 )
 _EVERY_FRICTION = "without sliding it holds at every friction, cone and condim"
 _MANIFOLD = (
-    "the impulse keeps r at every friction and sliding speed; a spring does as long as the body "
+    "a spring keeps r as long as the body "
     "slides less than a third of its radius in a step, and a box that slides on springs may gain "
     "energy"
 )

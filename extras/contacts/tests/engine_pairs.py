@@ -1,8 +1,8 @@
 """Bodies of other materials, with defaults or with a restitution by number, in engines.
 
-``python tests/engine_pairs.py [ENGINE]...`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m, at
-16 instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine. Then
-it drops them with friction and a speed along the table. The rows are saved in
+``python tests/engine_pairs.py [ENGINE]...`` drops a ball of 1 kg and a radius of 0.1 m from 0.5 m,
+at 16 instants within a step, and prints r and the depth at rest: as diagnosed, and in the engine.
+Then it drops them with friction and a speed along the table. The rows are saved in
 docs/validation/diagnoses.csv. The exit status is 1 if one differs.
 """
 

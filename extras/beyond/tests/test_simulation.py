@@ -559,6 +559,9 @@ def test_a_ball_that_is_dropped_from_the_table_itself_lies_on_it(name):
     rising = bb.drop(ball, height=0.5 * np.sin(0.3), amplitude=0.5, phase=0.3, periods=0.3)
     assert np.isfinite(rising.ball).all()
     assert (rising.ball > rising.table - 0.1).all()
+    # A height that the user has computed is that of the table but for rounding.
+    level = np.nextafter(0.5 * np.sin(0.3), 0.0)
+    assert bb.drop(ball, height=level, amplitude=0.5, phase=0.3, periods=0.3).identical(rising)
 
 
 @pytest.mark.parametrize("phase", [0.5, 2.5, -2.0, 4.0])

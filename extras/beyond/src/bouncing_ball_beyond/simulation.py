@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, brief, check_ball, checked, whole_number
 from bouncing_ball_beyond.bounces import Balls, Leaving, bounce, fly, reduced
-from bouncing_ball_beyond.one_ball import COLUMNS, PERIOD
+from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 AT_ONCE = 32
@@ -279,8 +279,9 @@ def drop(
     )
     check_table(table)
     gap = height - amplitude * table(phase)
-    if (gap < 0).any():
+    if (gap < -4 * EPS * (np.abs(height) + amplitude)).any():
         raise ValueError(f"height = {height[np.argmin(gap)]:g}: is below the table")
+    gap = np.maximum(gap, 0.0)
     nothing = np.zeros(gap.shape)
     w = -amplitude * table(phase, 1)
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)

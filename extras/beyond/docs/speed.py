@@ -84,8 +84,8 @@ duration; its contacts have no closed form and are integrated.
 | --- | --- |
 {chr(10).join(rows)}
 
-Contact laws are integrated on arrays: one ball of a law takes a few milliseconds for each impact,
-and 1,000 balls side by side take 50 µs each. The first motion ever takes some seconds more, while
+Contact laws are integrated on arrays, which are made for many balls: one ball alone is slow. The
+first motion ever takes some seconds more, while
 numba compiles and keeps what it has compiled.
 """,
         encoding="utf-8",

@@ -153,9 +153,7 @@ def home(app, failure):
     names = sorted((ROOT / "figures").glob("*.nc"))
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
     stages = [section for section in config.values() if isinstance(section, dict)]
-    entries = {
-        name: entry for stage in stages for name, entry in stage.items() if name != "title"
-    }
+    entries = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
     page = pages.filled_in("html", {path.stem: read(path) for path in names}, entries)
     # The tables in Markdown are pages of the site.
     page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', page)

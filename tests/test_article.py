@@ -242,7 +242,8 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
     velocity = data["fig10"].bounce_velocity / (2 * np.pi)
     # The dataset may have rows that the paper does not print.
     table = data["table1"].sel(frequency_ratio=[1e4, 10.0, 2.0])
-    rows, computed = table.printed, table.computed
+    rows = table.printed
+    computed = table.computed
     thresholds = data["thresholds"].error_threshold
     found = {
         "longest contact": max(each.sel(frequency_ratio=1e4).max() for each in contacts),

@@ -97,7 +97,8 @@ def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
         amplitude = float(ball.amplitude)
         time = given["phase"]
         velocity = amplitude * np.cos(time) + r * given["impact_speed"]
-        times, velocities = [], []
+        times = []
+        velocities = []
         for _ in range(60):
             times.append(time)
             velocities.append(velocity)
@@ -111,7 +112,8 @@ def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
         assert ball.impact_time.values == pytest.approx(times[:stored], abs=1e-9)
         assert ball.impact_bounce.values == pytest.approx(velocities[:stored], abs=1e-9)
         # The last impacts have come near the orbit to which the motion tends.
-        count, periods = int(ball.impacts), int(ball.periods)
+        count = int(ball.impacts)
+        periods = int(ball.periods)
         near = [
             k
             for k in range(1, 7)
@@ -146,7 +148,8 @@ def test_the_orbits_along_the_frequency_ratio_are_those_of_the_closed_form(name,
     assert all(np.isclose(data.frequency_ratio, ratio).any() for ratio in grid)
     points = data.stack(point=["case", "frequency_ratio"])
     for point in (points.isel(point=k) for k in range(points.sizes["point"])):
-        r, ratio = float(point.restitution), float(point.frequency_ratio)
+        r = float(point.restitution)
+        ratio = float(point.frequency_ratio)
         expected = quantities(given["n"], r, ratio, release, float(point.contact_duration))
         # Without damping orbits are marginally stable.
         known = [name for name in expected if name in point and (name, r) != ("stable", 1.0)]
@@ -240,7 +243,8 @@ def test_a_contact_without_orbits_has_a_row_of_nan_with_the_reason():
 def test_figure_15_has_the_orbits_of_the_restitution_model():
     given = registered("continuation", "fig15", points=15)
     data = stage("continuation").STAGE["fig15"](given, "displacement", 0.2)
-    n, r = given["n"], given["restitution"]
+    n = given["n"]
+    r = given["restitution"]
     x = n * np.pi * (1 - r) / (1 + r)
     phase = data.restitution_phase.values
     amplitude = data.restitution_amplitude.values
@@ -348,7 +352,8 @@ def test_figure_14_has_the_heights_of_the_closed_form_and_the_threshold_of_their
     ratios = {"min": 10.0, "max": 1000.0, "samples": 5}
     given = registered("error_thresholds", "fig14", frequency_ratio=ratios)
     data = stage("error_thresholds").STAGE["fig14"](given, "displacement")
-    r, amplitude = given["restitution"], given["amplitude"]
+    r = given["restitution"]
+    amplitude = given["amplitude"]
     x = np.pi * (1 - r) / (1 + r)
     highest = np.sqrt(amplitude**2 - x**2) + np.pi**2 / 2
     assert float(data.restitution_max_height) == pytest.approx(highest)

@@ -400,7 +400,8 @@ def without_models(
 
 def same_bytes(first: Path, second: Path) -> bool:
     """Whether two files are equal; line ends of Windows do not count in texts."""
-    one, other = first.read_bytes(), second.read_bytes()
+    one = first.read_bytes()
+    other = second.read_bytes()
     if first.suffix == ".png":
         return one == other
     return one.replace(b"\r\n", b"\n") == other.replace(b"\r\n", b"\n")

@@ -120,15 +120,16 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
             kinds |= {"PNG": "png", "SVG": "svg"}
         if entry.get("table"):
             kinds |= {"CSV": "csv", "Markdown": "md"}
+        decided = {claim.beside for claim in CLAIMS if name in claim.datasets}
         found.append(
             Part(
                 name,
-                entry["title"],
-                entry.get("caption", ""),
-                {label: f"{name}.{kind}" for label, kind in kinds.items()},
-                rows_beside(name, datasets),
-                tables.TABLES[name](datasets[name]) if entry.get("table") else (),
-                sorted({claim.beside for claim in CLAIMS if name in claim.datasets} & {*entries}),
+                title=entry["title"],
+                caption=entry.get("caption", ""),
+                files={label: f"{name}.{kind}" for label, kind in kinds.items()},
+                rows=rows_beside(name, datasets),
+                table=tables.TABLES[name](datasets[name]) if entry.get("table") else (),
+                elsewhere=sorted(decided & {*entries}),
             )
         )
     general = [Part(key, title, rows=rows_beside(key, datasets)) for key, title in SEVERAL.items()]

@@ -14,14 +14,15 @@ from bouncing_ball.datasets import read
 ROOT = Path(__file__).resolve().parents[1]
 FIGURES = ROOT / "figures"
 CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
+ACCEPTED = {path.stem for path in FIGURES.iterdir()}
 ENTRIES = {
     name: entry
     for section in CONFIG.values()
     if isinstance(section, dict)
     for name, entry in section.items()
-    if name != "title"
+    if name != "title" and name in ACCEPTED
 }
-"""The registered figures, tables and datasets by name."""
+"""The registered figures, tables and datasets by name, without those that are new."""
 
 
 @cache

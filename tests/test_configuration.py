@@ -41,12 +41,12 @@ def test_nested_values_of_the_command_line_are_texts_and_the_line_tells_the_reme
 
 
 def test_a_new_figure_needs_a_title_and_functions_and_may_have_any_parameters(fresh):
-    text = "permanent_contact: {fig17: {title: A new one, caption: With a caption, anything: 1}}"
+    text = "permanent_contact: {fig99: {title: A new one, caption: With a caption, anything: 1}}"
     (fresh.path / "mine.yaml").write_text(text, "utf-8")
-    command = ["-n", "--cores", "1", "--configfile", "mine.yaml", "--", "fig17"]
+    command = ["-n", "--cores", "1", "--configfile", "mine.yaml", "--", "fig99"]
     for file in ("workflow/scripts/permanent_contact.py", "src/bouncing_ball/figures.py"):
-        line = f"configuration: permanent_contact.fig17: {file} has no function for it"
+        line = f"configuration: permanent_contact.fig99: {file} has no function for it"
         assert fresh.run(*command)[0] == line
-        fresh.edit(file, '"fig11": fig11', '"fig11": fig11, "fig17": fig11')
+        fresh.edit(file, '"fig11": fig11', '"fig11": fig11, "fig99": fig11')
     status, printed = fresh.run(*command)
-    assert status == 0 and "results/figures/fig17.png" in printed, printed
+    assert status == 0 and "results/figures/fig99.png" in printed, printed

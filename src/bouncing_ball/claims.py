@@ -134,7 +134,9 @@ def kinds_of_motion(balls):
 
 
 def chaotic(balls: xr.Dataset) -> xr.DataArray:
-    """Which balls neither repeat nor stick, and have an exponent positive by five errors."""
+    """Whether a motion is chaotic: not periodic, no sticking, and a Lyapunov exponent of more than
+    five standard errors.
+    """
     wild = balls["impacts"] == 0
     complete(balls["lyapunov_exponent"].where(wild, 0.0))
     diverging = balls["lyapunov_exponent"] > 5 * balls["lyapunov_error"]
@@ -160,8 +162,8 @@ def high_flights(*sweeps):
         exact = restitution.period_doubling(n, r)
         neglect.append(abs(exact / restitution.holmes_period_doubling(n, r) - 1).max())
     return [
-        at_least("ten times the excitation on the orbits of Figs. 5, 6 and 10", lowest, 10.0),
-        at_least("above the excitation on these orbits", lowest, 1.0),
+        at_least("flights ten times as high as the excitation, Figs. 5, 6 and 10", lowest, 10.0),
+        at_least("flights higher than the excitation on these orbits", lowest, 1.0),
         at_most("so high that Eq. 8 is right within 1 %", neglect, LIMIT),
     ]
 
@@ -187,7 +189,7 @@ def direct_map():
 )
 def complete_study(balls):
     return [
-        at_most("every motion, in chaotic motions among three", chaotic(balls).sum(), 0),
+        at_most("a study of every motion: chaotic motions among three", chaotic(balls).sum(), 0),
         argued("the n-T orbits and their first bifurcations", True, "Eqs. 6-8 are formulas"),
     ]
 
@@ -342,10 +344,10 @@ def static_table():
         return abs(restitution_at_rest(0.65, ratio, weight) / 0.65 - 1)
 
     return [
-        at_most("the contact of Eq. 10, which has the weight, at ϖ = 100", error(100, 1), ROUNDING),
+        at_most("a contact with weight (Eq. 10), at ϖ = 100", error(100, 1), ROUNDING),
         at_most("a contact without weight", error(10, 0), ROUNDING),
-        at_most("the contact of Eq. 10 at ϖ = 100, within 1 %", error(100, 1), LIMIT),
-        at_most("the contact of Eq. 10 at ϖ = 10, within 1 %", error(10, 1), LIMIT),
+        at_most("a contact with weight at ϖ = 100, within 1 %", error(100, 1), LIMIT),
+        at_most("a contact with weight at ϖ = 10, within 1 %", error(10, 1), LIMIT),
     ]
 
 
@@ -503,7 +505,7 @@ by_construction(
 def exactly_computed(*figures):
     left = [abs(residual(figure)).max() for figure in figures]
     return [
-        at_most("Eqs. 23-26 on the orbits of Figs. 8 and 9, which neglect nothing", left, ROUNDING),
+        at_most("residuals of Eqs. 23-26, which neglect nothing, in Figs. 8 and 9", left, ROUNDING),
         argued("a formula at a given Λ", False, "as far as we know (*no analytical solution*)"),
     ]
 
@@ -599,9 +601,21 @@ def stiff_row(table1):
     holmes = table1["restitution_range"].sel(impact_map="holmes")
     half = 0.0005
     return [
-        at_most("the computed row and Eqs. 7 and 8", abs(stiffest["computed"] - holmes), half),
-        at_most("the computed row and the map of Eq. 5", abs(stiffest["computed"] - exact), half),
-        at_most("the printed row and Eqs. 7 and 8", abs(stiffest["printed"] - holmes), half),
+        at_most(
+            "difference of the computed row and Eqs. 7 and 8",
+            abs(stiffest["computed"] - holmes),
+            half,
+        ),
+        at_most(
+            "difference of the computed row and the map of Eq. 5",
+            abs(stiffest["computed"] - exact),
+            half,
+        ),
+        at_most(
+            "difference of the printed row and Eqs. 7 and 8",
+            abs(stiffest["printed"] - holmes),
+            half,
+        ),
     ]
 
 
@@ -648,7 +662,9 @@ def amplitude_does_not_matter(fig10):
     stiffer = apart.sel(frequency_ratio=slice(2.0, None))
     return [
         at_most("an axis from ϖ = 2 on", [at_2, *stiffer], LIMIT),
-        at_most(f"an axis from ϖ = 1 on (they are that near from {meeting:.4f} on)", apart, LIMIT),
+        at_most(
+            f"an axis that begins at ϖ = 1 (the velocities agree above {meeting:.4f})", apart, LIMIT
+        ),
     ]
 
 

@@ -206,7 +206,7 @@ def distances(name: str, old: xr.Dataset, new: xr.Dataset) -> np.ndarray:
 
 
 def excerpt(old: object, new: object) -> str:
-    """Two values as "old → new"; long texts from shortly before they part.
+    """Print two values as "old → new"; long texts from 30 characters before the first difference.
 
     >>> excerpt(82.177, 83.0), excerpt(1.0, 1.000000001)
     ('82.177 → 83', '1.0 → 1.000000001')
@@ -228,7 +228,7 @@ def shown(value: object) -> str:
 
 
 def stale(new: xr.Dataset, name: str, config: Mapping) -> str:
-    """Why a result is not that of the configuration and of today's code; empty if it is."""
+    """Name the parameters and files that changed since a result was computed; empty if none."""
     recorded = record(new, "parameters")
     wanted = {key: value for key, value in config.items() if key in recorded}
     for stage in config.values():
@@ -480,7 +480,7 @@ def accept(project: Project, results: Path) -> list[str]:
     report = compare(project, results, project.configuration())
     for line in report.lines:
         if ": stale" in line or "cannot be compared" in line:
-            raise ValueError(f"nothing is accepted, make it again first: {line}")
+            raise ValueError(f"nothing is accepted, run snakemake again first: {line}")
     written = []
     for file in project.files(project.top, results):
         source = results / file

@@ -379,7 +379,7 @@ def fig12(data: xr.Dataset) -> Figure:
 
 
 def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
-    """Draw the orbit for each ϖ. The stiffest contact is a solid line above the other lines."""
+    """Draw the orbit for each ϖ. The line of the stiffest contact is solid and drawn last."""
     stiff_first = data.sortby("frequency_ratio", ascending=False)
     shades = colours(data.sizes["frequency_ratio"])
     for k, (colour, dashes) in enumerate(zip(shades, cycle(DASHES), strict=False)):
@@ -402,7 +402,7 @@ def three_cycles(data: xr.Dataset, height: xr.DataArray) -> tuple[np.ndarray, np
 
 
 def show_summit(axes: Axes, data: xr.Dataset) -> None:
-    """Set limits that separate the summits of the restitution model and the stiffest contact."""
+    """Zoom in until the summits of the restitution model and of the stiffest contact differ."""
     place = int(np.argmax(data.restitution_ball.values))
     top = float(data.restitution_ball[place])
     stiffest = float(data.ball.sel(frequency_ratio=data.frequency_ratio.max()).max())

@@ -174,8 +174,8 @@ def flight_time(amplitude: float, time: float, velocity: float) -> float:
     of at most 1/20 rad. If the height falls and rises again within a step, the search also
     evaluates its minimum.
 
-    A ball without velocity relative to the table needs Λ sin τ >= 1. The table then falls at least
-    as fast as the ball.
+    A ball without velocity relative to the table leaves it only if Λ sin τ >= 1. The table then
+    falls at least as fast as the ball.
     """
     start = amplitude * np.sin(time)
     relative = velocity - amplitude * np.cos(time)

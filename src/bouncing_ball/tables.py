@@ -83,7 +83,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
 def thresholds(data: xr.Dataset) -> list[list[str]]:
     """Frequency ratios above which each error stays within each tolerance.
 
-    Outside of the range scanned it is given as the end of the range, after < or >.
+    A threshold outside of the range scanned is printed as "< lowest" or "> largest".
     """
     lowest, highest = data["frequency_ratio"].values[[0, -1]]
     outside = {"within": f"< {lowest:g}", "outside": f"> {highest:g}"}
@@ -102,9 +102,11 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
 def hypotheses(data: xr.Dataset) -> list[list[str]]:
     """All printed numbers under each hypothesis on what the authors computed.
 
-    Each row of Table 1 has the number of its ends that are reproduced, and the rows of the
-    compliant contacts together the root mean square (rms) of their distances in units of the last
-    printed digit. Each other number is followed by its distance in these units.
+    The columns are:
+
+    - for each row of Table 1, the number of its ends that are reproduced;
+    - the root mean square (rms) distance of the compliant rows, in units of the last printed digit;
+    - the other numbers, each with its distance in these units.
     """
     row = data["row"].values
     rows = list(dict.fromkeys(row[np.isfinite(row)]))

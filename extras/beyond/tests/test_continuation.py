@@ -8,9 +8,11 @@ from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
+from bouncing_ball_beyond import continuation
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.branches import FollowedBranch
 from bouncing_ball_beyond.continuation import cascade, follow, limits
+from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.march import LARGEST_TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
@@ -633,3 +635,30 @@ def test_random_branches_of_all_models_lead_to_orbits_of_independent_codes():
         counted += last.z[-1] != value
     # All of them have moved.
     assert counted == 60
+
+
+def test_limits_start_from_the_first_orbit_that_a_ball_follows_or_else_the_first_orbit(monkeypatch):
+    """Searches return an orbit or none, and whether a ball follows it, for three balls."""
+    answers = {
+        0: [("a", False), (None, False), ("b", False), ("c", True)],
+        1: [(None, False)],
+        2: [(None, False), ("a", False), ("b", False)],
+    }
+    asked = dict.fromkeys(answers, 0)
+
+    def search(equations, amplitude, impacts):
+        found = []
+        for row in (equations.periods - 1).tolist():
+            some = answers[row]
+            found.append(some[min(asked[row], len(some) - 1)])
+            asked[row] += 1
+        orbits, done = zip(*found, strict=True)
+        return list(orbits), np.array(done)
+
+    monkeypatch.setattr(continuation, "near_instants", search)
+    monkeypatch.setattr(continuation, "shortest_contacts", search)
+    balls = Rigid(np.array([0.5, 0.5, 0.5]))
+    found = continuation._between_limits(OrbitEquations(balls, 1, np.array([1, 2, 3])))
+    assert found[0] == "c" and found[2] == "a"
+    assert isinstance(found[1], OrbitNotFound)
+    assert asked[0] == 4

@@ -364,3 +364,23 @@ def test_a_summary_of_many_impacts_needs_no_history():
         found = bb.motion_of(bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000)
     assert found.followed >= 60_000
     assert max(most) <= motions.IMPACTS_AT_ONCE
+
+
+@pytest.mark.parametrize(("distance", "repeats"), [(0.5e-7, True), (2e-7, False)])
+def test_a_slowly_converging_speed_repeats_only_near_its_fixed_point(distance, repeats):
+    """With multipliers 0.99 and 0.5, the change per impact is 0.01 of the distance to the orbit."""
+    impacts = 50
+    speed = 1 + distance * 0.99 ** np.arange(-impacts + 1.0, 2.0)
+    record = np.full((impacts, 8, 1), np.nan)
+    record[:, 0, 0] = np.arange(impacts)
+    record[:, 1, 0] = 1.0
+    record[:, 2, 0] = speed[:-1]
+    one = np.ones(1)
+    balls = bounces.Balls(bb.Rigid(0.5), 0 * one, 0 * one, one, speed[:1])
+    after = bounces.Balls(bb.Rigid(0.5), 0 * one, impacts * one, one, speed[-1:])
+    maps = np.zeros((2, 2, impacts, 1))
+    maps[0, 0], maps[1, 1] = 0.5, 0.99
+    found = motions.recurrence(balls, record, after, maps)
+    assert found["repeats"][0] == repeats
+    assert found["impacts"][0] == found["periods"][0] == 1
+    assert found["radius"][0] == pytest.approx(0.99)

@@ -418,7 +418,8 @@ class OrbitEquations:
     ) -> NDArray:
         """How well balls leave after impacts, the least of all: the rate of the release, δ′ of an
         instant, which needs no derivatives, or the summit after one below the table."""
-        if linear is not None and self.ball.has_duration:
+        if self.ball.has_duration:
+            linear = self.linearized(z) if linear is None else linear
             return linear.derivatives[..., 0, 2].min(axis=-1)
         flights = flights or self.ends(z)
         if np.all(flights.gap >= 0):
@@ -458,8 +459,6 @@ class OrbitEquations:
 
     def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
         """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
-        if linear is None and self.ball.has_duration:
-            linear = self.linearized(z)
         x, ball, *_ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)

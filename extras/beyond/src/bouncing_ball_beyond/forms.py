@@ -298,13 +298,16 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     # The least gap is a smooth function: a third of all digits is enough for the sign.
     step = 1e-6 * max(1.0, abs(z[-1]))
     below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
-    r = -1.0 if orbit.ball.has_duration else float(orbit.ball.signature(0.0).restitution)
+    # S = 0 for contacts of finite duration, which is r = -1.
+    r, slope = -1.0, 0.0
+    if not orbit.ball.has_duration:
+        r, slope = float(orbit.ball.signature(0.0).restitution), float(direction[-1])
     return GrazingForm(
         leg=at.leg,
         phase=float(np.pi - (np.pi - at.time) % (2 * np.pi)),
         acceleration=at.acceleration,
         coefficient=(1 + r) * float(np.sqrt(2 * at.acceleration)),
-        slope=0.0 if orbit.ball.has_duration else float(direction[-1]),
+        slope=slope,
         along=path.name,
         opens_upwards=opens_upwards,
         persists=opens_upwards == bool(above < below),

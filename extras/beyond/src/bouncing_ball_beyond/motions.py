@@ -124,8 +124,7 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
         slopes[..., others] = slopes_of_contact(one, tau[others], u[others], T[others])
     else:
         slopes = slopes_of_contact(balls, tau, u, T)
-    if not ball.has_duration:
-        slopes = np.where(duration > 0, 0.0, slopes)
+    slopes = np.where(are_rests(balls, duration), 0.0, slopes)
     later, dgap, dw = slopes
     later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]
     leaves = tau + duration
@@ -151,7 +150,7 @@ def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArra
     given = tau + steps[0], u + steps[1], T + steps[2], balls.amplitude
     impact = ball.contact(*given, table=balls.table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
-    if not ball.has_duration:
+    if unknowns == 2:
         return slopes
     # Eliminate T by implicit differentiation: the release function vanishes at the release.
     released: Any = impact.release
@@ -188,12 +187,15 @@ def slopes_of_oscillator(
     return np.array([later, gap + w * later, rate + second * later])
 
 
+def are_rests(balls: Balls, duration: NDArray) -> NDArray:
+    """Whether contacts are rests on the table: an instantaneous impact has no duration."""
+    return (duration > 0) & (not balls.ball.has_duration)
+
+
 def lift_offs(balls: Balls, record: NDArray) -> NDArray:
     """Whether each contact is a rest that ends with a lift-off, shape (impacts, balls)."""
     _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
-    if balls.ball.has_duration:
-        return np.zeros(tau.shape, bool)
-    rests = (duration > 0) & (w == 0)
+    rests = are_rests(balls, duration) & (w == 0)
     push = -balls.amplitude * balls.table(np.where(rests, tau + duration, 0.0), 2)
     return rests & (push < 1 + LIFT_OFF_ERROR)
 

@@ -23,11 +23,18 @@ compile_loops = cache(one_ball.compile_loops)
 
 
 class Leaving(NamedTuple):
-    """How balls leave the table.
+    """States of balls at the end of their impacts.
 
-    ``own_time`` and ``duration`` are T and D of the impacts; D is infinite for a ball that stays.
-    ``turns`` and ``phase`` are those of the table at the end, ``gap`` and ``speed`` are δ and δ′
-    there. ``emerges`` is when a ball rises through the level after an instant below it.
+    Attributes
+    ----------
+    scaled_duration, duration : array
+        T and D of the impacts. D is infinite for a ball that stays on the table.
+    turns, phase : array
+        Whole turns and phase of the table at the end of the impact.
+    gap, speed : array
+        δ and δ′ at the end of the impact.
+    emerges : array
+        Time at which a ball rises through the level of the table, if the impact ends below it.
     """
 
     scaled_duration: np.ndarray
@@ -43,9 +50,20 @@ class Leaving(NamedTuple):
 class Balls:
     """A row of balls, each before its next impact.
 
-    ``turns`` and ``phase`` are the whole turns of the table and its phase, so that a late phase has
-    all digits, and ``speed`` is u. Parameters of the ball are numbers, or arrays over the row.
-    ``map`` has the contacts of one ball that is followed over many impacts.
+    Attributes
+    ----------
+    ball : Ball
+        The ball. Its parameters are numbers, or arrays over the row.
+    amplitude : array
+        Excitation amplitude Λ.
+    turns, phase : array
+        Whole turns of the table and its phase. A late phase keeps all digits this way.
+    speed : array
+        Closing speed u.
+    table : Table
+        The waveform.
+    map : ImpactMap, optional
+        Contacts of one ball that is followed over many impacts.
     """
 
     ball: Ball
@@ -64,11 +82,11 @@ class Balls:
 
 @np.errstate(divide="ignore", invalid="ignore")
 def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> NDArray:
-    """The times of first zeros of functions f ≥ 0, one for each ball, by :func:`.safe_steps`.
+    """Find the first zero of a function f ≥ 0 for each ball, by :func:`.safe_steps`.
 
-    There are none before the times ``start``. ``look(t, *given)`` is a later time before which
-    there is none either, f, f′ and f″ there, K and J. The last balls are left out, as NaN, if they
-    are fewer than ``fewest``.
+    No zero may be before ``start``. ``look(t, *given)`` returns (t₁, f, f′, f″, K, J). No zero may be
+    between t and t₁. f and its derivatives are those at t₁. K and J are the bounds that
+    :func:`.safe_steps` needs. The search stops when fewer than ``fewest`` balls are left, and returns NaN for these.
     """
     time = np.full(start.shape, np.nan)
     todo = np.arange(start.size)
@@ -90,7 +108,7 @@ def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) ->
 def landings(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """The times of :func:`.one_ball.landing` for arrays of one shape."""
+    """Times of landings, as :func:`.one_ball.landing`, for arrays of one shape."""
     _, _, bend, jerk, *_ = table.bounds
     absolute = w + table.pulls(waves)[0]
     below = gap + (sum(waves[1::2]) - amplitude * table.peaks[0])
@@ -113,8 +131,10 @@ def landings(
 def emergences(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """The times, not before ``start``, at which balls rise through the level of the table or are
-    above it; infinite for those that fall back before."""
+    """First times, from ``start`` on, at which balls are at or above the level of the table.
+
+    The time is infinite for balls that fall back before.
+    """
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state
@@ -132,7 +152,7 @@ def emergences(
 def resumptions(
     table: Table, kappa: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> tuple:
-    """The times of :func:`.one_ball.rise` for arrays, and whether contacts resume there."""
+    """Times as in :func:`.one_ball.rise`, for arrays, and whether contacts resume at them."""
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, kappa: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state
@@ -158,8 +178,10 @@ def instants(
     waves: list,
     amplitude: Values,
 ) -> tuple[NDArray, NDArray]:
-    r"""The times after landings at which the gap is that at which impacts of the ball start, and
-    the speeds."""
+    r"""Find when impacts start whose gap depends on the closing speed, after given landings.
+
+    Returns the times at which δ = ``ball.start(u)``, and the closing speeds u.
+    """
     t = landed.copy()
     speed = np.empty_like(t)
     strongest = 1 + table.bounds[2] * amplitude
@@ -183,7 +205,7 @@ def instants(
 
 
 def leave(balls: Balls) -> Leaving:
-    """How balls leave the table after their impacts."""
+    """Compute the states of balls at the end of their impacts."""
     if balls.map:
         scaled_duration, duration, gap, w = balls.map.leaves(balls.phase, balls.speed)
     else:
@@ -196,7 +218,10 @@ def leave(balls: Balls) -> Leaving:
 
 
 def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
-    """How balls leave after instantaneous impacts, some of them after :func:`.one_ball.settle`."""
+    """Compute the states after instantaneous impacts.
+
+    Balls that bounce ever lower come to rest, as in :func:`.one_ball.settle`.
+    """
     table = balls.table
     amplitude = balls.amplitude
     phase = balls.phase
@@ -234,7 +259,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, time: NDArray) -> NDArray:
-    """Which balls may not rise after the ``time``, or not through the level of the table."""
+    """Whether balls below the level of the table may fall by ``time``, or may never reach it."""
     return (gap < 0) & ((w <= strongest * time) | (w * w + 2 * strongest * gap <= 0))
 
 
@@ -245,7 +270,7 @@ def reduced(phase: Values) -> tuple[NDArray, NDArray]:
 
 @np.errstate(divide="ignore", invalid="ignore")
 def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
-    """The time of the flights of balls up to their next impacts, and their closing speeds."""
+    """Return the durations of flights and the closing speeds of the next impacts."""
     ball = balls.ball
     table = balls.table
     amplitude = balls.amplitude
@@ -281,10 +306,13 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
 
 
 def step(balls: Balls) -> tuple[NDArray, NDArray, Balls]:
-    """One impact of each ball, and the flight after it.
+    """Follow each ball over one impact and the flight after it.
 
-    Returns a record (8, balls) with the columns of :data:`.one_ball.COLUMNS`, the indices of the
-    balls that leave the table, and these before their next impacts.
+    Returns
+
+    1. a record of the shape (8, balls), with the columns of :data:`.one_ball.COLUMNS`;
+    2. the indices of the balls that leave the table and land again;
+    3. these balls before their next impacts.
     """
     leaving = leave(balls)
     record = np.full((len(COLUMNS), balls.phase.size), np.nan)
@@ -341,11 +369,14 @@ def bounce_by_map(
 
 
 def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
-    """A number of impacts of each ball.
+    """Follow each ball over a number of impacts.
 
-    Returns a record (impacts, 8, balls) as that of :func:`step`, NaN after the last impact of a
-    ball, the indices of the balls that do not stay on the table, and these before their next
-    impacts.
+    Returns
+
+    1. a record of the shape (impacts, 8, balls), with the columns of :data:`.one_ball.COLUMNS`, NaN
+       after the last impact of a ball;
+    2. the indices of the balls that still bounce;
+    3. these balls before their next impacts.
     """
     compile_loops()
     if balls.phase.size < FEW_BALLS and balls.ball.loop_parameters(balls.table):

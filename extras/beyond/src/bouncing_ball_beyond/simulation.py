@@ -14,14 +14,14 @@ from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 AT_ONCE = 32
-"""Impacts that :func:`history` follows before it looks whether the time is over."""
+"""Number of impacts that :func:`history` computes before it checks whether the time is over."""
 
 MOST_IMPACTS = 1_000_000
-"""The number of impacts of a ball that :func:`history` follows."""
+"""Maximum number of impacts of a ball in :func:`history`. More raise a ValueError."""
 
 
 def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
-    """An argument as a labelled array: a list is an axis with the name of the argument."""
+    """Return an argument as a labelled array. A list becomes an axis with the argument's name."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if np.asarray(value).dtype.kind in "SU":
@@ -34,11 +34,16 @@ def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
 
 
 def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray]]:
-    """The grid that arguments, one of them the amplitude, and array parameters of a ball span.
+    """Span a grid by arguments and by the array parameters of a ball.
 
-    Parameters of a ball vary together: along an axis with the name of the parameter, or "ball" if
-    several are arrays. Returns an array with the axes of the grid, the ball with parameters for
-    each point of it, in one row, and the values of the arguments at each point.
+    One argument must be the amplitude. Parameters of the ball share one axis. Its name is that of
+    the parameter, or "ball" if several parameters are arrays.
+
+    Returns
+
+    1. an array with the axes of the grid;
+    2. the ball, with parameters for each point of the grid in one row;
+    3. the values of the arguments at each point.
     """
     check_ball(ball)
     rows = {name: value for name, value in ball.parameters.items() if np.ndim(value)}
@@ -64,7 +69,7 @@ def first_impacts(
     relative_velocity: Values,
     table: Table = SINE,
 ) -> tuple[xr.DataArray, Balls]:
-    """The grid of first impacts of :func:`simulate`, and the balls before them."""
+    """Return the grid of first impacts of :func:`simulate`, and the balls before these impacts."""
     check_table(table)
     absolute = relative_velocity is None
     if not absolute and velocity is not None:
@@ -112,10 +117,10 @@ DESCRIPTIONS = {
 def dataset(
     grid: xr.DataArray, variables: dict, descriptions: Mapping, **coordinates: Any
 ) -> xr.Dataset:
-    """Values over the points of a grid as a labelled dataset.
+    """Return values over the points of a grid as a labelled dataset.
 
-    ``variables`` are arrays with the points of the grid as their first axis, and the axes of the
-    ``coordinates`` after it.
+    The first axis of each of the ``variables`` has the points of the grid. The axes of the
+    ``coordinates`` follow it.
     """
     found = xr.Dataset(coords=dict(grid.coords) | coordinates)
     names = list(coordinates)
@@ -265,7 +270,12 @@ def drop(
     Returns
     -------
     xarray.Dataset
-        As of :func:`history`, whose errors it has too, and one if the ball is below the table.
+        As in :func:`history`.
+
+    Raises
+    ------
+    ValueError
+        As :func:`history`, or if the ball is below the table.
 
     Examples
     --------
@@ -301,7 +311,10 @@ def drop(
 def over_time(
     grid: xr.DataArray, balls: Balls, fall: NDArray, periods: float, samples: int
 ) -> xr.Dataset:
-    """The dataset of balls over time, from their first impacts or from rows that record falls."""
+    """Return balls over time as a dataset.
+
+    ``fall`` records the flights before the first impacts, and is empty if there are none.
+    """
     periods = checked("periods", periods, 0, np.inf, low_allowed=False)
     times = np.linspace(0, PERIOD * periods, round(periods * whole_number("samples", samples)) + 1)
     shape = balls.phase.size, times.size

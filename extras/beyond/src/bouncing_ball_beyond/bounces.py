@@ -84,9 +84,10 @@ class Balls:
 def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> NDArray:
     """Find the first zero of a function f ≥ 0 for each ball, by :func:`.safe_steps`.
 
-    No zero may be before ``start``. ``look(t, *given)`` returns (t₁, f, f′, f″, K, J). No zero may be
-    between t and t₁. f and its derivatives are those at t₁. K and J are the bounds that
-    :func:`.safe_steps` needs. The search stops when fewer than ``fewest`` balls are left, and returns NaN for these.
+    No zero may be before ``start``. ``look(t, *given)`` returns (t₁, f, f′, f″, K, J). No zero may
+    be between t and t₁. f and its derivatives are those at t₁. K and J are the bounds that
+    :func:`.safe_steps` needs. The search stops when fewer than ``fewest`` balls are left, and
+    returns NaN for these.
     """
     time = np.full(start.shape, np.nan)
     todo = np.arange(start.size)

@@ -510,11 +510,12 @@ def turns_back(
     waves: int = 1,
     slopes: NDArray | None = None,
 ) -> NDArray:
-    """The least value, or the first one, at a local minimum of functions of the time in (0, ends).
+    """Return the smallest local minimum of functions of the time in (0, ends), or the first one.
 
-    It is at most FAR, and FAR where there is no minimum. The slope, an analytic positive multiple
-    of the derivative, has 32 samples in each wave of a table. Further times may be among them,
-    (..., m), or the slopes at the samples be known, but for small errors.
+    The minimum is at most FAR, and FAR if there is none. The slope is an analytic positive multiple
+    of the derivative. It is sampled at 32 times in each wave of a table, and also at the times
+    ``among``, shape (..., m). ``slopes`` are the slopes at the samples, if they are known within
+    small errors.
     """
     times = ends[..., np.newaxis] * samples_in(ends, waves)
     if among is not None:

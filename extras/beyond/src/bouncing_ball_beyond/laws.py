@@ -92,20 +92,20 @@ class ForceLaw(Ball):
     release : {"displacement", "force"}
         Contacts end where p = 0, or where the force vanishes.
     lag : callable, optional
-        If the force vanishes where p + κp′ = 0, the function ``lag(**values)`` with κ.
+        Function ``lag(**values)`` that returns κ, if the force vanishes where p + κp′ = 0.
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
-        "start_speed" or "load" if the force also gets, by this name, the speed at the start of the
-        contact or the load a = 1 + w″.
+        Further keyword arguments of the force: "start_speed", the speed at the start of the
+        contact, and "load", the load a = 1 + w″.
     units : mapping
-        The powers of mass, length and time in the unit of each parameter, where parameters change
-        with the frequency of the table or with the stiffness of the contact.
+        Powers of mass, length and time in the unit of each parameter. They are needed if the
+        frequency of the table or the stiffness of the contact changes.
 
     Raises
     ------
     ValueError
-        If the force is not a function as described; one line says where.
+        If the force is not a function as described. The message says where.
 
     Examples
     --------
@@ -153,7 +153,7 @@ class ForceLaw(Ball):
 
     @property
     def known_units(self) -> Mapping:
-        """The units of all parameters; ValueError in one line if some are not given."""
+        """Units of all parameters. Raise a ValueError if a parameter has no unit."""
         for name in self.values:
             if name not in self.units:
                 raise ValueError(
@@ -167,7 +167,7 @@ class ForceLaw(Ball):
         return dict(self.values)
 
     def at(self, **values: Any) -> Any:
-        """The same law with other values of parameters, which are not checked."""
+        """Return the law with other values of parameters, without checking them."""
         unknown = values.keys() - self.values.keys()
         if unknown:
             raise ValueError(
@@ -234,7 +234,7 @@ class ForceLaw(Ball):
         return {name: power for name, power in powers.items() if power}
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """The function from a number in the place of ϖ to the law with another stiffness."""
+        """Return the law with another stiffness, as a function of a number that replaces ϖ."""
         share = np.pi * restitution / ((1 + restitution) * centroid)
         # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
         powers = {name: length + time for name, (_, length, time) in self.known_units.items()}
@@ -270,7 +270,7 @@ class ForceLaw(Ball):
         periods: Values = PERIODS,
         table: Table = SINE,
     ) -> Values:
-        """T of the first releases; NaN for balls that stay in contact for so many periods."""
+        """T of the first release; NaN if a contact lasts longer than ``periods`` periods."""
         return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)[0]
 
     def first_impact(
@@ -281,7 +281,7 @@ class ForceLaw(Ball):
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ a time after the start of a contact."""
+        """δ and δ′ at a time after the start of a contact."""
         given = {"tau": tau, "u": u, "after": time, "amplitude": amplitude, "gravity": 1.0}
         rows, motion, start, by = self._started(given, table)
         after = rows.given.pop("after")
@@ -295,7 +295,7 @@ class ForceLaw(Ball):
         return -(q**self.root), -v
 
     def free(self, u: Values) -> Values:
-        """T of free impacts, without a table and gravity."""
+        """T of free impacts, without gravity and on a table at rest."""
         u = np.asarray(u)
         if self._scales is None or self.kinks or np.iscomplexobj(u) or not np.all(u > 0):
             return self._followed(0.0, u, 0.0, 0.0)[0]
@@ -304,8 +304,9 @@ class ForceLaw(Ball):
         return time * length ** (1 / self.root - 1) * scaled_duration
 
     def signature(self, u: Values) -> Signature:
-        """r, D, t_c and σ of free impacts, of one law for all laws that differ from it by the units
-        of length and time alone.
+        """r, D, t_c and σ of free impacts.
+
+        They are computed once for all laws that differ only by the units of length and time.
         """
         u = np.asarray(u)
         if self._scales is None or not np.all(u.real > 0):
@@ -425,7 +426,7 @@ class ForceLaw(Ball):
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
     def depth(self, u: Values) -> Values:
-        """About the depth P at which the force would stop a ball: P f(P, 0) = u²."""
+        """Approximate depth P at which the force would stop a ball: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
         low = np.full(shape, LN_DEPTHS[0])

@@ -46,7 +46,7 @@ class Signature(NamedTuple):
 
 
 class Ball:
-    """What all balls have."""
+    """Base class of all balls."""
 
     has_duration: ClassVar[bool] = False
     """Whether contacts have a duration."""
@@ -639,5 +639,5 @@ class Corrected(Ball):
         return Impact(0 * speed, 0 * speed - u * centroid, speed, None)
 
     def signature(self, u: Values) -> Signature:
-        """That of the ball with contacts."""
+        """Signature of the other ball, `of`."""
         return self.of.signature(u)

@@ -57,7 +57,7 @@ class LinearizedLegs:
 
     @cached_property
     def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
-        """Those of the derivative of the return map, each of the shape (rows,)."""
+        """Trace and determinant of the derivative of the return map, each of the shape (rows,)."""
         maps = self.maps
         # Their product has all digits where the determinant of the product of the maps has none.
         determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
@@ -452,7 +452,7 @@ class OrbitEquations:
         return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
 
     def later(self, z: NDArray, turns: Any) -> NDArray:
-        """Orbits that begin so many turns of the table later, by rows."""
+        """Shift orbits by a number of turns of the table, by rows."""
         z = z.copy()
         z[:, : self.size : self.unknowns] += 2 * np.pi * np.reshape(turns, (-1, 1))
         return z

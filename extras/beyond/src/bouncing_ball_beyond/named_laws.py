@@ -48,7 +48,8 @@ def law_of_impact(
 
     ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and a
     damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P nor v.
-    r in (0, 1], D > 0 and the speed > 0 may be arrays. ValueError if no g up to 10⁴ has this r.
+    r in (0, 1], D > 0 and the speed > 0 may be arrays. Raise a ValueError if no g up to 10⁴ gives
+    this r.
 
     Examples
     --------

@@ -147,7 +147,7 @@ class Gauss(NamedTuple):
 
     @classmethod
     def of_order(cls, n: int) -> "Gauss":
-        """Those of n nodes."""
+        """Return the Gauss nodes of order n."""
         x, weights = legendre.leggauss(n)
         coefficients = np.linalg.inv(legendre.legvander(x, n - 1))
         integrals = legendre.legval(x, legendre.legint(coefficients, lbnd=-1)).T / 2
@@ -330,7 +330,7 @@ class Panel(NamedTuple):
         return [values @ y for y in self.nodes]
 
     def pushed(self, share: NDArray, gauss: Gauss) -> NDArray:
-        """F at the nodes of the first part of each panel, by the polynomial that it is."""
+        """Interpolate F to the Gauss nodes of the first part of each panel."""
         coefficients = gauss.coefficients @ self.push
         places = 2 * share * gauss.nodes[:, np.newaxis] - 1
         return legendre.legval(places, coefficients, tensor=False)
@@ -372,7 +372,7 @@ class LinearizedPanel(NamedTuple):
     def matrix(self) -> NDArray:
         """The matrix of the linear system for δF of each panel, shape (rows, nodes, nodes).
 
-        In units of the length of the panel and of a speed it is the same in all units.
+        The matrix is dimensionless.
         """
         by_q, by_v, by_t, bend = (each.transpose(2, 0, 1) for each in self[:4])
         h = self.h[:, np.newaxis, np.newaxis]
@@ -846,7 +846,7 @@ def integrate_to(
 ) -> tuple[NDArray, NDArray]:
     """As :func:`integrate_contacts`, contacts up to root times, with the derivatives of these.
 
-    Those that end as free impacts do are found in one panel each.
+    Contacts that end as free impacts do take one panel each.
     """
     left = np.arange(until.size)
     ends = np.empty((4, until.size))

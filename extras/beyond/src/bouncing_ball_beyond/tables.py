@@ -596,7 +596,7 @@ class Sine(Table):
         return np.hypot(speed, push), np.arctan2(push, speed)
 
     def levels(self, amplitude: Values) -> Values:
-        """The two phases at which Λ sin τ = 1, and π/2 for both if there are none."""
+        """The two phases at which Λ sin τ = 1. If there are none, both are π/2."""
         level = np.arcsin(np.minimum(1, 1 / np.asarray(amplitude, float)))
         return np.stack([level, np.pi - level], axis=-1)
 

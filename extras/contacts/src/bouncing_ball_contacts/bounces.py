@@ -58,8 +58,8 @@ class Bounce:
     drop_height, speed : Quantity, optional
         One of both; by default a drop from 1 m.
     radius, density : Quantity, optional
-        Of the body, both in place of its mass; the density may be the name of a material. By
-        default a solid ball of steel.
+        Radius and density of the body; both replace the mass. The density may be the name of
+        a material. By default the body is a solid ball of steel.
     penetration, stiffness, contact_time : Quantity, optional
         At most one of them: the depth that must not be exceeded, or the contact itself. By default
         the penetration is at most a tenth of the radius and a fifth of the drop height.

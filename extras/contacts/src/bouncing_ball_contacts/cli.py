@@ -205,7 +205,9 @@ def diagnose_command(
             ["--leave-out"], type=int, multiple=True, help="A line of the file; may be repeated."
         ),
         click.Option(["--ball"], help="One of several in the file."),
-        click.Option(["--read-at"], help="Of rebound heights, off the ball: bottom or top."),
+        click.Option(
+            ["--read-at"], help="Where rebound heights are read on the ball: bottom or top."
+        ),
         click.Option(
             ["--engine"], help="For which the contact is written.", shell_complete=_engines
         ),

@@ -8,8 +8,8 @@ steps of it. Two of δ, h and n are given in each question, and the third follow
   least number of steps with which r is within half of the tolerance.
 * *Your step.* δ is the same, and h is yours. If r leaves the tolerance, h is yours, and n is the
   least one, which is the stiffest contact, with which r does not.
-* *A step between.* If the body sinks too deep at your step, it is the longest of its halves,
-  quarters, … at which the stiffest contact sinks no deeper than the size of the body allows.
+* *A step between.* If the body sinks too deep at your step, the step is halved until
+  the stiffest contact sinks no deeper than the size of the body allows.
 
 The ratio of damping is always the one with which the mean r is the wanted one. It is read from a
 scan: the engine's own scheme is stepped for many ratios at once, over all instants of the impact
@@ -486,13 +486,6 @@ def _warnings(
                 f"at {show(asked or 0, 's', 4)} a contact with this r is too deep: {moves}",
             ),
             (depth > bounce.size, f"it sinks deeper than its {size}"),
-            (
-                not is_other
-                and depth > 1.01 * bounce.limit
-                and problem.given_depth is None
-                and depth <= bounce.size,
-                f"it sinks {100 * depth / bounce.size:.2g} % of its {bounce.size_name}: {moves}",
-            ),
             (hops, hops),
         ]
     )

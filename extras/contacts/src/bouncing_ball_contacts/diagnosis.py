@@ -1,15 +1,15 @@
 """From the parameters of an engine to the bounce that they give, and to the least change.
 
-The parameters of two bodies at a time step are a contact (:class:`Contact`), which the engine's row
-reads and which bounces as a design does. Three questions are asked of it.
+The row of an engine reads the parameters of two bodies as a contact (:class:`Contact`). The bounce
+of this contact is computed as in a design. Three questions are answered.
 
 * *What changes r?* One thing after another is taken away: the parameters that a design sets
   otherwise, the steps, and gravity. What remains is r of the spring and the damper alone. Each
   thing that changes r visibly is named.
-* *What may have been meant?* Where r would be the wanted one if the numbers stood for something
-  else, this is said.
-* *What is the least change?* The damping with which r is the wanted one: at the
-  given step if it keeps the tolerance there, and else at a half, a quarter, … of it.
+* *What may have been meant?* If the numbers had another meaning, r might be as wanted. The
+  answer names this meaning.
+* *What is the least change?* The damping with which r is as wanted at the given
+  step. If r leaves the tolerance there, the step is halved until r keeps it.
 """
 
 import math
@@ -184,7 +184,7 @@ def diagnose_spring(
         [
             (
                 engine.sets_pair and other is not None,
-                f"{engine.name} sets the contact of a pair: no body has one of its own",
+                f"{engine.name} sets the contact of a pair of bodies, and not of one body",
             ),
             (
                 time_step is None,
@@ -443,9 +443,9 @@ def _friction(contact: Contact, found: Found) -> list[str]:
     solimp = _spelled(contact.problem.engine.beside.get("solimp", ""))
     changes = max(abs(smooth - cone), abs(smooth - found.outcome.restitution.mean))
     said = (
-        f"friction changes r: with the pyramidal cone it is {smooth:.3f} without friction, and "
-        f"with the elliptic cone {cone:.3f} at every friction; at solimp = {solimp}, as designs "
-        "have, none changes it"
+        f"friction changes r: r is {smooth:.3f} with the pyramidal cone and no friction, and "
+        f"{cone:.3f} with the elliptic cone; with the solimp of designs, {solimp}, friction "
+        "does not change r"
     )
     return holding([(changes > _VISIBLE, said)])
 

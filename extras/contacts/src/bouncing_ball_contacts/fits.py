@@ -313,7 +313,7 @@ def fit(
             f"times between impacts include the contact: r is too high by {lower / 1000:.2g} for "
             f"each ms of it, which matters above {show(matters, 's')}; give --contact-time",
         ),
-        (len(v) < 3, "too few impacts for an interval of their own: it is wide"),
+        (len(v) < 3, "the interval is wide, because there are fewer than three impacts"),
         (
             is_heard and lasts,
             f"the contact, {show(lasts, 's')}, is taken off each time between two impacts",

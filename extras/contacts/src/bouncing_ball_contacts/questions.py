@@ -22,7 +22,7 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
         number is written, unless the bounce has a penetration, a stiffness or a contact time, or a
         restitution of 0.
     time_step : Quantity, optional
-        Of the engine; without one that of a contact is the longest one that it allows.
+        Time step of the engine. By default the longest step that the contact allows.
 
     Returns
     -------

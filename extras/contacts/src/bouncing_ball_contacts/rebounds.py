@@ -335,7 +335,7 @@ BY_NUMBER = {
             },
             notes=(),
             # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
-            not_for=("three bodies in touch",),
+            not_for=("three touching bodies",),
         ),
         ByNumber(
             name="chipmunk",
@@ -421,7 +421,7 @@ BY_NUMBER = {
             calmed_by="contactProcessingThreshold",
             # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
             # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
-            not_for=("three bodies in touch", "boxes on GEOM_PLANE", "tilted capsules"),
+            not_for=("three touching bodies", "boxes on GEOM_PLANE", "tilted capsules"),
         ),
         ByNumber(
             name="ode",
@@ -540,7 +540,7 @@ NAMES = {
     "godot": "has two engines: take godot-jolt for Jolt Physics",
     "gymnasium": "has no engine of its own: take mujoco, or box2d-2",
     "havok": "",
-    "isaacgym": "has a PhysX of its own: take physx for PhysX 5",
+    "isaacgym": "has another PhysX: take physx for PhysX 5",
     "liggghts": "",
     "maniskill": "has PhysX: take physx for PhysX 5",
     "mercurydpm": "",
@@ -886,7 +886,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
             ),
             (
                 number > 0 and not is_slow and lowest > 0,
-                f"drops from less than {show(lowest, 'm')} do not bounce: threshold {limit}",
+                f"drops under {show(lowest, 'm')} do not bounce: threshold {limit}",
             ),
             (
                 way > bounce.size,

@@ -211,8 +211,8 @@ def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) 
     )
     table.refuse(
         ((middle - rounding / 2) ** 2 > math.sqrt(2) * beside)[:1],
-        "a flight of {} s is short beside the two after it: it begins with the release, or the "
-        "next one has an impact within it (--leave-out the line of either)",
+        "a flight of {} s is much shorter than the next two: it begins with the release, or "
+        "the next flight contains an impact (--leave-out the line of either flight)",
         flights,
         lines=lines,
     )
@@ -245,8 +245,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
             _refuse_echoes(table, values, lines, grows, remedy)
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
-            f"a {what} follows one of {{}}: an impact is missing, the first time is that of the "
-            "release, or another recording begins (leave an empty line, or --leave-out its line)"
+            f"a {what} follows one of {{}}: an impact is missing, the first time is the release, or "
+            "another recording begins (leave an empty line before it, or --leave-out its line)"
             f"{film}",
             values[1:],
             values[:-1],
@@ -504,7 +504,7 @@ def read(
     Raises
     ------
     Refused
-        If there are no bounces, numbers that are no bounces, or columns that are not understood.
+        If there are no bounces, or if a number or a column cannot be read.
     """
     table = table_of(source, leave_out)
     for each in table.columns:
@@ -534,7 +534,7 @@ def typed_readings(words: Sequence[str]) -> dict[str, Any]:
     Raises
     ------
     Refused
-        If a word is no number, or the unit is none of a length or a time.
+        If a word is not a number, or the unit is not a unit of length or time.
     """
     *numbers, unit = words
     values = [in_si("recording", number, "") for number in numbers]

@@ -547,8 +547,8 @@ _SINGLE = 10 * float(np.finfo(np.float32).eps)
 # on cells of a tenth of the radius r was 0.70, on those of a twentieth 0.65 and 1.00; of capsules
 # and cylinders at 20° and 45° 0.55 to 0.73; at twice the step 0.77 to 0.85, for 0.80.
 # On a free plate of 0.5 times its mass a ball had 0.86 to 0.88, and 0.81 to 0.83 on one of 5 times,
-# at 1 ms. The lowest points of hulls of a sphere rose to 0.46 to 0.78 with 12 vertices, 0.69 to 0.81
-# with 42, 0.76 to 0.81 with 162 and 0.78 to 0.81 with 642, where 0.78 to 0.82 was designed.
+# at 1 ms. The lowest point of a sphere's hull had 0.46 to 0.78 with 12 vertices, 0.69 to 0.81 with
+# 42, 0.76 to 0.81 with 162 and 0.78 to 0.81 with 642, where 0.78 to 0.82 was designed.
 _NOT_MUJOCO = (
     "three touching bodies",
     "free plates",

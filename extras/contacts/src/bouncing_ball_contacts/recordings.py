@@ -245,8 +245,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
             _refuse_echoes(table, values, lines, grows, remedy)
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
-            f"a {what} follows one of {{}}: an impact is missing, the first time is the release, or "
-            "another recording begins (leave an empty line before it, or --leave-out its line)"
+            f"a {what} follows one of {{}}: an impact is missing, the first time is the release, "
+            "or another recording begins (leave an empty line before it, or --leave-out its line)"
             f"{film}",
             values[1:],
             values[:-1],

@@ -3,8 +3,8 @@
 Such an engine reverses the velocity of a body within one step. Engines differ in three points:
 which velocity is reversed, whether it includes the gravity of the step, and where the body is at
 the end of the step. Each rule yields the height z and the velocity v, both upwards, after each step
-from a given z and v on. The rules were found in the source of the engines and by dropping balls in them:
-``tests/engine_drops.csv`` has the drops, and ``tests/test_rebounds.py`` compares them.
+from a given z and v on. The rules were found in the source of the engines and by dropping balls in
+them: ``tests/engine_drops.csv`` has the drops, and ``tests/test_rebounds.py`` compares them.
 """
 
 import math

@@ -625,8 +625,8 @@ def test_friction_changes_r_by_the_edges_of_its_pyramid(numbers, points, measure
     low, _, high = found.outcome.restitution
     # The range is also that of contacts which differ by half a percent.
     assert low - 5e-4 <= measured[0] <= low + 0.012 and high - 0.008 <= measured[1] <= high + 5e-4
-    assert "friction changes r: with the pyramidal cone it is" in repr(found)
-    assert points > 1 or "with the elliptic cone 0.68" in repr(found)
+    assert "with the pyramidal cone and no friction" in repr(found)
+    assert points > 1 or "no friction, and 0.68" in repr(found)
 
 
 def test_friction_is_an_option_and_a_parameter_of_mujoco():

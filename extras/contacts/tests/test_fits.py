@@ -28,7 +28,7 @@ def test_the_croquet_ball():
 
 def test_one_impact_has_no_interval_of_its_own():
     found = fit("superball")
-    assert any("too few" in note for note in found.notes)
+    assert any("fewer than three impacts" in note for note in found.notes)
 
 
 # A third of the kinds, and of those with rounded times and with drops one.

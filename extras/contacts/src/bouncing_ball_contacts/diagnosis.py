@@ -444,8 +444,8 @@ def _friction(contact: Contact, found: Found) -> list[str]:
     changes = max(abs(smooth - cone), abs(smooth - found.outcome.restitution.mean))
     said = (
         f"friction changes r: r is {smooth:.3f} with the pyramidal cone and no friction, and "
-        f"{cone:.3f} with the elliptic cone; with the solimp of designs, {solimp}, friction "
-        "does not change r"
+        f"{cone:.3f} with the elliptic cone at every friction; with the solimp of designs, "
+        f"{solimp}, friction does not change r"
     )
     return holding([(changes > _VISIBLE, said)])
 

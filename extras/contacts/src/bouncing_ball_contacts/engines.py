@@ -553,7 +553,7 @@ _NOT_MUJOCO = (
     "three touching bodies",
     "free plates",
     "hulls under 600 vertices",
-    "heightfield cells under a fifth of the radius",
+    "heightfield cells under radius/5",
     "tilted capsules or cylinders",
     "longer steps",
 )

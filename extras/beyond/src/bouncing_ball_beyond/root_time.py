@@ -96,11 +96,8 @@ impact needs about six. At half, contacts with 2000 to 4000 panels would have no
 
 PATIENT = 40
 """Number of panels after which a contact is solved by Newton's method: the ball lies on the table.
-At half and at twice: no effect."""
-
-CALM = 1e-3
-"""Smallest speed that is resolved if a ball lies on the table, divided by its maximum speed.
-At half and at twice: no effect."""
+At half and at twice: no effect. Without `PATIENT`, 100 contacts of a strongly damped law, of which
+54 stay, take 22 times as many evaluations."""
 
 PERIODS = 30
 """Number of periods after which a contact counts as permanent, unless the caller gives another.
@@ -753,8 +750,7 @@ class _Contacts:
         panel, which = _next_panel(motion, self.events, side, start, length, newton)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
-        least = CALM if lies else 1.0
-        good, factor = _resolved(motion, panel, np.fmax(least * self.size[here], greatest))
+        good, factor = _resolved(motion, panel, np.fmax(self.size[here], greatest))
         # The end of a shorter panel shows whether there is an event.
         place = _first_maximum(motion, self.events, side, start, panel)
         doubtful = good & (place < 1)

@@ -318,7 +318,7 @@ def test_instants_are_right_to_second_order(release):
         contact = SpringDamper(ratio, restitution=0.6, release=release)
         instant = Corrected(contact)
         found = instant.contact(tau, v, None, amplitude)
-        assert found.gap == instant.start(v) and found.duration == 0 and found.release is None
+        assert found.gap == instant.start(v) and found.duration == 0 and found.release == 0
         after = flight_after(tau, found.gap, found.speed, tau + 1)
         # The same flight before, at the level of the table.
         start = brentq(lambda t: flight_after(tau, found.gap, -v, t)[0], tau - 3 / ratio, tau)

@@ -26,12 +26,12 @@ FEW_BALLS = 40
 
 class Impact(NamedTuple):
     """The end of an impact, as arrays of one shape; `release` is negative in a contact, zero at its
-    end, and None for an instant."""
+    end, and zero for an instant."""
 
     duration: np.ndarray
     gap: np.ndarray
     speed: np.ndarray
-    release: np.ndarray | None
+    release: np.ndarray
 
 
 class Signature(NamedTuple):
@@ -107,17 +107,13 @@ class Ball:
         """T of a free impact: 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def delay(self, centroid: Values) -> Values:
-        """How long after the start of an impact its force has its centroid."""
-        return centroid
+    def elapsed_contact(self, u: Values) -> Values:
+        """How long a contact would have lasted at the instant that stands for it; 0 for others."""
+        return 0.0 * u
 
     def remaining_contact(self, u: Values) -> Values:
         """How long a contact would last after the instant that stands for it; 0 for others."""
         return 0.0 * u
-
-    def has_closed_form(self, table: Table = SINE) -> bool:
-        """Whether releases of its contacts are found by the closed form of a linear contact."""
-        return False
 
     def loop_parameters(self, table: Table) -> tuple | None:
         """r, ϖ and ζ, with which :func:`.one_ball.impacts` follows it; None if it does not."""
@@ -151,8 +147,21 @@ class Ball:
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ a time after the start of a contact."""
-        raise NotImplementedError
+        """δ and δ′ a time after the start of a contact, or of a rest on the table, where both are
+        zero."""
+        nothing = 0.0 * (tau + u + time + amplitude)
+        return nothing, nothing
+
+    def end_slopes(
+        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
+    ) -> NDArray:
+        """Derivatives of D, δ and δ′ at the end of an impact with respect to τ and u.
+
+        ``w`` is δ′ at the end. Returns an array of the shape (3, 2, *tau.shape).
+        """
+        steps = 1j * H * np.eye(2).reshape(2, 2, *np.ones(np.ndim(tau), int))
+        impact = self.contact(tau + steps[0], u + steps[1], T, amplitude, table=table)
+        return np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
 
     def release_slopes(
         self,
@@ -318,7 +327,7 @@ class Rigid(Ball):
     ) -> Impact:
         """The impact at the time τ with the speed u."""
         nothing = 0.0 * (tau + u + amplitude)
-        return Impact(nothing, nothing, self._restitution(u) * u + nothing, None)
+        return Impact(nothing, nothing, self._restitution(u) * u + nothing, nothing)
 
     def signature(self, u: Values) -> Signature:
         """r, and D = t_c = σ = 0."""
@@ -433,6 +442,35 @@ class SpringDamper(Ball):
         """δ and δ′ a time after the start of a contact."""
         return self.contact(tau, u, time * self.frequency_ratio, amplitude, table=table)[1:3]
 
+    def end_slopes(
+        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
+    ) -> NDArray:
+        """Derivatives as of :meth:`Ball.end_slopes`, in closed form where there is one.
+
+        The motion depends linearly on the table and on the initial state, so its derivatives are
+        responses of the same oscillator.
+        """
+        if not self.has_closed_form(table):
+            return slopes_at_release(self, tau, u, T, amplitude, table)
+        ratio = self.frequency_ratio
+        zeta = self.zeta
+        kappa = self.kappa
+        duration = T / ratio
+        start = np.where(u < 0, kappa, 0.0)
+        waves = table.turned(table.waves(tau, amplitude))
+        # With respect to τ: response to the derivative of the table motion.
+        # With respect to u: response to the initial state alone, on a table at rest.
+        by_tau = oscillator.closed_motion(duration, 0.0, 0.0, table, waves, 0.0, ratio, zeta)
+        by_u = oscillator.closed_motion(
+            duration, start, 1.0, table, [0.0] * len(waves), 0.0, ratio, zeta
+        )
+        gap = np.array([by_tau[0], by_u[0]])
+        rate = np.array([by_tau[1], by_u[1]])
+        push = -amplitude * table(tau + duration, 2) - 1
+        second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
+        later = -(gap + kappa * rate) / (w + kappa * second)
+        return np.array([later, gap + w * later, rate + second * later])
+
     def free(self, u: Values) -> Values:
         """T of a free impact: π/√(1 - ζ²), or 2 arccos ζ/√(1 - ζ²) with the force release."""
         zeta = self.zeta
@@ -493,6 +531,18 @@ class SpringDamper(Ball):
         tau, u, amplitude, *others = (each.ravel() for each in every)
         ball = self.at(**dict(zip(parameters, others, strict=True)))
         return ball.leaves(tau, u, amplitude, table)[0].reshape(every[0].shape)
+
+
+def slopes_at_release(
+    ball: Ball, tau: Values, u: Values, T: Values, amplitude: Values, table: Table
+) -> NDArray:
+    """Derivatives as of :meth:`Ball.end_slopes` for a contact, by complex steps."""
+    steps = 1j * H * np.eye(3).reshape(3, 3, *np.ones(np.ndim(tau), int))
+    impact = ball.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude, table=table)
+    slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
+    # Eliminate T by implicit differentiation: the release function vanishes at the release.
+    release = impact.release.imag / H
+    return slopes[:, :2] - slopes[:, 2:] * (release[:2] / release[2])
 
 
 def root_of_parabola(f: Values, slope: Values, bend: Values) -> Values:
@@ -615,9 +665,9 @@ class Corrected(Ball):
         """The gap -u t_c(u) of the instant."""
         return -u * self.of.signature(u).centroid
 
-    def delay(self, centroid: Values) -> Values:
-        """Zero: the instant is at the centroid."""
-        return 0 * centroid
+    def elapsed_contact(self, u: Values) -> Values:
+        """t_c."""
+        return self.of.signature(u).centroid
 
     def remaining_contact(self, u: Values) -> Values:
         """D - t_c."""
@@ -636,7 +686,7 @@ class Corrected(Ball):
         """The instant at the time τ with the speed u."""
         r, _, centroid, loss = self.of.signature(u)
         speed = r * u + loss * (gravity + amplitude * table(tau, 2))
-        return Impact(0 * speed, 0 * speed - u * centroid, speed, None)
+        return Impact(0 * speed, 0 * speed - u * centroid, speed, 0 * speed)
 
     def signature(self, u: Values) -> Signature:
         """Signature of the other ball, `of`."""

@@ -92,10 +92,15 @@ class Flights(NamedTuple):
         return np.fmin(times, self.flight[..., np.newaxis])
 
 
+def unknowns_of(ball: Ball) -> int:
+    """Number q of unknowns of an impact: τ, u and, if it has a duration, T."""
+    return 3 if ball.has_duration else 2
+
+
 def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) -> NDArray:
     """The row z of impacts, without the T of instants, and the values of what may change."""
-    columns = [times, speeds, T] if ball.has_duration else [times, speeds]
-    return np.append(np.stack(columns, axis=-1).ravel(), values)
+    columns = np.stack([times, speeds, T][: unknowns_of(ball)], axis=-1)
+    return np.append(columns.ravel(), values)
 
 
 def _some(values: Any, which: Any) -> Any:
@@ -131,7 +136,7 @@ class OrbitEquations:
     @cached_property
     def unknowns(self) -> int:
         """The number q of unknowns of an impact."""
-        return 3 if self.ball.has_duration else 2
+        return unknowns_of(self.ball)
 
     @cached_property
     def size(self) -> int:
@@ -185,9 +190,10 @@ class OrbitEquations:
     def scales(self, z: NDArray) -> NDArray:
         """Units of the unknowns in which steps are measured, shape (rows, N)."""
         units = np.full(z.shape, np.sqrt(self.impacts))
-        if self.ball.has_duration:
-            has_duration = np.s_[:, 2 : self.size : 3]
-            units[has_duration] *= np.maximum(np.abs(z[has_duration]) / LASTING, 1.0)
+        x = self.split(z)[0]
+        stretch = np.ones(x.shape)
+        stretch[..., 2:] = np.maximum(np.abs(x[..., 2:]) / LASTING, 1.0)
+        units[:, : stretch[0].size] *= stretch.reshape(len(z), -1)
         units[:, self.size :] = np.maximum(np.abs(z[:, self.size :]), 1e-2)
         return units
 
@@ -231,8 +237,7 @@ class OrbitEquations:
         flights = y[..., q] - leaves
         gap, rate = flight(flights, leaves, impact.gap, impact.speed, amplitude, table)
         legs = np.empty((*y.shape[:-1], q), y.dtype)
-        if self.ball.has_duration:
-            legs[..., 0] = impact.release
+        legs[..., : q - 2] = impact.release[..., np.newaxis]
         legs[..., q - 2] = gap - ball.start(y[..., q + 1])
         legs[..., q - 1] = rate + y[..., q + 1]
         return legs, flights
@@ -284,8 +289,8 @@ class OrbitEquations:
         linear = each.linearized(nearby)
         values = each.excess(nearby, linear)
         rates = np.ones(len(nearby))
-        if self.kind in MULTIPLIERS and self.ball.has_duration:
-            rates = linear.derivatives[..., 0, 2].prod(axis=-1)
+        if self.kind in MULTIPLIERS:
+            rates = linear.derivatives[..., 0, 2 : self.unknowns].prod(axis=(1, 2))
         here, beside = np.split(np.stack([values * rates, rates]), [rows], axis=1)
         beside = beside.reshape(2, len(nodes), length, rows)
         beside -= here[:, np.newaxis, np.newaxis]
@@ -672,6 +677,11 @@ class PeriodicOrbit:
     def speeds(self) -> NDArray:
         """The closing speeds u = -δ′ of the impacts, shape (impacts,)."""
         return self._impacts[:, 1]
+
+    @property
+    def scaled_durations(self) -> NDArray:
+        """T of the contacts, shape (impacts,); empty for instants."""
+        return self._impacts[:, 2:].ravel()
 
     @property
     def phase(self) -> float | NDArray:

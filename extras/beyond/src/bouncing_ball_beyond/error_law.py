@@ -474,32 +474,32 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
     if table.is_sine:
         # On a sine one instant has the velocity x and the push y.
         amplitude, phase = table.amplitude_at(x, y)
-    delay = row.delay(impact.centroid)
-    guess = [phase - delay, impact.half + x - (1 - y) * delay]
-    if row.has_duration:
-        guess.append(row.free(guess[1]))
+    equations = OrbitEquations(row, 1, periods, table=table)
+    delay = impact.centroid - row.elapsed_contact(impact.speed)
+    speed = impact.half + x - (1 - y) * delay
+    guess = [phase - delay, speed, row.free(speed)][: equations.unknowns]
     rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
-    z, good = special_near(OrbitEquations(row, 1, periods, table=table), kind, rows)
+    z, good = special_near(equations, kind, rows)
     return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
 
 
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
     """Height, velocity, phase and apparent restitution of orbits with one impact, by rows."""
-    impacts, ball, amplitudes, _ = equations.split(z)
+    impacts, _, amplitudes, _ = equations.split(z)
     touch, speed = impacts[:, 0, :2].T
     amplitude = amplitudes[:, 0]
     ends = equations.ends(z)
     leaves = ends.leaves[:, 0]
     table = equations.table
     velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
-    if ball.below_table:
-        signature = equations.ball.signature(speed)
-        approach = amplitude * table(touch, 1) - speed + signature.centroid
-        after = signature.duration - signature.centroid
-        touch = touch - signature.centroid
-        leaves = leaves + after
-        velocity = velocity - after
-        speed = amplitude * table(touch, 1) - approach
+    # An instant stands for a contact that began earlier and ends later.
+    before = equations.ball.elapsed_contact(speed)
+    after = equations.ball.remaining_contact(speed)
+    approach = amplitude * table(touch, 1) - speed + before
+    touch = touch - before
+    leaves = leaves + after
+    velocity = velocity - after
+    speed = amplitude * table(touch, 1) - approach
     return {
         "max_height": equations.max_height(z),
         "bounce_velocity": velocity,

@@ -218,14 +218,13 @@ def one_impact_more(
     the table, and the direction in which the added impact gets faster by 1; else OrbitNotFound.
     """
     at = _touch(equations, z)
-    added = np.array([at.time, 0.0])
-    if equations.ball.has_duration:
-        _, ball, amplitude, table = equations.split(z[np.newaxis])
-        free = float(np.ravel(ball.signature(SLOW).duration)[0])
-        u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
-        start = at.time - u / at.acceleration
-        T = ball.first_release(start, u, amplitude, table=table)
-        added = np.array([start, u, np.ravel(T)[0]])
+    _, ball, amplitude, table = equations.split(z[np.newaxis])
+    # An added instant has the speed 0, because its free impact takes no time.
+    free = float(np.ravel(ball.signature(SLOW).duration)[0])
+    u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
+    start = at.time - u / at.acceleration
+    T = float(np.ravel(ball.first_release(start, u, amplitude, table=table))[0])
+    added = [start, u, T][: equations.unknowns]
     place = (at.leg + 1) * equations.unknowns
     more = replace(equations, impacts=equations.impacts + 1)
     guess = np.insert(z, place, added)

@@ -81,8 +81,8 @@ class ImpactMap:
             found[:, others] = self.ball.leaves(*given)
         return tuple(found)
 
-    def slopes(self, tau: NDArray, u: NDArray) -> tuple[NDArray, NDArray]:
-        """Derivatives of D, δ and δ′ by τ and u, (3, 2, ...), and where they are known."""
+    def end_slopes(self, tau: NDArray, u: NDArray, T: NDArray, w: NDArray) -> NDArray:
+        """Derivatives as of :meth:`.Ball.end_slopes`; NaN where u is NaN."""
         found = np.full((3, 2, *u.shape), np.nan)
         number, x = self._places(u)
         known = np.zeros(u.shape, bool)
@@ -96,7 +96,10 @@ class ImpactMap:
             stretch = 2 / (np.log(MAP_FACTOR) * u[at])
             found[:, 0, at] = _sum(1j * harmonics[:, np.newaxis] * piece[1:], powers, waves)
             found[:, 1, at] = _sum(by_x, powers[:, :-1], waves) * stretch
-        return found, known
+        others = ~known & np.isfinite(u)
+        given = tau[others], u[others], T[others], w[others], self.amplitude, self.table
+        found[..., others] = self.ball.end_slopes(*given)
+        return found
 
 
 def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:

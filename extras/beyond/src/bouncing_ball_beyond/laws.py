@@ -14,7 +14,15 @@ import numpy as np
 from numpy.polynomial import chebyshev, legendre
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, H, Impact, Signature, brief, broadcast_named
+from bouncing_ball_beyond.balls import (
+    Ball,
+    H,
+    Impact,
+    Signature,
+    brief,
+    broadcast_named,
+    slopes_at_release,
+)
 from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
@@ -293,6 +301,12 @@ class ForceLaw(Ball):
         state[:, moves] = integrate_contacts(*some, after=after[moves])[0][1:3]
         q, v = state.reshape(2, *rows.shape)
         return -(q**self.root), -v
+
+    def end_slopes(
+        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
+    ) -> NDArray:
+        """Derivatives as of :meth:`.Ball.end_slopes`."""
+        return slopes_at_release(self, tau, u, T, amplitude, table)
 
     def free(self, u: Values) -> Values:
         """T of free impacts, without gravity and on a table at rest."""

@@ -18,7 +18,6 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond import oscillator
 from bouncing_ball_beyond.balls import Ball, H, check_ball, checked, whole_number
 from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.equations import OrbitEquations, row_of
@@ -115,16 +114,11 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
     table = balls.table
     amplitude = balls.amplitude
     _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
-    if ball.has_closed_form(table):
-        slopes = slopes_of_oscillator(balls, tau, u, duration, w)
-    elif balls.map:
-        slopes, known = balls.map.slopes(tau, u)
-        others = ~known & np.isfinite(u)
-        one = replace(balls, amplitude=balls.amplitude[:1])
-        slopes[..., others] = slopes_of_contact(one, tau[others], u[others], T[others])
+    if balls.map:
+        slopes = balls.map.end_slopes(tau, u, T, w)
     else:
-        slopes = slopes_of_contact(balls, tau, u, T)
-    slopes = np.where(are_rests(balls, duration), 0.0, slopes)
+        slopes = ball.end_slopes(tau, u, T, w, amplitude, table)
+    slopes = np.where(are_rests(T, duration), 0.0, slopes)
     later, dgap, dw = slopes
     later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]
     leaves = tau + duration
@@ -139,63 +133,15 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
     return np.where(lifts, 0.0, maps)
 
 
-def slopes_of_contact(balls: Balls, tau: Values, u: Values, T: Values) -> NDArray:
-    """Derivatives of D, δ and δ′ at the end of a contact with respect to τ and u.
-
-    Computed with complex steps. Returns an array of the shape (3, 2, *tau.shape).
-    """
-    ball = balls.ball
-    unknowns = 3 if ball.has_duration else 2
-    steps = 1j * H * np.eye(3)[:, :unknowns].reshape(3, unknowns, *np.ones(tau.ndim, int))
-    given = tau + steps[0], u + steps[1], T + steps[2], balls.amplitude
-    impact = ball.contact(*given, table=balls.table)
-    slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
-    if unknowns == 2:
-        return slopes
-    # Eliminate T by implicit differentiation: the release function vanishes at the release.
-    released: Any = impact.release
-    release = released.imag / H
-    return slopes[:, :2] - slopes[:, 2:] * (release[:2] / release[2])
-
-
-def slopes_of_oscillator(
-    balls: Balls, tau: Values, u: Values, duration: NDArray, w: Values
-) -> NDArray:
-    """Derivatives as in :func:`slopes_of_contact`, for a spring and a damper in closed form.
-
-    The motion depends linearly on the table and on the initial state, so its derivatives are
-    responses of the same oscillator.
-    """
-    ball: Any = balls.ball
-    ratio = ball.frequency_ratio
-    zeta = ball.zeta
-    kappa = ball.kappa
-    table = balls.table
-    start = np.where(u < 0, kappa, 0.0)
-    waves = table.turned(table.waves(tau, balls.amplitude))
-    # With respect to τ: response to the derivative of the table motion.
-    # With respect to u: response to the initial state alone, on a table at rest.
-    by_tau = oscillator.closed_motion(duration, 0.0, 0.0, table, waves, 0.0, ratio, zeta)
-    by_u = oscillator.closed_motion(
-        duration, start, 1.0, table, [0.0] * len(waves), 0.0, ratio, zeta
-    )
-    gap = np.array([by_tau[0], by_u[0]])
-    rate = np.array([by_tau[1], by_u[1]])
-    push = -balls.amplitude * table(tau + duration, 2) - 1
-    second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
-    later = -(gap + kappa * rate) / (w + kappa * second)
-    return np.array([later, gap + w * later, rate + second * later])
-
-
-def are_rests(balls: Balls, duration: NDArray) -> NDArray:
-    """Whether contacts are rests on the table: an instantaneous impact has no duration."""
-    return (duration > 0) & (not balls.ball.has_duration)
+def are_rests(T: NDArray, duration: NDArray) -> NDArray:
+    """Whether impacts are rests on the table: they last, but T of an instant is 0."""
+    return (T == 0) & (duration > 0)
 
 
 def lift_offs(balls: Balls, record: NDArray) -> NDArray:
     """Whether each contact is a rest that ends with a lift-off, shape (impacts, balls)."""
-    _, tau, _, _, duration, _, w, _ = np.moveaxis(record, 1, 0)
-    rests = are_rests(balls, duration) & (w == 0)
+    _, tau, _, T, duration, _, w, _ = np.moveaxis(record, 1, 0)
+    rests = are_rests(T, duration) & (w == 0)
     push = -balls.amplitude * balls.table(np.where(rests, tau + duration, 0.0), 2)
     return rests & (push < 1 + LIFT_OFF_ERROR)
 
@@ -242,9 +188,7 @@ def is_worth_a_map(balls: Balls, impacts: int) -> bool:
     ball = balls.ball
     if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
         return False
-    if ball.has_closed_form(balls.table) or any(map(np.ndim, ball.parameters.values())):
-        return False
-    return bool(np.ptp(balls.amplitude) == 0)
+    return not any(map(np.ndim, ball.parameters.values())) and np.ptp(balls.amplitude) == 0
 
 
 def _store(found: dict, which: Any, **values: Any) -> None:
@@ -457,11 +401,9 @@ def _store_periodic(
     """
     (some,) = again["repeats"].nonzero()
     again = _take(again, some)
-    sticks = np.zeros((len(record), some.size), bool)
-    if after.ball.has_duration:
-        ball = after.ball.rows(some)
-        # This is NaN, and the comparison false, if a ball never leaves a free impact.
-        sticks = record[:, 3, some] > 2 * ball.free(np.abs(record[:, 2, some]))
+    # T of a free impact is NaN, and the comparison false, if a ball never leaves it.
+    free = after.ball.rows(some).free(np.abs(record[:, 2, some]))
+    sticks = record[:, 3, some] > 2 * free
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
     _store_end(
         found,
@@ -1013,15 +955,14 @@ def orbit_of_motion(
     m = int(ends["periods"][0])
     if not k:
         raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
-    if ends["kind"][0] == LOCKED and not ball.has_duration:
-        if not ball.below_table:
-            found = orbit_with_rest(ball, amplitude=amplitude, table=table)
-            if found.periods == m:
-                return found
-        raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
     state = ends["end_phase"], ends["end_speed"]
     on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)
-    turns, tau, u, T = bounce(on_orbit, k)[0][:, :4, 0].T
+    turns, tau, u, T, duration, *_ = bounce(on_orbit, k)[0][:, :, 0].T
+    if are_rests(T, duration).any():
+        found = orbit_with_rest(ball, amplitude=amplitude, table=table)
+        if found.periods != m:
+            raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
+        return found
     z = row_of(ball, PERIOD * turns + tau, u, T, balls.amplitude)
     equations = OrbitEquations(ball, k, m, table=table)
     return solved(equations, z, "the orbit on which the ball ends")

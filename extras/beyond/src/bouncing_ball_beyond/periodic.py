@@ -88,11 +88,8 @@ def orbit(
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
     """The orbits with the shortest contact on a side of the saddle-node, by rows; else those that
     no ball follows, if possible of ``near``; and the reason below the saddle-node of the branch."""
-    found: list = [None] * len(near)
-    admissible = np.zeros(len(near), bool)
-    # With a number r and a sine the instants are the impacts, so that there are no others.
-    if equations.ball.has_duration or equations.ball.loop_parameters(equations.table) is None:
-        found, admissible = shortest_contacts(equations, amplitude, sign)
+    shortest, admissible = shortest_contacts(equations, amplitude, sign)
+    found: list = [*shortest]
     missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
     # The limits of balls that creep off the table take long to find.

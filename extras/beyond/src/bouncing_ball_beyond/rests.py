@@ -231,7 +231,9 @@ def orbit_with_rest(
     check_table(table)
     amplitude = one_amplitude(amplitude)
     if ball.has_duration or ball.below_table:
-        raise ValueError(f"ball = {ball!r}: must have instantaneous impacts, such as Rigid(0.3)")
+        raise ValueError(
+            f"ball = {ball!r}: must have impacts at the level of the table, such as Rigid(0.3)"
+        )
     impacts = None if impacts is None else whole_number("impacts", impacts)
     starts = table.lift_offs(amplitude)
     if np.isnan(starts[0]):

@@ -92,8 +92,9 @@ def to_dataset(found: Found) -> xr.Dataset:
         name: [np.atleast_1d(getattr(each, name)) for each in orbits] for name in OF_IMPACTS
     }
     of_impacts["impact_time"] = [each.times for each in orbits]
-    if first.ball.has_duration:
-        of_impacts["scaled_duration"] = [each.z[2 : each.equations.size : 3] for each in orbits]
+    T = [each.scaled_durations for each in orbits]
+    if np.size(T):
+        of_impacts["scaled_duration"] = T
     of_orbits = {name: [getattr(each, name) for each in orbits] for name in OF_ORBITS}
     resting = [each for each in orbits if isinstance(each, RestOrbit)]
     if resting:
@@ -225,7 +226,7 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
 
 def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> PeriodicOrbit:
     """The orbit of one row."""
-    T = row.scaled_duration.values if ball.has_duration else None
+    T = row.get("scaled_duration")
     impacts = row.impact_time.values, -row.relative_impact_velocity.values, T
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})
     given = row.sizes["impact"], int(row.periods), float(row.amplitude)

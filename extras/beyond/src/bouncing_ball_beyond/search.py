@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
 from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrbit
+from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrbit, unknowns_of
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
@@ -64,12 +64,10 @@ def guess_of_instants(
             psi = table.phase_of_slope((u - np.pi * periods) / amplitude, side)
             if np.all(np.abs(step) < 1e-7 * u):
                 break
-    touch = psi - ball.delay(np.where(known, centroid, 0.0))
-    columns = [touch, u, amplitude]
-    if ball.has_duration:
-        free = ball.free(u)
-        columns.insert(2, np.where(np.isfinite(free), free, np.pi))
-    return np.stack(np.broadcast_arrays(*columns), axis=-1)
+    touch = psi - np.where(known, centroid, 0.0) + ball.elapsed_contact(u)
+    free = ball.free(u)
+    impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: unknowns_of(ball)]
+    return np.stack(np.broadcast_arrays(*impacts, amplitude), axis=-1)
 
 
 def near_instants(
@@ -135,12 +133,11 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
 
     def impacts(tau: NDArray, u: NDArray) -> NDArray:
-        columns = [tau, u, np.full(tau.size, amplitude)]
-        if equations.ball.has_duration:
-            # Contacts of an orbit are shorter than its period.
-            within: dict[str, Any] = {"periods": equations.periods, "table": table}
-            columns.insert(2, equations.ball.first_release(tau, u, amplitude, **within))
-        return np.stack(columns, axis=-1)
+        # Contacts of an orbit are shorter than its period.
+        within: dict[str, Any] = {"periods": equations.periods, "table": table}
+        T = equations.ball.first_release(tau, u, amplitude, **within)
+        columns = [tau, u, T][: equations.unknowns]
+        return np.stack([*columns, np.full(tau.size, amplitude)], axis=-1)
 
     change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
     at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)

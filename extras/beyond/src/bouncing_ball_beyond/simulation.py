@@ -354,9 +354,7 @@ def states_at(
     leaves = np.where(contact, 0.0, phase + duration)
     waves = balls.table.waves(leaves, amplitude)
     gap, rate, _ = balls.table.flights(np.where(contact, 0.0, since - duration), gap, w, waves)
-    gap[contact] = 0.0
-    rate[contact] = 0.0
-    if ball.has_duration and contact.any():
+    if contact.any():
         given = phase[contact], u[contact], since[contact], amplitude
         gap[contact], rate[contact] = ball.contact_after(*given, balls.table)
     return gap, rate, contact

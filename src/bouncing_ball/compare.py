@@ -512,3 +512,15 @@ def main(project: Project, arguments: list[str]) -> int:
     if (Path(arguments[0]) / "figures").is_dir():
         print(write_page(project, Path(arguments[0]), report))
     return 1 if report.lines else 0
+
+
+def report_of_run(project: Project, results: Path, config: Mapping, names: Collection[str]) -> int:
+    """Compare the results of a run, and save the report as text and as a page: the rule `diff`.
+
+    Returns the exit status: 1 if something differs.
+    """
+    report = compare(project, results, config, names)
+    text = f"{report.text()}\n{write_page(project, results, report)}\n"
+    (results / "diff/report.txt").write_text(text, "utf-8")
+    print(text, end="")
+    return 1 if report.lines else 0

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from bouncing_ball.compare import Project, compare, main, write_page
+from bouncing_ball.compare import Project, main, report_of_run
 from bouncing_ball.drawing import save_picture
 from bouncing_ball.figures import FIGURES, draw
 from bouncing_ball.tables import TABLES, comma_separated, markdown
@@ -42,9 +42,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    results = Path("results")
-    report = compare(PROJECT, results, snakemake.params.config, snakemake.params.names)
-    text = f"{report.text()}\n{write_page(PROJECT, results, report)}\n"
-    (results / "diff/report.txt").write_text(text, "utf-8")
-    print(text, end="")
-    sys.exit(1 if report.lines else 0)
+    given = snakemake.params.config, snakemake.params.names
+    sys.exit(report_of_run(PROJECT, Path("results"), *given))

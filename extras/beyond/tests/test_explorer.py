@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+import bouncing_ball_beyond
 from bouncing_ball.datasets import read
 from bouncing_ball_beyond import SpringDamper
 from bouncing_ball_beyond.error_law import law_errors
@@ -75,6 +76,8 @@ function look(frame) {
     warned: !page.getElementById("warning").hidden,
     tab: page.querySelector("[role=tab][aria-selected=true]").textContent,
     doubling: page.getElementById("waveform-says").textContent,
+    call: page.getElementById("call").textContent,
+    verdict: page.getElementById("verdict").textContent,
   };
 }
 addEventListener("load", () => {
@@ -164,6 +167,16 @@ def test_a_third_harmonic_changes_the_sign_of_the_shift(seen):
     says = seen[f"desk {STIFF}"]["doubling"]
     assert f"the shift is {shift['third harmonic']:.3g} with the third harmonic" in says
     assert f"{shift['sine']:.3g} on a sine" in says
+
+
+def test_the_call_computes_what_the_page_shows(seen):
+    names = {name: getattr(bouncing_ball_beyond, name) for name in bouncing_ball_beyond.__all__}
+    answer = eval(seen["desk "]["call"], names)
+    assert f"{answer.error:.1%}".replace("%", " %") in seen["desk "]["verdict"]
+    found = eval(seen["desk #r=0.65&w=6&a=1"]["call"], names)
+    assert f"{found.max_height:.4g}" in seen["desk #r=0.65&w=6&a=1"]["verdict"]
+    calls = seen[f"desk {LOOSE}"]["call"].splitlines()
+    assert {str(eval(call, names).kind.values) for call in calls} <= {"periodic", "chaotic"}
 
 
 def test_a_wrong_number_is_reported_at_the_top(seen):

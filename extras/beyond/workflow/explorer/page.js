@@ -16,7 +16,7 @@ function refuse(text) {
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "definition", "starts", "command"]) $(id).textContent = "";
+  for (const id of ["verdict", "definition", "starts", "call"]) $(id).textContent = "";
   play(false);
 }
 
@@ -51,11 +51,11 @@ function show(hash, kept = DEFAULTS) {
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   for (const id of ["stage-views", "slice-views"]) $(id).hidden = !onStage;
-  $("command-name").textContent = "The same in the shell:";
+  $("call-name").textContent = "The same with bouncing_ball_beyond in Python:";
   if (why) return refuse(why);
   $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);
-  $("command").textContent = commandOf(state);
+  $("call").textContent = callOf(state);
   if (onStage) {
     const {units, f} = state;
     const same = scene => hashOf({...DEFAULTS, tab: "stage", ...scene.state, units, f}) === hashOf(state);

@@ -1,5 +1,5 @@
-// The state of the page, which is its address: what each value may be, and the command that
-// computes the same.
+// The state of the page, which is its address: what each value may be, and the call in Python
+// that computes the same.
 "use strict";
 
 const $ = id => document.getElementById(id);
@@ -133,16 +133,16 @@ function questionOf(state) {
     tolerance: state.t / 100};
 }
 
-function commandOf(state) {
-  if (state.tab === "stage")
-    return Object.keys(modelsOf(state)).map(model => `bouncing-ball motion --amplitude ${state.a} `
-      + `--restitution ${state.r}${model === "restitution" ? "" : ` --frequency-ratio ${state.w}`} `
-      + `--phase ${state.phi} --velocity ${state.v}`).join("\n");
-  const {release, r} = state;
+function callOf(state) {
+  const {r, n, a} = state;
+  const spring = `SpringDamper(${state.w}, restitution=${r}, release="${state.release}")`;
+  if (state.tab === "stage") {
+    const balls = {restitution: `Rigid(${r})`, "spring-damper": `SpringDamper(${state.w}, restitution=${r})`};
+    return Object.keys(modelsOf(state)).map(model =>
+      `motion_of(${balls[model]}, amplitude=${a}, phase=${state.phi}, velocity=${state.v})`).join("\n");
+  }
   if (state.tab === "orbit")
-    return `bouncing-ball orbit --restitution ${r} --frequency-ratio ${state.w} `
-      + `--amplitude ${state.a} --n ${state.n} --release ${release} --side ${state.side}`;
-  return [`bouncing-ball shaker --mass "${state.m} g" --frequency "${state.f} Hz"`,
-    `--acceleration "${state.acc} g" --stiffness "${state.k} N/m" --restitution ${r} --n ${state.n}`,
-    ...(state.t === DEFAULTS.t ? [] : [`--tolerance "${state.t} %"`])].join(" ");
+    return `orbit(${spring}, amplitude=${a}, n=${n}, side="${state.side}")`;
+  return `on_shaker(mass=${state.m} / 1000, frequency=${state.f}, acceleration=${state.acc} * 9.80665, `
+    + `stiffness=${state.k}, restitution=${r}, n=${n}, tolerance=${state.t} / 100)`;
 }

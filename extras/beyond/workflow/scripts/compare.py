@@ -13,7 +13,7 @@ sys.path[:0] = [str(TOP / folder) for folder in ("src", "workflow", "../../src")
 
 import xarray as xr  # noqa: E402
 
-from bouncing_ball.compare import Project, compare, main, write_page  # noqa: E402
+from bouncing_ball.compare import Project, main, report_of_run  # noqa: E402
 from bouncing_ball.drawing import save_picture  # noqa: E402
 from bouncing_ball.tables import comma_separated, markdown  # noqa: E402
 from studies.explorer import page  # noqa: E402
@@ -48,9 +48,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    results = Path("results")
-    report = compare(PROJECT, results, snakemake.params.config, snakemake.params.names)
-    text = f"{report.text()}\n{write_page(PROJECT, results, report)}\n"
-    (results / "diff/report.txt").write_text(text, "utf-8")
-    print(text, end="")
-    sys.exit(1 if report.lines else 0)
+    given = snakemake.params.config, snakemake.params.names
+    sys.exit(report_of_run(PROJECT, Path("results"), *given))

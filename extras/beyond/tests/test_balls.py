@@ -361,7 +361,7 @@ def test_a_restitution_of_one_is_no_damping():
         (lambda: Rigid([0.5, np.nan]), r"restitution = nan: must be in \[0, 1\]"),
         (lambda: Rigid("hard"), r"restitution = 'hard': must be a number or an array"),
         (lambda: Rigid(lambda u: np.abs(u) / 9), r"restitution: r\(u\) must be analytic"),
-        (lambda: Rigid(lambda u: 0.9 if u > 1 else 0.8), r"restitution: r\(u\) must take arrays"),
+        (lambda: Rigid(lambda u: 0.9 if u > 1 else 0.8), r"restitution: r\(u\) must accept arrays"),
         (lambda: Rigid(lambda u: 1 + u), r"restitution at u = .* = 1.5: must be in \[0, 1\]"),
         (lambda: SpringDamper(0.0, restitution=0.5), r"frequency_ratio = 0: must be in \(0, ∞\)"),
         (lambda: SpringDamper(np.inf, restitution=0.5), r"frequency_ratio = inf: must be in"),

@@ -1,9 +1,14 @@
-"""What an impact does: a restitution coefficient, a spring with a damper, or an instant.
+"""Balls and their impacts: restitution coefficient, spring and damper, or corrected restitution.
 
-The table is at ΛW(τ), and δ is the gap between ball and table. An impact starts at the time τ with
-the closing speed u = -δ′. After the duration D it leaves the ball at a gap δ with the relative
-speed w = δ′. All of this is analytic in all arguments and parameters, so that complex steps give
-derivatives with all digits.
+The table is at ΛW(τ), and δ is the gap between ball and table. Times are in units of 1/Ω and
+lengths in units of g/Ω². An impact starts at the time τ with the closing speed u = -δ′. After the
+duration D the ball leaves at the gap δ with the relative speed w = δ′.
+
+T is the duration in a time scale of the ball: ϖD for a spring and a damper, the root time of
+:mod:`.root_time` for a force law.
+
+All functions are analytic in all arguments and parameters. Complex steps therefore give derivatives
+with all digits.
 """
 
 from collections.abc import Callable
@@ -18,10 +23,13 @@ from bouncing_ball_beyond.one_ball import EPS, PATIENCE, REACH, SLOWEST
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 H = 1e-30
-"""The imaginary part of a complex step: that of f(x + iH) is H f′(x)."""
+"""Imaginary part of a complex step: the imaginary part of f(x + iH) is H f′(x)."""
 
 FEW_BALLS = 40
-"""Fewer balls are followed by scalar loops: a step on arrays costs as much as this many."""
+"""Number of balls below which scalar loops are faster.
+
+A step on arrays costs as much as the steps of this many balls in a loop.
+"""
 
 
 class Impact(NamedTuple):
@@ -35,8 +43,18 @@ class Impact(NamedTuple):
 
 
 class Signature(NamedTuple):
-    """r and D of a free impact, the delay t_c of the centroid of its force, and σ, the derivative
-    of its impulse by a load at a fixed speed at the centroid: see docs/impact-as-an-instant.md.
+    """Quantities of a free impact: without gravity, on a table at rest.
+
+    docs/impact-as-an-instant.md explains them.
+
+    Attributes
+    ----------
+    restitution, duration : array
+        Restitution coefficient r and duration D.
+    centroid : array
+        Time t_c from the start of the impact to the centroid of its force.
+    loss : array
+        σ, the derivative of the impulse with respect to a load, at a fixed speed at the centroid.
     """
 
     restitution: np.ndarray
@@ -52,11 +70,11 @@ class Ball:
     """Whether contacts have a duration."""
 
     below_table: ClassVar[bool] = False
-    """Whether impacts are instants below the level of the table, which stand for contacts."""
+    """Whether instantaneous impacts below the level of the table replace contacts."""
 
     @property
     def ends_analytically(self) -> bool:
-        """Whether contacts are integrated, and end analytically in their start."""
+        """Whether contacts are integrated, and their ends are analytic functions of τ and u."""
         return False
 
     @property
@@ -69,42 +87,44 @@ class Ball:
         }
 
     def at(self, **values: Values) -> Any:
-        """The same ball with other values of parameters, which are not checked: also arrays, also
-        complex."""
+        """Return the ball with other values of parameters: numbers or arrays, real or complex.
+
+        The values are not checked. Raises ValueError for an unknown name.
+        """
         unknown = values.keys() - vars(self).keys()
         if unknown:
             raise ValueError(
-                f"{', '.join(sorted(unknown))}: no parameter of {type(self).__name__},"
-                f" which has {', '.join(self.parameters) or 'none'}"
+                f"{', '.join(sorted(unknown))}: no parameter of {type(self).__name__};"
+                f" its parameters: {', '.join(self.parameters) or 'none'}"
             )
         new = object.__new__(type(self))
         vars(new).update(vars(self), **values)
         return new
 
     def rows(self, which: Any) -> Any:
-        """The same ball with x[which] in place of each parameter x that is an array."""
+        """Return the ball with x[which] instead of x, for each parameter x that is an array."""
         arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
         return self.at(**arrays) if arrays else self
 
     @property
     def kappa(self) -> Values:
-        """κ of a release where δ + κδ′ = 0: 0 for a release where δ = 0."""
+        """κ of the release condition δ + κδ′ = 0. It is 0 if contacts end at δ = 0."""
         return 0.0
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Powers of Ω to which parameters are proportional for one contact, by their names."""
+        """Exponents s by name: for a given contact, the parameter is proportional to Ω^s."""
         return {}
 
     def start(self, u: Values) -> Values:
-        """The gap at the start: 0 after a flight (u > 0), κu where a contact resumes (u < 0)."""
+        """Gap at the start: 0 after a flight (u > 0), κu if a contact resumes (u < 0)."""
         kappa = self.kappa
         if isinstance(kappa, float) and kappa == 0:
             return np.zeros(np.shape(u))
         return np.where(np.real(u) < 0, kappa * u, 0.0)
 
     def free(self, u: Values) -> Values:
-        """T of a free impact: 0 for impacts without a duration."""
+        """T of a free impact; 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
     def elapsed_contact(self, u: Values) -> Values:
@@ -112,11 +132,11 @@ class Ball:
         return 0.0 * u
 
     def remaining_contact(self, u: Values) -> Values:
-        """How long a contact would last after the instant that stands for it; 0 for others."""
+        """Remaining duration of a contact after the instant that replaces it; 0 for other balls."""
         return 0.0 * u
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """r, ϖ and ζ, with which :func:`.one_ball.impacts` follows it; None if it does not."""
+        """Arguments (r, ϖ, ζ) for :func:`.one_ball.impacts`; None if it cannot follow the ball."""
         return None
 
     def first_release(
@@ -128,8 +148,10 @@ class Ball:
         periods: Values = None,
         table: Table = SINE,
     ) -> Values:
-        """T of impacts, 0 for instants; contacts beyond a number of periods may be left out, as
-        NaN."""
+        """T of the first release; 0 for instantaneous impacts.
+
+        It may be NaN for contacts that last longer than ``periods`` periods of the table.
+        """
         return 0.0 * (tau + u + amplitude)
 
     def contact(
@@ -141,7 +163,7 @@ class Ball:
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """The end of an impact that starts at the time τ with the closing speed u."""
+        """End, at T, of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
     def contact_after(
@@ -172,51 +194,61 @@ class Ball:
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """About the derivative of the release function at T times places, shape (..., places), if
-        it costs less than the contacts up to all these times."""
+        """Approximate derivatives of the release function at the times T * places.
+
+        ``places`` are fractions of T. The result has the shape (..., places). It is None unless it
+        costs less than computing the contacts up to all these times.
+        """
         return None
 
     def signature(self, u: Values) -> Signature:
-        """What free impacts of the closing speed u are, as seen from outside."""
+        """Signature of free impacts with the closing speed u."""
         raise NotImplementedError
 
     def first_impact(
         self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
     ) -> tuple:
-        """T of the first release, and the impact up to it."""
+        """T of the first release, and the end of the impact there."""
         T = self.first_release(tau, u, amplitude, gravity, table=table)
         return T, self.contact(tau, u, T, amplitude, gravity, table)
 
     def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
-        """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
+        """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
         T, (duration, gap, speed, _) = self.first_impact(tau, u, amplitude, table=table)
         if np.any(self.kappa):
-            # The release is a zero of δ + κδ′, but for rounding.
+            # δ + κδ′ = 0 at the release; this removes rounding errors.
             gap = -self.kappa * speed
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """The function from ϖ, or from a number in its place, to the ball, by r and t_c of its free
-        impact; ValueError for a ball whose impacts have no duration."""
+        """Return a function that maps ϖ to the ball with this stiffness.
+
+        A ball without ϖ uses π r/((1 + r) t_c) instead, with r and t_c of its free impact. Raises
+        ValueError if the impacts of the ball have no duration.
+        """
         raise ValueError(
-            f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw or a function to one"
+            f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw, or a function that"
+            " returns one of them"
         )
 
 
 def brief(value: Values) -> str:
-    """A wrong argument in an error message: as it is written, or its type if that is long."""
+    """Text of a wrong argument for an error message: its repr, or only its type if that is long."""
     text = repr(value)
     return f"{type(value).__name__}(…)" if "\n" in text or len(text) > 60 else text
 
 
 def check_ball(ball: Any) -> None:
-    """Raise ValueError with one line for what is no ball."""
+    """Raise ValueError unless ``ball`` is a `Ball`."""
     if not isinstance(ball, Ball):
         raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
 
 
 def whole_number(name: str, value: Values, least: int = 1) -> int:
-    """A whole number, also as a float, as an int; ValueError if it is none or below the least."""
+    """Convert a whole number, an int or a float, to int.
+
+    Raises ValueError if it is not a whole number, or if it is less than ``least``.
+    """
     number = np.asarray(value)
     if number.ndim or number.dtype.kind not in "iuf" or number % 1 or number < least:
         raise ValueError(f"{name} = {brief(value)}: must be a whole number from {least}")
@@ -224,24 +256,31 @@ def whole_number(name: str, value: Values, least: int = 1) -> int:
 
 
 def check_whole_numbers(name: str, value: Values) -> None:
-    """Raise ValueError unless a number, or all of an array, are whole numbers from 1 to 1000."""
+    """Raise ValueError unless all entries of ``value`` are whole numbers from 1 to 1000."""
     numbers = np.ravel(checked(name, value, 1, 1000, low_allowed=True))
     for number in numbers[numbers % 1 != 0]:
         raise ValueError(f"{name} = {number:g}: must be a whole number")
 
 
 def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
-    """Pairs of a name and an array as arrays of one shape; a ValueError names those that differ."""
+    """Broadcast the arrays of (name, array) pairs against each other.
+
+    Raises ValueError, with all names and shapes, if the shapes do not broadcast.
+    """
     named = list(named)
     try:
         return np.broadcast_arrays(*(x for _, x in named))
     except ValueError:
         shapes = ", ".join(f"{name} has {np.shape(x)}" for name, x in named)
-        raise ValueError(f"arrays must have shapes that go together: {shapes}") from None
+        raise ValueError(f"arrays must have shapes that broadcast: {shapes}") from None
 
 
 def checked(name: str, value: Values, low: float, high: float, *, low_allowed: bool) -> Values:
-    """The value as a number or an array; ValueError unless all are finite, from low to high."""
+    """Return ``value`` as a float or an array of floats.
+
+    Raises ValueError unless all entries are finite, from ``low`` to ``high``. ``low`` itself counts
+    only if ``low_allowed``.
+    """
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
         values = np.array(value, float)
@@ -258,7 +297,10 @@ def checked(name: str, value: Values, low: float, high: float, *, low_allowed: b
 
 
 def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
-    """The values of a function of one variable; ValueError unless complex steps derive it."""
+    """Return the values of a function at the points ``at``.
+
+    Raises ValueError unless complex steps give its derivative.
+    """
     reach = np.ptp(at)
     step = 1e-6 * reach
     try:
@@ -267,19 +309,22 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
         across = (function(at + step) - function(at - step)) / (2 * step)
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"{what} must take arrays, also complex ones ({reason})") from None
-    # Differences are wrong by eps/step for rounding, and by step² times the third derivative.
+        raise ValueError(f"{what} must accept arrays, also complex ones ({reason})") from None
+    # Errors of the difference: eps/step by rounding, and step² times the third derivative.
     size = np.abs(along) + np.abs(across)
     if np.any(np.abs(along - across) > 1e-4 * size.max() + 1e-9 * np.abs(values).max() / reach):
-        raise ValueError(f"{what} must be analytic, without abs, real, sign or the like")
+        raise ValueError(f"{what} must be analytic: write it without abs, real, sign and the like")
     return values
 
 
 @dataclass(frozen=True)
 class Rigid(Ball):
-    """Instantaneous impacts with a restitution coefficient r: w = r u (Eq. 5).
+    """Ball with instantaneous impacts and a restitution coefficient r: w = r u (Eq. 5).
 
-    ``restitution`` is r in [0, 1], also an array, or an analytic function r(u) of the speed.
+    Parameters
+    ----------
+    restitution : array_like or callable
+        r in [0, 1], or an analytic function r(u) of the closing speed.
 
     Examples
     --------
@@ -300,16 +345,19 @@ class Rigid(Ball):
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """None for a number r; ValueError for r(u), which changes with the unit g/Ω of u."""
+        """Empty, because a constant r does not depend on Ω.
+
+        Raises ValueError for r(u), because the unit g/Ω of u depends on Ω.
+        """
         if callable(self.restitution):
             raise ValueError(
-                "restitution: r(u) has the speed in units of g/Ω, which change with the frequency;"
+                "restitution: u in r(u) is in units of g/Ω, which change with the frequency;"
                 " give a number, or a contact law with units"
             )
         return {}
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """r alone, if it is a number."""
+        """(r, 0, 0) if r is a number and the table is a sine; otherwise None."""
         is_looped = table.is_sine and not callable(self.restitution)
         return (self.restitution, 0.0, 0.0) if is_looped else None
 
@@ -325,24 +373,30 @@ class Rigid(Ball):
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """The impact at the time τ with the speed u."""
+        """Impact at the time τ with the closing speed u."""
         nothing = 0.0 * (tau + u + amplitude)
         return Impact(nothing, nothing, self._restitution(u) * u + nothing, nothing)
 
     def signature(self, u: Values) -> Signature:
-        """r, and D = t_c = σ = 0."""
+        """Signature with r and with D = t_c = σ = 0."""
         nothing = 0.0 * u
         return Signature(self._restitution(u) + nothing, nothing, nothing, nothing)
 
 
 def damping_of(restitution: Values) -> Values:
-    """ζ = -ln r/√(π² + ln² r), with which free contacts that end at δ = 0 have r (Eq. 16)."""
+    """ζ = -ln r/√(π² + ln² r) (Eq. 16).
+
+    Free contacts that end at δ = 0 then have the restitution coefficient r.
+    """
     log = np.log(restitution)
     return -log / np.sqrt(np.pi**2 + log * log)
 
 
 def _arc_over_root(zeta: Values) -> Values:
-    """2 arccos ζ/√(1 - ζ²), which is analytic at ζ = 1: 4A/(1 + ζ) with A = arctan(√t)/√t."""
+    """2 arccos ζ/√(1 - ζ²), in a form that is analytic at ζ = 1.
+
+    It is 4A/(1 + ζ) with A = arctan(√t)/√t and t = (1 - ζ)/(1 + ζ).
+    """
     t = (1 - zeta) / (1 + zeta)
     near = np.abs(t) < 0.1
     over = np.real(t) < 0
@@ -354,20 +408,22 @@ def _arc_over_root(zeta: Values) -> Values:
 
 @dataclass(frozen=True)
 class SpringDamper(Ball):
-    """The paper's contact with a spring and a damper: δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin τ (Eq. 11).
+    """Ball with the paper's spring and damper: δ″ + 2ζϖδ′ + ϖ²δ = -g + Λ sin τ (Eq. 11).
 
     Parameters
     ----------
     frequency_ratio : array_like
-        ϖ > 0: a stiff contact has a large one. The unknown T of a contact is ϖD.
-    restitution, damping_ratio : array_like
-        One of both: r in (0, 1], from which Eq. 16 gives ζ, or ζ ≥ 0. With the force release or
-        under a load the restitution of the contact is another one. From ζ = 1 on the displacement
-        release has no free impacts: `free` and `signature` are NaN.
+        ϖ > 0, large for a stiff contact. T is ϖD.
+    restitution : array_like, optional
+        r in (0, 1], from which Eq. 16 gives ζ. The restitution of the contact differs from r under
+        a load or with the force release.
+    damping_ratio : array_like, optional
+        ζ ≥ 0, instead of ``restitution``. Give exactly one of them. With the displacement release
+        and ζ ≥ 1 free impacts do not end: `free` and `signature` are NaN.
     release : {"displacement", "force"}
-        Contacts end where δ = 0 (Eq. 23), or where the force vanishes, δ + κδ′ = 0 with κ = 2ζ/ϖ.
-        This is below the table's level; where the line is reached again before the level, a contact
-        resumes, as an impact with u = -δ′ < 0 at the gap κu.
+        Contacts end where δ = 0 (Eq. 23), or where the force vanishes: δ + κδ′ = 0 with κ = 2ζ/ϖ.
+        The force vanishes below the level of the table. If δ + κδ′ vanishes again before the ball
+        reaches this level, the contact resumes: an impact starts at the gap κu with u = -δ′ < 0.
 
     Examples
     --------
@@ -397,7 +453,7 @@ class SpringDamper(Ball):
         broadcast_named(self.parameters.items())
 
     def at(self, **values: Values) -> Any:
-        """As `Ball.at`; a damping ratio replaces a restitution, and the other way round."""
+        """As `Ball.at`. A damping ratio replaces the restitution, and vice versa."""
         if "damping_ratio" in values:
             values = {"restitution": None} | values
         elif "restitution" in values:
@@ -406,12 +462,12 @@ class SpringDamper(Ball):
 
     @property
     def zeta(self) -> Values:
-        """Damping ratio ζ, given or from r."""
+        """Damping ratio ζ, as given or computed from r."""
         return damping_of(self.restitution) if self.damping_ratio is None else self.damping_ratio
 
     @property
     def kappa(self) -> Values:
-        """κ of the release δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
+        """κ of the release condition δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
         return 2 * self.zeta / self.frequency_ratio if self.release == "force" else 0.0
 
     @property
@@ -428,7 +484,7 @@ class SpringDamper(Ball):
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """The state of the contact at the time τ + T/ϖ, with the release function ϖ(δ + κδ′)."""
+        """State of the contact at the time τ + T/ϖ. The release function is ϖ(δ + κδ′)."""
         ratio = self.frequency_ratio
         duration = T / ratio
         waves = table.waves(tau, amplitude)
@@ -439,7 +495,7 @@ class SpringDamper(Ball):
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ a time after the start of a contact."""
+        """δ and δ′ when ``time`` has passed since the start of a contact."""
         return self.contact(tau, u, time * self.frequency_ratio, amplitude, table=table)[1:3]
 
     def end_slopes(
@@ -489,24 +545,24 @@ class SpringDamper(Ball):
         return Signature(r, duration, r * through / (1 + r), loss)
 
     def has_closed_form(self, table: Table = SINE) -> bool:
-        """Whether ζ is below :data:`.oscillator.UNDERDAMPED`, and ϖ away from the resonances."""
+        """Whether ζ is at most :data:`.oscillator.UNDERDAMPED` and ϖ is not near a resonance."""
         near = oscillator.resonates(self.frequency_ratio, self.zeta, table.orders)
         return bool(np.all((self.zeta <= oscillator.UNDERDAMPED) & ~near))
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """ϖ and ζ of contacts with a closed form."""
+        """(0, ϖ, ζ) if there is a closed form and the table is a sine; otherwise None."""
         if table.is_sine and self.has_closed_form():
             return 0.0, self.frequency_ratio, self.zeta
         return None
 
     def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
-        """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
+        """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
         duration, speed = releases(self, tau, u, amplitude, table)
         T = np.where(duration < np.inf, duration * self.frequency_ratio, np.nan)
         return T, duration, -self.kappa * speed, speed
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """The function from ϖ to the ball."""
+        """Return a function that maps ϖ to the ball."""
         return lambda ratio: self.at(frequency_ratio=ratio)
 
     def first_release(
@@ -518,7 +574,7 @@ class SpringDamper(Ball):
         periods: Values = None,
         table: Table = SINE,
     ) -> Values:
-        """T of first releases, NaN for a ball that stays: for ever, or for `PATIENCE`.
+        """T of the first release; NaN if the ball stays for ever, or longer than `PATIENCE`.
 
         Examples
         --------
@@ -546,10 +602,10 @@ def slopes_at_release(
 
 
 def root_of_parabola(f: Values, slope: Values, bend: Values) -> Values:
-    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is none."""
+    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is no root."""
     root = np.sqrt(slope * slope + 2 * bend * f)
     falls = slope < 0
-    # The quotient without a difference of nearly equal numbers.
+    # This quotient avoids a difference of nearly equal numbers.
     part = np.where(falls, 2 * f, root + slope)
     return part / np.where(falls, root - slope, np.maximum(bend, 0.0))
 
@@ -570,8 +626,10 @@ def safe_steps(
 
 @np.errstate(all="ignore")  # a contact without a load may vanish in time
 def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
-    """Durations of contacts with a spring and a damper, infinite for lasting ones, and δ′ at their
-    releases: :func:`.one_ball.release` for arrays of one shape, (n,), for all ϖ, ζ and tables.
+    """Durations of contacts with a spring and a damper, and δ′ at their releases.
+
+    The duration is infinite if the ball stays on the table. This is :func:`.one_ball.release` for
+    arrays of the shape (n,), and for all ϖ, ζ and tables.
     """
     u = np.where(u == 0, SLOWEST, u)
     waves = table.waves(phase, amplitude)
@@ -622,10 +680,10 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
 
 @dataclass(frozen=True)
 class Corrected(Ball):
-    """The corrected restitution model: the impacts of another ball, `of`, as instants.
+    """Corrected restitution model: instantaneous impacts replace the contacts of the ball `of`.
 
-    An impact of the closing speed v takes place at the gap -v t_c(v), and leaves the ball there
-    with the relative speed w = r(v) v + σ(v) a under the load a = g + w″
+    An impact with the closing speed v takes place at the gap -v t_c(v). The ball leaves at the same
+    gap with the relative speed w = r(v) v + σ(v) a, where a = g + ΛW″ is the load
     (docs/impact-as-an-instant.md).
 
     Examples
@@ -647,22 +705,22 @@ class Corrected(Ball):
 
     @property
     def parameters(self) -> dict[str, Values]:
-        """Those of the ball with contacts."""
+        """Parameters of the ball `of`."""
         return self.of.parameters
 
     def at(self, **values: Values) -> Any:
-        """The corrected model of the ball at these values."""
+        """Return the corrected model of `of` with other values of its parameters."""
         new = object.__new__(type(self))
         vars(new)["of"] = self.of.at(**values)
         return new
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Those of the ball with contacts."""
+        """Exponents as in `Ball.frequency_powers`, for the ball `of`."""
         return self.of.frequency_powers
 
     def start(self, u: Values) -> Values:
-        """The gap -u t_c(u) of the instant."""
+        """Gap -u t_c(u) at which the impact takes place."""
         return -u * self.of.signature(u).centroid
 
     def elapsed_contact(self, u: Values) -> Values:
@@ -670,7 +728,7 @@ class Corrected(Ball):
         return self.of.signature(u).centroid
 
     def remaining_contact(self, u: Values) -> Values:
-        """D - t_c."""
+        """D - t_c, the remaining duration of the contact after the impact."""
         signature = self.of.signature(u)
         return signature.duration - signature.centroid
 
@@ -683,11 +741,11 @@ class Corrected(Ball):
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """The instant at the time τ with the speed u."""
+        """Impact at the time τ with the closing speed u."""
         r, _, centroid, loss = self.of.signature(u)
         speed = r * u + loss * (gravity + amplitude * table(tau, 2))
         return Impact(0 * speed, 0 * speed - u * centroid, speed, 0 * speed)
 
     def signature(self, u: Values) -> Signature:
-        """Signature of the other ball, `of`."""
+        """Signature of the ball `of`."""
         return self.of.signature(u)

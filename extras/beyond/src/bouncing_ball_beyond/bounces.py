@@ -1,7 +1,8 @@
-"""Balls that are followed from impact to impact, side by side, as arrays.
+"""Follow many balls from impact to impact, side by side, as arrays.
 
-The scalar loops of :mod:`.one_ball` take the same steps for one ball of the restitution model or of
-a spring and damper on a sine, for which arrays are 40 to 200 times slower (docs/impacts.md).
+For a single ball arrays are 40 to 200 times slower than scalar loops (docs/impacts.md). The loops
+of :mod:`.one_ball` take the same steps. They need a sine, and a ball with a constant restitution
+coefficient or with a spring and a damper.
 """
 
 from collections.abc import Callable
@@ -18,7 +19,7 @@ from bouncing_ball_beyond.impact_map import ImpactMap
 from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD, STEPS
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
-# Numba, which takes a second to import, is imported with the first ball that is followed.
+# Importing numba takes a second, so it is imported when the first ball is followed.
 compile_loops = cache(one_ball.compile_loops)
 
 
@@ -53,11 +54,11 @@ class Balls:
     Attributes
     ----------
     ball : Ball
-        The ball. Its parameters are numbers, or arrays over the row.
+        The ball. Its parameters are numbers, or arrays with one entry for each ball of the row.
     amplitude : array
         Excitation amplitude Λ.
     turns, phase : array
-        Whole turns of the table and its phase. A late phase keeps all digits this way.
+        Whole turns of the table and its phase. They are separate to keep all digits of late phases.
     speed : array
         Closing speed u.
     table : Table
@@ -85,9 +86,9 @@ def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) ->
     """Find the first zero of a function f ≥ 0 for each ball, by :func:`.safe_steps`.
 
     No zero may be before ``start``. ``look(t, *given)`` returns (t₁, f, f′, f″, K, J). No zero may
-    be between t and t₁. f and its derivatives are those at t₁. K and J are the bounds that
+    be between t and t₁. f and its derivatives are taken at t₁. K and J are the bounds that
     :func:`.safe_steps` needs. The search stops when fewer than ``fewest`` balls are left, and
-    returns NaN for these.
+    returns NaN for these balls.
     """
     time = np.full(start.shape, np.nan)
     todo = np.arange(start.size)
@@ -132,15 +133,15 @@ def landings(
 def emergences(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """First times, from ``start`` on, at which balls are at or above the level of the table.
+    """Find the first times, not before ``start``, at which balls are at or above the level.
 
-    The time is infinite for balls that fall back before.
+    The level is the level of the table. The time is infinite for balls that fall back before.
     """
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state
         position, rate, second = table.flights(t, gap, w, waves)
-        # The search ends where it falls back, or is above: f = 0 there.
+        # f = 0 ends the search if the ball falls back or is above the level.
         goes_on = (rate > 0) & (position < 0)
         return t, np.where(goes_on, -position, 0.0), -np.abs(rate), -second, bend, jerk
 
@@ -159,7 +160,7 @@ def resumptions(
         gap, w, *waves = state
         position, rate, second = table.flights(t, gap, w, waves)
         third = table.third(t, w, rate, waves)
-        # Above the level there is nothing to resume, and the search ends: f = 0 there.
+        # f = 0 ends the search above the level, because no contact can resume there.
         f = np.where(position < 0, position + kappa * rate, 0.0)
         slope = np.where(position < 0, rate + kappa * second, -1.0)
         return t, f, slope, second + kappa * third, bend, jerk
@@ -179,7 +180,7 @@ def instants(
     waves: list,
     amplitude: Values,
 ) -> tuple[NDArray, NDArray]:
-    r"""Find when impacts start whose gap depends on the closing speed, after given landings.
+    r"""Find the starts of impacts whose gap depends on the closing speed, after given landings.
 
     Returns the times at which δ = ``ball.start(u)``, and the closing speeds u.
     """
@@ -228,7 +229,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
     phase = balls.phase
     remaining = balls.ball.remaining_contact(balls.speed)
     restitution = w / np.maximum(balls.speed, 1e-300)
-    # A limit beyond that of :func:`.one_ball.settling`.
+    # This limit exceeds the limit of :func:`.one_ball.settling`, which decides.
     gravity = 1 + amplitude * table(phase, 2)
     limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
     fourth = amplitude * table.bounds[4]
@@ -260,7 +261,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, time: NDArray) -> NDArray:
-    """Whether balls below the level of the table may fall by ``time``, or may never reach it."""
+    """Whether balls below the level of the table may fall within ``time`` or never reach it."""
     return (gap < 0) & ((w <= strongest * time) | (w * w + 2 * strongest * gap <= 0))
 
 
@@ -279,7 +280,7 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     w = leaving.speed
     waves = table.waves(leaving.phase, amplitude)
     _, y, x = table.pulls(waves)
-    # A ball without a speed leaves because the table falls away: -w″ ≥ 1, but for rounding.
+    # A ball without a speed leaves because the table falls away: -w″ ≥ 1 within rounding.
     y = np.where((w == 0) & (gap == 0), np.maximum(y, 1.0), y)
     strongest = 1 + table.bounds[2] * amplitude
     start = (w + np.sqrt(np.maximum(w * w + 2 * strongest * gap, 0.0))) / strongest
@@ -292,8 +293,8 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     states = amplitude, gap, w, *waves
     if np.any(ball.kappa):
         kappa = np.broadcast_to(ball.kappa, w.shape)
-        # A ball with w ≥ (1 + √2) κ g has κ g at the level, and δ + κδ′ rises up to there, under
-        # the strongest gravity g.
+        # Even under the strongest gravity g, a ball with w ≥ (1 + √2) κ g reaches the level with
+        # the speed κ g. δ + κδ′ rises until then, so no contact resumes.
         (low,) = may_sink(gap, w, strongest, (1 + np.sqrt(2)) * kappa).nonzero()
         given = (each[low] for each in (kappa, *states))
         start[low], resumes[low] = resumptions(table, *given)

@@ -1,4 +1,4 @@
-"""Branches of orbits along a parameter, and curves of special orbits along two."""
+"""Branches of orbits along one parameter, and curves of special orbits along two."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -33,14 +33,17 @@ from bouncing_ball_beyond.special_orbits import (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FollowedBranch:
-    """Orbits along a parameter, in order.
+    """Branch: periodic orbits along a parameter, in the order in which they were followed.
 
-    Parameters
+    Attributes
     ----------
+    equations : OrbitEquations
+        Equations that the orbits solve.
     z : ndarray, shape (points, N)
-        The orbits, as rows of the equations.
+        Unknowns of the orbits, one row for each.
     special : tuple of PeriodicOrbit
-        The special orbits in their order, without that at which the branch starts.
+        Special orbits in their order on the branch. The special orbit at which the branch starts is
+        left out.
     start, end : str
         Where the branch starts, and why it ends.
     """
@@ -74,44 +77,48 @@ class FollowedBranch:
 
     @property
     def impacts(self) -> int:
-        """The number k of impacts of the orbits."""
+        """Number k of impacts in one period of the orbits."""
         return self.equations.impacts
 
     @property
     def periods(self) -> int:
-        """The number m of periods of the table in one period of the orbits."""
+        """Number m of periods of the table in one period of the orbits."""
         return int(self.equations.periods)
 
     @property
     def along(self) -> str:
-        """The name of what changes."""
+        """Name of the parameter that changes; for a curve, both names."""
         return " and ".join(path.name for path in self.equations.along)
 
     @property
     def values(self) -> NDArray:
-        """The values of what changes, shape (points,)."""
+        """Values of this parameter, shape (points,); for a curve, of the second one."""
         return self.z[:, -1]
 
     @cached_property
     def orbits(self) -> tuple[PeriodicOrbit, ...]:
-        """The orbits one by one."""
+        """All orbits, each as a `PeriodicOrbit`."""
         return tuple(self.equations.orbit(row, self.equations.kind) for row in self.z)
 
     @cached_property
     def stable(self) -> NDArray:
-        """Whether the orbits are stable, shape (points,)."""
+        """Whether each orbit is stable, shape (points,)."""
         return self.equations.stable(self.equations.linearized(self.z))
 
     @cached_property
     def admissible(self) -> NDArray:
-        """Whether a ball follows the orbits, shape (points,)."""
+        """Whether a ball follows each orbit, shape (points,)."""
         return self.equations.admissible(self.z)
 
     def refined(self, spacing: float = 0.04) -> "FollowedBranch":
-        """The branch with further orbits in between, so that lines through them have no corners.
+        """Return the branch with additional orbits, so that lines through them look smooth.
 
-        `spacing` is the largest distance, as root mean square of the changes of the times and
-        speeds of the impacts and as relative change of the parameter; a step has at most 50 orbits.
+        Parameters
+        ----------
+        spacing : float
+            Largest distance between neighbours. The distance combines the root mean square change
+            of the times and speeds of the impacts and the relative change of the parameter. A step
+            gets at most 50 orbits.
         """
         if len(self) < 2:
             return self
@@ -127,7 +134,10 @@ class FollowedBranch:
         return replace(self, z=np.concatenate([z, self.z[-1:]]))
 
     def first(self, kind: str) -> PeriodicOrbit:
-        """The first special orbit of a kind, with spaces or hyphens; OrbitNotFound if none is."""
+        """First special orbit of a kind, such as "saddle-node" or "period doubling".
+
+        Spaces and hyphens are equivalent. Raises OrbitNotFound if there is no such orbit.
+        """
         for each in self.special:
             if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
                 return each
@@ -135,7 +145,10 @@ class FollowedBranch:
         raise OrbitNotFound(f"no {kind} on {self._where}: {others}")
 
     def with_special(self) -> list[PeriodicOrbit]:
-        """The orbits with the special ones, each in the step where it makes no detour."""
+        """All orbits and special orbits in order.
+
+        Each special orbit is inserted into the step where it lengthens the path least.
+        """
         orbits = list(self.orbits)
         units = self.equations.scales(self.z)[0]
         points = self.z / units
@@ -148,18 +161,18 @@ class FollowedBranch:
 
 
 class SpecialCurve(FollowedBranch):
-    """Special orbits of one kind along two parameters."""
+    """Curve: special orbits of one kind along two parameters."""
 
     _where = "this curve; other special orbits on it are"
 
     @property
     def kind(self) -> str:
-        """The kind of the special orbits."""
+        """Kind of the special orbits."""
         return self.equations.kind
 
 
 def joined(back: Any, forth: Any) -> Any:
-    """A branch that is followed both ways from a point, in the order of the second way."""
+    """Join two branches from one orbit in opposite directions, in the direction of ``forth``."""
     if forth.end == CLOSED:
         return replace(forth, start=CLOSED)
     return replace(
@@ -177,7 +190,7 @@ def both_ways(
     window: NDArray,
     points: int,
 ) -> Any:
-    """The curve through a point, shape (1, N), along a direction and against it."""
+    """Follow the curve through a point z, shape (1, N), along a direction and against it."""
     both = np.concatenate([-direction, direction])
     nothing = np.full(2, np.nan), np.full(2, "")
     start = Start(equations, np.tile(z, (2, 1)), both, *nothing)
@@ -185,7 +198,16 @@ def both_ways(
 
 
 class _Passed(NamedTuple):
-    """A special orbit, the number of the step in which it is, and how far on this step."""
+    """Special orbit on a branch.
+
+    Attributes
+    ----------
+    number : int
+        Number of the step that contains it.
+    place : float
+        Its distance from the start of this step, along the tangent.
+    orbit : PeriodicOrbit
+    """
 
     number: int
     place: float
@@ -193,7 +215,11 @@ class _Passed(NamedTuple):
 
     @property
     def order(self) -> tuple:
-        """Where a flight vanishes, an impact and a release do so at the same place."""
+        """Sort key along the branch.
+
+        If a flight vanishes, an impact grazes and a release is lost at the same point, the order is
+        the order of `OrbitEquations.kinds`.
+        """
         kinds = [*self.orbit.equations.kinds, self.orbit.kind]
         return self.number, round(self.place, 6), kinds.index(self.orbit.kind)
 
@@ -201,7 +227,10 @@ class _Passed(NamedTuple):
 def followed(
     start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
 ) -> list[Any]:
-    """Branches with their special orbits, but without those of the kind ``own`` at the starts."""
+    """Follow branches and locate their special orbits.
+
+    A special orbit of the kind ``own`` in the first step is the start itself, and is left out.
+    """
     steps = march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
@@ -233,7 +262,7 @@ def followed(
             why = KINDS[last.kind].end if last.kind in KINDS else ""
             end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
         elif end in KINDS:
-            # Newton's method does not find it, but it is between the last two points.
+            # Newton's method misses the special orbit, which is between the last two points.
             end = f"{end} near {_place(equations, orbits[-1], 4)}: {KINDS[end].end}"
             orbits = orbits[:-1]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
@@ -247,7 +276,7 @@ def followed(
 
 
 def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:
-    """The values of what changes."""
+    """Text with the values of the parameters that change."""
     values = zip(equations.along, z[equations.size :], strict=True)
     return ", ".join(f"{path.name} = {value:.{digits}g}" for path, value in values)
 
@@ -260,7 +289,7 @@ def _in_words(
     goal: float,
     passed: list[_Passed],
 ) -> str:
-    """Why a branch ends at an orbit that is not special."""
+    """Text: why a branch ends at an orbit that is not special."""
     if end == CLOSED:
         return end
     if end != AT_GOAL:
@@ -277,7 +306,7 @@ def _in_words(
 
 
 def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
-    """Where a multiplier passes 1 and the parameter does not turn back, or ""."""
+    """Text: where a multiplier passes 1 without a turning point of the parameter, or ""."""
     rising = crossings.slopes[..., -1]
     symmetric = (crossings.row == row) & (crossings.kind == "saddle-node")
     symmetric &= rising[0] * rising[1] > 0

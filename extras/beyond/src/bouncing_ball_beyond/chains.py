@@ -1,11 +1,24 @@
-"""Chains of legs: their matrices, and linear equations of them with a border."""
+"""Matrices of closed chains of legs, and their bordered linear equations.
+
+A leg is an impact and the flight after it. In the shapes below,
+
+- rows is the number of orbits, and k the number of legs of each orbit;
+- q is the number of unknowns of an impact, the first of which are τ and u;
+- p is the number of parameters, and N = kq + p the number of unknowns of an orbit.
+
+The derivatives of legs have the shape (rows, k, q, q + 2 + p). They are derivatives with respect to
+the q unknowns of the impact, to τ and u of the next impact, and to the p parameters.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
 
 
 def product_of(maps: NDArray) -> NDArray:
-    """The product of the maps of the legs, the last one at the left, shape (rows, 2, 2)."""
+    """Product of the maps of all legs, shape (rows, 2, 2), with the last leg on the left.
+
+    ``maps`` has the shape (rows, k, 2, 2).
+    """
     while maps.shape[1] > 1:
         even = maps.shape[1] // 2 * 2
         pairs = maps[:, 1:even:2] @ maps[:, 0:even:2]
@@ -14,7 +27,7 @@ def product_of(maps: NDArray) -> NDArray:
 
 
 def dense(derivatives: NDArray) -> NDArray:
-    """The Jacobian (rows, k, q, N) from the derivatives of legs."""
+    """Jacobian, shape (rows, k, q, N), from the derivatives of legs."""
     rows, k, q, columns = derivatives.shape
     matrix = np.zeros((rows, k, q, k * q + columns - q - 2))
     for i in range(k):
@@ -26,7 +39,7 @@ def dense(derivatives: NDArray) -> NDArray:
 
 
 def solved_or_nan(matrix: NDArray, values: NDArray) -> NDArray:
-    """Solutions of linear equations, NaN where a matrix is singular."""
+    """Solve linear equations. The solution is NaN if the matrix is singular."""
     try:
         return np.linalg.solve(matrix, values)
     except np.linalg.LinAlgError:
@@ -39,10 +52,23 @@ def solved_or_nan(matrix: NDArray, values: NDArray) -> NDArray:
 def solve_bordered(
     derivatives: NDArray, right: NDArray, border: NDArray, border_right: NDArray
 ) -> NDArray:
-    """Solve the linear equations of the legs together with p further ones, the border.
+    """Solve the linear equations of the legs together with p further equations, the border.
 
-    Derivatives have the shape (rows, k, q, q + 2 + p), right sides (rows, k, q, m), the border
-    (rows, p, N) and its right sides (rows, p, m); solutions (rows, N, m), NaN if singular.
+    Parameters
+    ----------
+    derivatives : array, shape (rows, k, q, q + 2 + p)
+        Derivatives of the legs.
+    right : array, shape (rows, k, q, m)
+        Right sides of the equations of the legs.
+    border : array, shape (rows, p, N)
+        Coefficients of the border.
+    border_right : array, shape (rows, p, m)
+        Right sides of the border.
+
+    Returns
+    -------
+    array, shape (rows, N, m)
+        Solutions, NaN if the matrix is singular.
     """
     rows, k, q, _ = derivatives.shape
     matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)

@@ -382,7 +382,7 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight_of_the_orbit_without_it():
     flights = [follow(each, to=20.0).first("grazing of a flight").amplitude for each in two]
     assert impacts and min(abs(np.subtract.outer(impacts, flights)).ravel()) < 1e-9
     assert all("lands with the speed of the table" in each.end for each in ends)
-    with pytest.raises(OrbitNotFound, match="branches end at a special orbit of this kind"):
+    with pytest.raises(OrbitNotFound, match="branches end at orbits of this kind"):
         follow(ends[0].special[-1], to=1.0)
 
 

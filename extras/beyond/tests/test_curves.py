@@ -164,7 +164,7 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight(ball, to):
 
 def test_wrong_arguments_are_named(rigid):
     doubling = rigid.first("period doubling")
-    with pytest.raises(OrbitNotFound, match="the orbit is an ordinary one: a curve goes through a"):
+    with pytest.raises(OrbitNotFound, match="kind = '': a curve must start at a special orbit"):
         special_curve(rigid.orbits[0])
     with pytest.raises(OrbitNotFound, match="the only impact of the orbit vanishes"):
         special_curve(replace(doubling, kind="grazing of an impact"))
@@ -184,5 +184,5 @@ def test_wrong_arguments_are_named(rigid):
         special_curve(doubling, along=("amplitude", "amplitude"))
     with pytest.raises(ValueError, match=r"restitution = 0\.5 is not in its range"):
         special_curve(doubling, ranges={"restitution": (0.6, 0.9)})
-    with pytest.raises(ValueError, match="frequency_ratio: the parameters are"):
+    with pytest.raises(ValueError, match="frequency_ratio: the parameters of the curve are"):
         special_curve(doubling, ranges={"frequency_ratio": (1, 9)})

@@ -1,4 +1,4 @@
-"""Orbits along a parameter, cascades of doublings, and the limits of orbits with one impact."""
+"""Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -19,30 +19,50 @@ from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 SHARES = (0.5, 0.9, 0.2, 2.0, 4.0)
 AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
-"""Where `limits` looks for an orbit: at shares of the -w″ at which instants double, and then at
-multiples of nπ, their saddle-node with r = 0."""
+"""Where `limits` looks for an orbit.
+
+1. `SHARES` are fractions of the -w″ at which orbits of instantaneous impacts double their period.
+2. `AROUND` are multiples of nπ, the Λ of the saddle-node of these orbits for r = 0 on a sine.
+"""
 
 
 def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
     """Follow a periodic orbit along a parameter, or many orbits side by side.
 
-    It goes through an orbit, or begins at a special one: stable from a saddle-node, with twice the
-    period from a doubling, half of it from a halving, one impact more from the grazing of a flight.
-    OrbitNotFound if a single orbit has no branch, such as towards `to` from a period doubling.
+    The branch goes through an ordinary orbit. From a special orbit, its kind determines the branch:
+
+    - saddle-node: the stable branch;
+    - period doubling: orbits of twice the period;
+    - period halving: orbits of half the period;
+    - grazing of a flight: orbits with one more impact;
+    - grazing of a release: the branch that contains the orbit.
 
     Parameters
     ----------
     orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
-        A sequence has a list of branches, and the reason in place of one that there is not.
+        Orbit, or several orbits, from which to start.
     along : str, optional
-        "amplitude", a parameter of the ball or the table, or "frequency" (at a fixed stroke,
-        Ω/√(g/a) = √Λ); by default what changed on the branch of the orbit.
+        "amplitude", "frequency", or a parameter of the ball or the table. "frequency" changes Ω at
+        a fixed stroke a; its values are Ω/√(g/a) = √Λ. The default is the parameter of the branch
+        that contains the orbit.
     to : float, array_like or tuple (low, high), optional
-        Where a branch ends, one value or one for each orbit; a tuple has both ways. Behind a
-        saddle-node the parameter moves back, at most as far beyond its first value. By default it
-        rises to the end of its range, or to ten times its value and at least 10; a phase by a turn.
+        Value at which the branch ends, or one value for each orbit. With a tuple the orbit is
+        followed both ways. If the parameter turns back at a saddle-node, the branch ends at the
+        latest as far from its start as `to`, on the other side. The default is the end of the range
+        of the parameter, but at most ten times its value or 10, whichever is larger. For a phase
+        the default is one turn ahead.
     points : int
-        The largest number of orbits on a branch, of each direction.
+        Maximum number of orbits on a branch in each direction.
+
+    Returns
+    -------
+    FollowedBranch, or a list of FollowedBranch and OrbitNotFound
+        A list for a sequence of orbits, with the reason instead of each branch that is missing.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a single orbit has no branch, for example on the side of `to` of a period doubling.
 
     Examples
     --------
@@ -58,11 +78,27 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
 
 
 def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
-    """Follow a cascade of period doublings, each branch up to the doubling where the next begins.
+    """Follow a cascade of period doublings, each branch up to the next doubling.
 
-    Nothing is followed beyond `to`, one value or one for each doubling, and orbits have at most so
-    many `impacts`. A sequence of doublings has a list of cascades, with the OrbitNotFound in place
-    of one; a single one raises it.
+    Parameters
+    ----------
+    doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+        First period doubling, or several, from which to start.
+    to : float or array_like
+        Value of the parameter beyond which no branch is followed, or one value for each doubling.
+    impacts : int
+        Maximum number of impacts of the orbits.
+
+    Returns
+    -------
+    list of FollowedBranch, or a list of such lists and OrbitNotFound
+        Branches of the cascade. A sequence of doublings gives a list of cascades, with the reason
+        instead of each cascade that is missing.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a single doubling has no cascade.
 
     Examples
     --------
@@ -77,7 +113,9 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and len(to) != len(latest):
-        raise ValueError(f"to: has {len(to)} values for {len(latest)} orbits")
+        raise ValueError(
+            f"to: has {len(to)} values for {len(latest)} orbits: give one, or one for each orbit"
+        )
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
     while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
@@ -97,7 +135,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
 
 
 def _listed(given: Any, name: str, wanted: str) -> list:
-    """Several orbits as a list; ValueError with one line for anything else."""
+    """Return one or more orbits as a list. Raises ValueError for anything else."""
     found = list(given) if isinstance(given, Iterable) else [given]
     if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
         raise ValueError(f"{name} = {brief(given)}: must be {wanted}, or a list of them")
@@ -105,7 +143,10 @@ def _listed(given: Any, name: str, wanted: str) -> list:
 
 
 def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: list) -> list:
-    """Branches of orbits, or reasons, in order; those with the same equations side by side."""
+    """Follow orbits, and return branches, or the reasons why there are none, in order.
+
+    Consecutive orbits with the same equations are followed side by side.
+    """
     several = 2 if isinstance(to, tuple) else len(orbits)
     if to is not None and np.shape(to) not in ((), (several,)):
         raise ValueError(
@@ -130,7 +171,7 @@ def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: li
 
 
 def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
-    """The branch that is followed one way or both ways, or the reason why there is none."""
+    """Join the branches of one orbit, or return the reason why there is none."""
     branches = [each for each in ways if isinstance(each, FollowedBranch)]
     if len(branches) == 2:
         return joined(*branches)
@@ -138,7 +179,7 @@ def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
 
 
 def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list[Task]:
-    """What is to be followed from one orbit, as one row for each way."""
+    """Return the tasks of following one orbit, one for each direction."""
     equations, z = orbit.on(path)
     value = float(z[-1])
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
@@ -159,7 +200,7 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
 
 
 def _stacked(tasks: tuple[Task, ...]) -> Task:
-    """Tasks of single orbits as rows of one."""
+    """Combine tasks of single orbits into one task with a row for each orbit."""
     if len(tasks) == 1:
         return tasks[0]
     equations = replace(
@@ -174,7 +215,7 @@ def _stacked(tasks: tuple[Task, ...]) -> Task:
 
 
 def _in_rows(several: list) -> Any:
-    """One ball, or one table, with the parameters of several as arrays."""
+    """Combine several balls, or several tables, into one with arrays as parameters."""
     first = several[0]
     values = {
         name: np.array([each.parameters[name] for each in several]) for name in first.parameters
@@ -183,15 +224,15 @@ def _in_rows(several: list) -> Any:
 
 
 def _from_special(task: Task, kind: str, points: int) -> list:
-    """Branches from orbits of one kind, or the reasons for none."""
+    """Return the branches from orbits of one kind, or the reasons why there are none."""
     if kind not in STARTS:
-        return [OrbitNotFound("branches end at a special orbit of this kind")] * len(task.z)
+        return [OrbitNotFound(f"{kind}: branches end at orbits of this kind")] * len(task.z)
     start = STARTS[kind](task)
     found: list = [OrbitNotFound(reason) for reason in start.reasons]
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
         return found
-    # The parameter stays between the goal and a value as far behind the start.
+    # The parameter stays between the goal and its mirror image on the other side of the start.
     behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
     window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
     branches = followed(start.take(going), window, task.until[going], points, kind)
@@ -204,7 +245,13 @@ def _from_special(task: Task, kind: str, points: int) -> list:
 
 
 class Limits(NamedTuple):
-    """The orbits between which those with one impact are stable, or the reasons for none."""
+    """Limits between which n-T orbits are stable.
+
+    Attributes
+    ----------
+    saddle_node, period_doubling : PeriodicOrbit or OrbitNotFound
+        Special orbit, or the reason why there is none.
+    """
 
     saddle_node: PeriodicOrbit | OrbitNotFound
     period_doubling: PeriodicOrbit | OrbitNotFound
@@ -220,12 +267,30 @@ class Limits(NamedTuple):
 
 
 def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
-    """Find the saddle-node and the period doubling of the n-T orbits of a ball, as `Limits`.
+    """Find the saddle-node and the period doubling of the n-T orbits of a ball.
 
-    An orbit is followed towards smaller and greater Λ, around the phase at which the table rises
-    fastest. In place of a limit there may be an OrbitNotFound with the reason, such as the grazing
-    of an impact. If n or a parameter is an array, there is a list. A law without a rebound, r = 0,
-    may take minutes: its contacts last longer and longer as Λ falls.
+    n-T orbits have one impact in n periods of the table. One of them is followed towards smaller
+    and larger Λ, around the phase at which the table rises fastest.
+
+    Parameters
+    ----------
+    ball : Ball
+        The ball.
+    n : int or array_like
+        Number of periods of the table in one period of the orbits.
+    table : Table
+        The waveform.
+
+    Returns
+    -------
+    Limits or list of Limits
+        A list if n or a parameter of the ball is an array. If a branch ends before a limit, such as
+        at the grazing of an impact, the limit is an OrbitNotFound with this reason.
+
+    Notes
+    -----
+    A law without a rebound, r = 0, may take minutes, because its contacts last longer and longer as
+    Λ falls.
 
     Examples
     --------
@@ -252,19 +317,23 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
-    """The first special orbit of a kind, or the reason why there is none: how the branch ends."""
+    """First special orbit of a kind, or an OrbitNotFound that quotes the end of the branch."""
     of_kind = (each for each in special if each.kind == kind)
     return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """For each row an orbit that a ball follows, if possible between the limits of instants."""
+    """Find one orbit with one impact for each row, or an OrbitNotFound.
+
+    Orbits between the limits of instantaneous impacts are tried first. An orbit that a ball follows
+    takes precedence over other orbits.
+    """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
     table = equations.table
     fold = np.pi * n * (1 - r) / (1 + r)
-    # Instants at ΛW′ = fold and -ΛW″ = a share of that at the period doubling.
+    # Orbits of instantaneous impacts have ΛW′ = fold. -ΛW″ is a share of its value at the doubling.
     push = np.multiply.outer(SHARES, 2 * (1 + r * r) / (1 + r) ** 2)
     phase = table.phase_of_angle(np.arctan2(push, fold))
     amplitudes = [*(np.hypot(fold, push) / np.hypot(table(phase, 1), table(phase, 2)))]

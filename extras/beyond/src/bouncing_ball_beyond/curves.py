@@ -1,6 +1,8 @@
 """Curves of special orbits in two parameters.
 
-They solve the equations of an orbit and one more, the test of their kind: see docs/orbits.md.
+A curve solves the equations of an orbit and one more equation: the test function of its kind is
+zero (docs/orbits.md).
+
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
 
@@ -25,7 +27,10 @@ from bouncing_ball_beyond.march import newton, unit
 from bouncing_ball_beyond.paths import path_of, usual_range
 
 OTHER = 1e-3
-"""A start that is farther from the corrected special orbit is no special orbit of its kind."""
+"""Largest change of a start by Newton's method, relative to 1 + max |z|.
+
+If the change is larger, the start was not a special orbit of its kind.
+"""
 
 
 def special_curve(
@@ -37,21 +42,25 @@ def special_curve(
 ) -> SpecialCurve:
     """Follow a special orbit in two parameters, both ways.
 
-    OrbitNotFound if the orbit is no special one from which a curve goes on.
-
     Parameters
     ----------
     special : PeriodicOrbit
-        A special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
-        followed as the doubling of half the period, and the grazing of an impact as that of a
-        flight without it.
+        Special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
+        followed as the period doubling of the orbit of half the period. The grazing of an impact is
+        followed as the grazing of a flight of the orbit without this impact.
     along : tuple of two names
-        As for `follow`.
+        Two parameters as in `follow`.
     ranges : mapping of names to (low, high), optional
-        Where the curve ends; by default at a tenth and at ten times the value, or at 10 if that
-        is more, and after a turn of a phase.
+        Values of the parameters at which the curve ends. By default a curve ends at a tenth of the
+        value, and at ten times the value or at 10 if that is more. A phase changes by half a turn
+        in each direction.
     points : int
-        The largest number of orbits in each direction.
+        Maximum number of orbits in each direction.
+
+    Raises
+    ------
+    OrbitNotFound
+        If no curve starts at the orbit.
 
     Examples
     --------
@@ -67,7 +76,7 @@ def special_curve(
     if not first.found[0]:
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
-        raise OrbitNotFound(f"the orbit is no {equations.kind}: the nearest one is elsewhere")
+        raise OrbitNotFound(f"the orbit is not a {equations.kind}: the nearest one is elsewhere")
     return both_ways(equations, first.z, unit(first.tangent), window, points)
 
 
@@ -75,7 +84,7 @@ SUCH = "such as branch.first('period doubling')"
 
 
 def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
-    """The equations of special orbits, and one of them."""
+    """Equations of the special orbits on the curve, and the special orbit at its start."""
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
     if not isinstance(along, tuple | list) or len(along) != 2 or along[0] == along[1]:
@@ -86,8 +95,8 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
     allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
     if special.kind not in allowed:
         raise OrbitNotFound(
-            f"the orbit is {special.kind or 'an ordinary one'}: a curve goes through a special one"
-            f" of a branch: {', '.join(sorted(allowed))}"
+            f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"
+            f" {', '.join(sorted(allowed))}"
         )
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     equations, z = special.on(*paths)
@@ -101,7 +110,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
 
 
 def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, ranges: Any) -> NDArray:
-    """The ends of both parameters, shape (2, 2): the least and the greatest values."""
+    """Minimum and maximum values of both parameters, shape (2, 2): minima in the first row."""
     wanted = {} if ranges is None else ranges
     if not isinstance(wanted, Mapping) or any(np.size(each) != 2 for each in wanted.values()):
         raise ValueError(
@@ -119,5 +128,5 @@ def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, range
         ends.append((max(low, least), min(high, greatest)))
     if wanted:
         names = " and ".join(path.name for path in equations.along)
-        raise ValueError(f"ranges: {', '.join(wanted)}: the parameters are {names}")
+        raise ValueError(f"ranges: {', '.join(wanted)}: the parameters of the curve are {names}")
     return np.array(ends).T

@@ -49,8 +49,10 @@ class Signature(NamedTuple):
 
     Attributes
     ----------
-    restitution, duration : array
-        Restitution coefficient r and duration D.
+    restitution : array
+        Restitution coefficient r.
+    duration : array
+        Duration D.
     centroid : array
         Time t_c from the start of the impact to the centroid of its force.
     loss : array

@@ -35,7 +35,7 @@ from bouncing_ball_beyond.special_orbits import (
 class FollowedBranch:
     """Branch: periodic orbits along a parameter, in the order in which they were followed.
 
-    Attributes
+    Parameters
     ----------
     equations : OrbitEquations
         Equations that the orbits solve.

@@ -1,8 +1,10 @@
-"""Periodic orbits with k impacts in m periods of the table: their equations and their quantities.
+"""Equations and quantities of periodic orbits with k impacts in m periods of the table.
 
-The unknowns of an impact are its time τ, its closing speed u and, if it has a duration, its T. An
-orbit is a row z: the unknowns of its k impacts one after the other, and after them the values of
-what may change. Functions take many rows at once, (rows, N). docs/orbits.md has the mathematics.
+An impact has q unknowns: its time τ, its closing speed u and, if it has a duration, its T. An orbit
+is a row z with N = kq + p entries: the unknowns of its k impacts one after the other, then the
+values of the p parameters that may change. Functions take many orbits at once, shape (rows, N).
+
+A *leg* is a contact and the flight after it. The mathematics is in docs/orbits.md.
 """
 
 from collections.abc import Callable
@@ -19,55 +21,81 @@ from bouncing_ball_beyond.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables import FUNDAMENTAL, SINE, Table
 
 FAR = 10.0
-"""A clearance is at most this large: the value where a flight does not come back to the table."""
+"""Maximum clearance. It is the clearance of a flight whose gap has no minimum."""
 
 
 POINT = (1.0,), (1.0,), 1e-7
 CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
-"""Nodes, weights and steps of the differences for gradients of tests, with errors of 1e-7 in
-Newton's method for points and of 1e-12 in tangents of curves."""
+"""Nodes, weights and step of the differences that give gradients of test functions.
+
+`POINT` has errors of 1e-7 and serves Newton's method for isolated points. `CURVE` has errors of
+1e-12 and serves tangents of curves.
+"""
 
 LASTING = 4 * np.pi
-"""The T from which on its changes count relatively: two free oscillations."""
+"""T above which steps measure relative changes of T: two free oscillations."""
 
 VANISHED = 1e-12
-"""A flight that is no longer than this is none: its times are some thousand roundings."""
+"""Duration up to which a flight counts as vanished: a few thousand rounding errors of its times."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinearizedLegs:
-    """Legs (rows, k, q), their derivatives (rows, k, q, q + 2 + p) by the q unknowns of the impact,
-    τ and u of the next one and the p parameters, and their times of flight (rows, k)."""
+    """Legs of orbits and their derivatives.
+
+    Attributes
+    ----------
+    legs : array, shape (rows, k, q)
+        Residuals of the q equations of each leg.
+    derivatives : array, shape (rows, k, q, q + 2 + p)
+        Derivatives with respect to the q unknowns of the impact, to τ and u of the next impact, and
+        to the p parameters.
+    flights : array, shape (rows, k)
+        Durations of the flights.
+    """
 
     legs: NDArray
     derivatives: NDArray
     flights: NDArray
 
     def rows(self, which: Any) -> "LinearizedLegs":
-        """Some of the rows."""
+        """Select rows."""
         taken = self.legs[which], self.derivatives[which], self.flights[which]
         return type(self)(*taken)
 
     @cached_property
     def maps(self) -> NDArray:
-        """Derivatives of each next (τ, u) by τ and u of an impact, shape (rows, k, 2, 2)."""
+        """Derivatives of the next (τ, u) with respect to τ and u, shape (rows, k, 2, 2)."""
         by_impact = self.derivatives[..., :2]
         by_others = self.derivatives[..., 2 : self.derivatives.shape[-2] + 2]
         return -solved_or_nan(by_others, by_impact)[..., -2:, :]
 
     @cached_property
     def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
-        """Trace and determinant of the derivative of the return map, each of the shape (rows,)."""
+        """Trace and determinant of the derivative of the return map, shape (rows,) each."""
         maps = self.maps
-        # Their product has all digits where the determinant of the product of the maps has none.
+        # The product of determinants keeps all digits; the determinant of the product may not.
         determinants = maps[..., 0, 0] * maps[..., 1, 1] - maps[..., 0, 1] * maps[..., 1, 0]
         product = product_of(maps)
         return product[:, 0, 0] + product[:, 1, 1], determinants.prod(axis=-1)
 
 
 class Flights(NamedTuple):
-    """The flights after contacts, of the shape (rows, k): the time of the release, δ and δ′ there,
-    the time to the next impact, Λ, and the waveform of the table."""
+    """Flights after contacts, as arrays of the shape (rows, k).
+
+    Attributes
+    ----------
+    leaves : array
+        Times of the release.
+    gap, speed : array
+        δ and δ′ at the release.
+    flight : array
+        Durations of the flights.
+    amplitude : array
+        Λ.
+    table : Table
+        The waveform.
+    """
 
     leaves: NDArray
     gap: NDArray
@@ -77,13 +105,13 @@ class Flights(NamedTuple):
     table: Table
 
     def at(self, t: NDArray) -> tuple[NDArray, NDArray]:
-        """δ and δ′ at times t since the release, shape (rows, k, times)."""
+        """δ and δ′ when the times t have passed since the release, shape (rows, k, times)."""
         leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self[:5])
         table = self.table.rows(np.s_[..., np.newaxis])
         return flight(t, leaves, gap, speed, amplitude, table)
 
     def bends(self) -> NDArray:
-        """Times at which δ′ is least or greatest, where -w″ = 1, or ends; (rows, k, times)."""
+        """Times of extrema of δ′, where -w″ = 1, or ends of flights; shape (rows, k, times)."""
         phases = self.table.levels(self.amplitude)
         turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
         first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
@@ -104,7 +132,7 @@ def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) ->
 
 
 def _some(values: Any, which: Any) -> Any:
-    """The values of some rows; a number is that of all."""
+    """Select rows of an array; a number is the same for all rows."""
     return values[which] if np.ndim(values) else values
 
 
@@ -114,15 +142,20 @@ class OrbitEquations:
 
     Parameters
     ----------
-    ball, periods, amplitude, table
-        A ball, m, Λ where it is not what changes, and a waveform: by numbers, or by arrays of the
-        shape (rows,).
+    ball : Ball
+        The ball. Its parameters are numbers, or arrays of the shape (rows,).
     impacts : int
-        Their number k.
+        Number k of impacts.
+    periods : int or array, shape (rows,)
+        Number m of periods of the table.
+    amplitude : float or array, shape (rows,)
+        Λ, unless it is one of the parameters that may change.
     along : tuple of Path
-        What may change. Its values are the last entries of z.
+        Parameters that may change. Their values are the last entries of z.
+    table : Table
+        The waveform. Its parameters are numbers, or arrays of the shape (rows,).
     kind : str
-        The kind of special orbits, whose test is one more equation, and "" for all orbits.
+        Kind of special orbits, whose test function is one more equation; "" for ordinary orbits.
     """
 
     ball: Ball
@@ -140,16 +173,16 @@ class OrbitEquations:
 
     @cached_property
     def size(self) -> int:
-        """The number kq of unknowns of all impacts."""
+        """Number kq of unknowns of all impacts."""
         return self.impacts * self.unknowns
 
     @cached_property
     def length(self) -> int:
-        """The number N of entries of a row."""
+        """Number N of entries of a row."""
         return self.size + len(self.along)
 
     def rows(self, which: Any) -> "OrbitEquations":
-        """The equations of some of the rows, by an index, a slice or a mask of them."""
+        """Select the equations of rows by an index, a slice or a mask."""
         return replace(
             self,
             ball=self.ball.rows(which),
@@ -160,35 +193,39 @@ class OrbitEquations:
 
     @cached_property
     def _beside_impacts(self) -> tuple[Ball, NDArray, Table]:
-        """The ball, Λ and the table as columns, beside arrays of the shape (rows, k)."""
+        """Ball, Λ and table as columns, which broadcast with arrays of the shape (rows, k)."""
         beside = np.s_[:, np.newaxis]
         amplitude = np.asarray(self.amplitude, float)[..., np.newaxis]
         return self.ball.rows(beside), amplitude, self.table.rows(beside)
 
     def at(self, values: NDArray) -> tuple[Ball, NDArray, Table]:
-        """The ball, Λ and the table, beside impacts, at values of what changes, (..., p)."""
+        """Ball, Λ and table as columns, at the values (..., p) of the parameters that change."""
         here = self._beside_impacts
         for j, path in enumerate(self.along):
             here = path.apply(values[..., j, np.newaxis], *here)
         return here
 
     def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
-        """One orbit, shape (N,), with its quantities."""
+        """Return the orbit z, shape (N,), with its quantities."""
         return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
-        """The impacts (rows, k, q) of orbits, and beside them their ball, Λ and table."""
+        """Return impacts, shape (rows, k, q), and ball, Λ and table as columns."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
 
     def sizes(self, z: NDArray) -> NDArray:
-        """1 + the largest unknown of the impacts, and 1 + |p| of parameters, shape (rows, N)."""
+        """Sizes of the entries of z, shape (rows, N).
+
+        They are 1 + the largest unknown for all unknowns of the impacts, and 1 + |λ| for a
+        parameter λ.
+        """
         sizes = 1 + np.abs(z)
         sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
         return sizes
 
     def scales(self, z: NDArray) -> NDArray:
-        """Units of the unknowns in which steps are measured, shape (rows, N)."""
+        """Units in which steps of the entries of z are measured, shape (rows, N)."""
         units = np.full(z.shape, np.sqrt(self.impacts))
         x = self.split(z)[0]
         stretch = np.ones(x.shape)
@@ -198,21 +235,24 @@ class OrbitEquations:
         return units
 
     def following(self, x: NDArray) -> NDArray:
-        """For each impact the next one; after the last the first, m periods later."""
+        """Next impacts. After the last impact, it is the first impact m periods later."""
         following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
         following[:, -1, 0] += 2 * np.pi * np.asarray(self.periods)
         return following
 
     @cached_property
     def _steps(self) -> tuple[NDArray, NDArray]:
-        """Complex steps of the unknowns of a leg and of the parameters, one each."""
+        """Complex steps, one for each unknown of a leg and one for each parameter."""
         inner = self.unknowns + 2
         steps = 1j * H * np.eye(inner + len(self.along))
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
     def linearized(self, z: NDArray) -> LinearizedLegs:
-        """The legs, contacts with the flights after them, and their derivatives: the contact ends
-        where its release is zero, and the flight with the gap and the speed of the next impact."""
+        """Legs and their derivatives.
+
+        The equations of a leg require that the release function vanishes when the contact ends. The
+        flight must end with the gap and the speed of the next impact.
+        """
         q = self.unknowns
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps
@@ -222,7 +262,7 @@ class OrbitEquations:
         return LinearizedLegs(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z: NDArray) -> NDArray:
-        """The legs alone, shape (rows, k, q)."""
+        """Legs without derivatives, shape (rows, k, q)."""
         x, ball, amplitude, table = self.split(z)
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
         return self._legs(y, ball, amplitude, table)[0]
@@ -230,7 +270,7 @@ class OrbitEquations:
     def _legs(
         self, y: NDArray, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[NDArray, NDArray]:
-        """Legs and times of flight from y: q unknowns of an impact, then τ and u of the next."""
+        """Legs and durations of flights. y: q unknowns of an impact, then τ and u of the next."""
         q = self.unknowns
         impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude, table=table)
         leaves = y[..., 0] + impact.duration
@@ -245,10 +285,11 @@ class OrbitEquations:
     def bordered(
         self, z: NDArray, linear: LinearizedLegs, normal: NDArray, condition: tuple | None = None
     ) -> NDArray:
-        """The step of Newton's method to the plane through z across a normal, and the tangent with
-        normal · tangent = 1, shape (rows, N, 2); NaN for singular equations.
+        """Step of Newton's method in a plane, and tangent, shape (rows, N, 2).
 
-        Special orbits are points along one parameter, and need no plane.
+        The plane contains z and is perpendicular to ``normal``. The tangent is scaled to normal ·
+        tangent = 1. Both are NaN if the equations are singular. Special orbits with one free
+        parameter are isolated points and need no plane.
         """
         border = normal[:, np.newaxis]
         right = np.zeros((len(z), 1, 2))
@@ -262,23 +303,27 @@ class OrbitEquations:
         return self.solve(linear, border, right)
 
     def solve(self, linear: LinearizedLegs, border: NDArray, right: NDArray) -> NDArray:
-        """The solutions of the linear equations and the border, for -legs and for no legs."""
+        """Solve the linear equations with a border for two right sides, shape (rows, N, 2).
+
+        The right sides of the legs are -legs and 0.
+        """
         legs = np.zeros((*linear.legs.shape, 2))
         legs[..., 0] = -linear.legs
         return solve_bordered(linear.derivatives, legs, border, right)
 
     def excess(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
-        """What is zero at special orbits of the kind, shape (rows,): see :meth:`condition`."""
+        """Function that vanishes at special orbits of the kind, shape (rows,): see `condition`."""
         if self.kind not in MULTIPLIERS:
             return KINDS[self.kind].test(self, z, linear)
         trace, determinant = linear.trace_and_determinant
         return 1 - MULTIPLIERS[self.kind] * trace + determinant
 
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        """The equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
+        """Equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
 
-        For a multiplier μ it is χ = 1 - μ tr + det = 0, and the gradient is that of χ ∏ρ with the
-        rates ρ of the release functions, which has no poles (docs/orbits.md).
+        For a multiplier μ the equation is χ = 1 - μ tr + det = 0. Its gradient is computed from
+        differences of χ ∏ρ and ∏ρ, with the rates ρ of the release functions. Unlike χ, these
+        products have no poles (docs/orbits.md).
         """
         rows, length = z.shape
         nodes, weights, step = CURVE if len(self.along) > 1 else POINT
@@ -307,11 +352,13 @@ class OrbitEquations:
         "lost release",
         "period halving",
     )
-    """The kinds of special orbits that a march watches: they cost little, or end a curve."""
+    """Kinds of special orbits that a march watches: their tests are cheap, or they end a curve."""
 
     def tests(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
-        """What is zero at the special orbits that a march watches, shape (rows, tests); 1 for those
-        of the kind of a curve."""
+        """Test functions, shape (rows, tests). They vanish at special orbits of `kinds`.
+
+        The test of the kind of the equations is 1, because it vanishes everywhere on a curve.
+        """
         columns = [
             np.ones(len(z)) if name == self.kind else KINDS[name].test(self, z, linear)
             for name in self.kinds
@@ -319,24 +366,24 @@ class OrbitEquations:
         return np.stack(columns, axis=1)
 
     def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        """The equations, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
+        """Residuals, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
         linear = self.linearized(z)
         legs = linear.legs.reshape(len(z), self.size)
         return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
 
     def turn(self, linear: LinearizedLegs) -> NDArray:
-        """tr/(1 + det): 1 where a multiplier is 1, -1 where one is -1, between them if stable."""
+        """tr/(1 + det): 1 if a multiplier is 1, -1 if a multiplier is -1, in between if stable."""
         trace, determinant = linear.trace_and_determinant
         return trace / (1 + determinant)
 
     def stable(self, linear: LinearizedLegs) -> NDArray:
-        """Whether no neighbouring motion leaves the orbits, shape (rows,)."""
+        """Whether neighbouring motions stay near the orbits, shape (rows,)."""
         trace, determinant = linear.trace_and_determinant
-        # The determinant of an elastic ball is 1 up to rounding.
+        # The determinant of an elastic ball is 1 within rounding.
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
 
     def ends(self, z: NDArray) -> Flights:
-        """The ends of the contacts and the flights after them."""
+        """Ends of the contacts, and the flights after them."""
         x, ball, amplitude, table = self.split(z)
         impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude, table=table)
         leaves = x[..., 0] + impact.duration
@@ -345,9 +392,12 @@ class OrbitEquations:
         return Flights(leaves, impact.gap, impact.speed, time, amplitude, table)
 
     def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
-        """How far balls are above the table where flights turn back from it: the least of all."""
+        """Smallest local minimum of the gap in all flights, shape (rows,); at most `FAR`.
+
+        A local minimum is a point at which the ball turns back from the table.
+        """
         flights = flights or self.ends(z)
-        # Between these times δ′ is monotonic, so that short dips after a slow start are found, too.
+        # δ′ is monotonic between these times, so even short dips after a slow start are found.
         bends = flights.bends()
         return turns_back(
             lambda t: flights.at(t)[1],
@@ -358,7 +408,10 @@ class OrbitEquations:
         ).min(axis=-1)
 
     def contact_clearance(self, z: NDArray) -> NDArray:
-        """How far release functions are below zero where they turn back: the least of all."""
+        """Smallest distance of a local maximum of the release function below zero, shape (rows,).
+
+        All contacts are searched. The distance is at most `FAR`, also for instantaneous impacts.
+        """
         if not self.ball.has_duration:
             return np.full(len(z), FAR)
         x, ball, amplitude, table = self.split(z)
@@ -375,8 +428,10 @@ class OrbitEquations:
         ).min(axis=-1)
 
     def max_height(self, z: NDArray) -> NDArray:
-        """The greatest height of the ball, shape (rows,): in a flight, or in a compliant contact in
-        which the table lifts it higher than it flies."""
+        """Maximum height of the ball in flights and contacts, shape (rows,).
+
+        On a compliant contact the table may lift the ball higher than it flies.
+        """
         leaves, gap, speed, time, amplitude, table = self.ends(z)
         bounce = speed + amplitude * table(leaves, 1)
         rise = np.clip(bounce, 0, time)
@@ -405,7 +460,7 @@ class OrbitEquations:
         return np.maximum(height, -lifted.min(axis=-1))
 
     def _during(self, z: NDArray) -> Callable[[NDArray], Impact]:
-        """The contacts of orbits as a function of T, shape (rows, k, times)."""
+        """Return a function that maps T, shape (rows, k, times), to the states of the contacts."""
         x, ball, amplitude, table = self.split(z)
         beside = ball.rows(np.s_[..., np.newaxis])
         table = table.rows(np.s_[..., np.newaxis])
@@ -414,15 +469,19 @@ class OrbitEquations:
         return lambda t: beside.contact(*given, t, amplitude, table=table)
 
     def least_speed(self, z: NDArray) -> NDArray:
-        """The closing speed next to zero, negative if an odd number of impacts have u < 0."""
+        """Minimum of |u|, shape (rows,), with the sign of the product of all u."""
         speeds = self.split(z)[0][..., 1]
         return np.abs(speeds).min(axis=-1) * np.sign(speeds).prod(axis=-1)
 
     def least_release(
         self, linear: LinearizedLegs | None, z: NDArray, flights: Flights | None = None
     ) -> NDArray:
-        """How well balls leave after impacts, the least of all: the rate of the release, δ′ of an
-        instant, which needs no derivatives, or the summit after one below the table."""
+        """Test function of a lost release, shape (rows,): the minimum over all impacts.
+
+        1. For contacts it is the rate of the release function.
+        2. For instantaneous impacts on the table it is δ′, which needs no derivatives.
+        3. For instantaneous impacts below the table it is the first maximum of the gap.
+        """
         if self.ball.has_duration:
             linear = self.linearized(z) if linear is None else linear
             return linear.derivatives[..., 0, 2].min(axis=-1)
@@ -435,7 +494,10 @@ class OrbitEquations:
         return -depth.max(axis=-1)
 
     def halves(self, z: NDArray) -> NDArray:
-        """Differences of the impacts half an orbit apart, shape (rows, kq/2); 1 without halves."""
+        """Differences between both halves of an orbit, shape (rows, kq/2); zero if they are equal.
+
+        The result is 1 if k or m is odd; for odd k it has the shape (rows, 1).
+        """
         if self.impacts % 2:
             return np.ones((len(z), 1))
         x = self.split(z)[0]
@@ -446,13 +508,13 @@ class OrbitEquations:
         return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
 
     def halved(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
-        """The equations of half the period, and the mean of the halves of orbits."""
+        """Return equations of half the period, and the means of both halves of orbits."""
         half = replace(self, impacts=self.impacts // 2, periods=np.asarray(self.periods) // 2)
         mean = z[:, : half.size] - self.halves(z) / 2
         return half, np.concatenate([mean, z[:, self.size :]], axis=1)
 
     def doubled(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
-        """The equations of twice the period, and orbits taken twice."""
+        """Return equations of twice the period, and the orbits repeated twice."""
         twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
         return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
 
@@ -463,12 +525,15 @@ class OrbitEquations:
         return z
 
     def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
-        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
+        """Whether a ball follows each orbit, shape (rows,).
+
+        It does if each contact ends at its first release, and each flight at its first impact.
+        """
         x, ball, *_ = self.split(z)
         ends = self.ends(z)
         landing = (x[..., 1] > 0) | (np.broadcast_to(ball.kappa, x.shape[:2]) > 0)
         release = self.least_release(linear, z, ends)
-        # A ball without speed leaves the table if this falls faster than the ball: δ″ > 0.
+        # A ball without speed leaves the table if the table falls faster than the ball: δ″ > 0.
         falls = (ends.amplitude * ends.table(ends.leaves, 2) < -1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
@@ -477,10 +542,13 @@ class OrbitEquations:
 
 
 def _derivative(function: Callable, t: NDArray) -> NDArray:
-    """The derivative of an analytic function, also at complex steps, whose derivatives it has."""
+    """Derivative of an analytic function.
+
+    If t has a complex step, the derivative of the result with respect to t is right, too.
+    """
     if not np.iscomplexobj(t):
         return function(t + 1j * H).imag / H
-    # Two derivatives: a difference of complex steps serves Newton's method.
+    # A difference of complex steps gives the second derivative well enough for Newton's method.
     step = 1e-6
     slopes = [function(t.real + shift + 1j * H).imag / H for shift in (-step, 0.0, step)]
     return slopes[1] + 1j * H * (slopes[2] - slopes[0]) / (2 * step)
@@ -489,19 +557,22 @@ def _derivative(function: Callable, t: NDArray) -> NDArray:
 def flight(
     s: Any, leaves: Any, gap: Any, speed: Any, amplitude: Any, table: Table = SINE
 ) -> tuple[Any, Any]:
-    """δ and δ′ a time s after a ball left at the time `leaves` with δ′ = speed: δ″ = -1 - w″."""
+    """δ and δ′ in a flight, δ″ = -1 - w″, when a time s has passed since the release.
+
+    The release is at the time `leaves` with δ = gap and δ′ = speed.
+    """
     height, gained = table.rise(leaves, s)
     bounce = speed + amplitude * table(leaves, 1)
     return gap + (bounce - s / 2) * s - amplitude * height, speed - s - amplitude * gained
 
 
 def _longest(times: NDArray) -> float:
-    """The greatest of times, at least 0; NaN, of a ball that does not leave the table, is none."""
+    """Maximum of times and 0. NaN, of balls that stay on the table, is ignored."""
     return np.fmax.reduce(times, axis=None, initial=0.0)
 
 
 def samples_in(ends: NDArray, waves: int = 1) -> NDArray:
-    """Places on [0, 1] at which :func:`turns_back` takes samples."""
+    """Fractions of the time, from 0 to 1, at which :func:`turns_back` takes samples."""
     return np.linspace(0, 1, int(np.clip(32 * waves * _longest(ends) / (2 * np.pi), 32, 2000)) + 1)
 
 
@@ -515,12 +586,26 @@ def turns_back(
     waves: int = 1,
     slopes: NDArray | None = None,
 ) -> NDArray:
-    """Return the smallest local minimum of functions of the time in (0, ends), or the first one.
+    """Return the smallest local minimum of functions of the time in (0, ends), at most `FAR`.
 
-    The minimum is at most FAR, and FAR if there is none. The slope is an analytic positive multiple
-    of the derivative. It is sampled at 32 times in each wave of a table, and also at the times
-    ``among``, shape (..., m). ``slopes`` are the slopes at the samples, if they are known within
-    small errors.
+    It is `FAR` if there is no local minimum.
+
+    Parameters
+    ----------
+    slope : callable
+        Derivative of the function, or an analytic positive multiple of it.
+    value : callable
+        The function.
+    ends : array
+        Ends of the intervals.
+    first : bool
+        Whether to return the first local minimum instead of the smallest.
+    among : array, shape (..., m), optional
+        Additional times at which the slope is sampled.
+    waves : int
+        Number of waves in a period of the table. Each wave has 32 samples.
+    slopes : array, optional
+        Slopes at the samples, if they are already known within small errors.
     """
     times = ends[..., np.newaxis] * samples_in(ends, waves)
     if among is not None:
@@ -544,11 +629,14 @@ def turns_back(
 
 
 class OrbitNotFound(ValueError):
-    """There is no such orbit, or it is not found: one line with what was looked for, and why."""
+    """Raised or returned if an orbit does not exist or is not found.
+
+    The message is one line: what was searched for, and why it is missing.
+    """
 
 
 def alone(found: Any) -> Any:
-    """What was found for a single ball or orbit; the reason is raised if there is nothing."""
+    """Return the result for a single ball or orbit, or raise it if it is an OrbitNotFound."""
     if isinstance(found, OrbitNotFound):
         raise found
     return found
@@ -556,11 +644,20 @@ def alone(found: Any) -> Any:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class PeriodicOrbit:
-    """A periodic orbit: its equations, their solution z, shape (N,), and the kind of a special one.
+    """Periodic orbit.
 
     Quantities of the impacts are floats for one impact, and arrays of the shape (impacts,)
-    otherwise. Velocities are absolute unless their names say relative, in units of g/Ω; times are
-    in units of 1/Ω, heights in units of g/Ω².
+    otherwise. Velocities are in units of g/Ω, times in units of 1/Ω, and heights in units of g/Ω².
+    Velocities are absolute unless their names start with ``relative``.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+        Equations of the orbit.
+    z : ndarray, shape (N,)
+        Solution of the equations.
+    kind : str
+        Kind of a special orbit; "" for an ordinary orbit.
     """
 
     equations: OrbitEquations
@@ -580,7 +677,7 @@ class PeriodicOrbit:
             "bounce_velocity": self.bounce_velocity,
             "apparent_restitution": self.apparent_restitution,
             "max_height": self.max_height,
-            # A special orbit is between both, and rounding would decide.
+            # A special orbit is between stable and unstable orbits: rounding errors would decide.
             **({} if self.kind else {"stable": self.stable}),
             "admissible": self.admissible,
         }
@@ -594,17 +691,17 @@ class PeriodicOrbit:
 
     @property
     def _further(self) -> dict:
-        """What orbits of a kind of their own have besides."""
+        """Additional rows of the text, from subclasses."""
         return {}
 
     @property
     def impacts(self) -> int:
-        """Their number k in one period of the orbit."""
+        """Number k of impacts in one period of the orbit."""
         return self.equations.impacts
 
     @property
     def periods(self) -> int:
-        """The number m of periods of the table in one period of the orbit."""
+        """Number m of periods of the table in one period of the orbit."""
         return int(self.equations.periods)
 
     @cached_property
@@ -617,22 +714,22 @@ class PeriodicOrbit:
 
     @property
     def ball(self) -> Ball:
-        """The ball with the parameters of this orbit."""
+        """Ball with the parameters of this orbit."""
         return self._changed[0]
 
     @property
     def amplitude(self) -> float:
-        """Λ."""
+        """Amplitude Λ of the table."""
         return self._changed[1]
 
     @property
     def table(self) -> Table:
-        """The waveform of the table."""
+        """Waveform of the table."""
         return self._changed[2]
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Λ, the parameters of ball and table, and the variables of the paths of the orbit."""
+        """Λ, the parameters of ball and table, and those that may change, such as Ω/√(g/a)."""
         values = {"amplitude": self.amplitude, **self.ball.parameters, **self.table.parameters}
         names = [path.name for path in self.equations.along]
         values |= dict(zip(names, self.z[self.equations.size :], strict=True))
@@ -643,7 +740,7 @@ class PeriodicOrbit:
         return self.equations.split(self.z[np.newaxis])[0][0]
 
     def on(self, *paths: Path) -> tuple[OrbitEquations, NDArray]:
-        """The equations along paths, and its row; ValueError if the orbit is not on a path."""
+        """Return the equations with ``paths`` as the parameters that may change, and the row z."""
         here = self.ball, self.amplitude, self.table
         equations = replace(
             self.equations, ball=here[0], amplitude=here[1], table=here[2], along=paths
@@ -657,7 +754,7 @@ class PeriodicOrbit:
 
     @cached_property
     def _release(self) -> tuple[NDArray, NDArray]:
-        """When the ball leaves the table after its impacts, and δ′ then."""
+        """Times at which the ball leaves the table, and δ′ there, shape (impacts,) each."""
         return self._ends.leaves[0], self._ends.speed[0]
 
     @cached_property
@@ -665,17 +762,17 @@ class PeriodicOrbit:
         return self.equations.linearized(self.z[np.newaxis])
 
     def _each(self, values: NDArray) -> float | NDArray:
-        """A float for one impact, an array for several."""
+        """Return a float for one impact, and an array for several."""
         return float(values[0]) if self.impacts == 1 else values
 
     @property
     def times(self) -> NDArray:
-        """The times of the impacts, shape (impacts,)."""
+        """Times of the impacts, shape (impacts,)."""
         return self._impacts[:, 0]
 
     @property
     def speeds(self) -> NDArray:
-        """The closing speeds u = -δ′ of the impacts, shape (impacts,)."""
+        """Closing speeds u = -δ′ of the impacts, shape (impacts,)."""
         return self._impacts[:, 1]
 
     @property
@@ -685,7 +782,7 @@ class PeriodicOrbit:
 
     @property
     def phase(self) -> float | NDArray:
-        """Phase of the table as an impact starts, in (-π, π]."""
+        """Phase of the table at the start of the impact, in (-π, π]."""
         return self._each(np.pi - (np.pi - self.times) % (2 * np.pi))
 
     @property
@@ -705,38 +802,41 @@ class PeriodicOrbit:
 
     @property
     def relative_impact_velocity(self) -> float | NDArray:
-        """δ′ as an impact starts, negative but where a contact resumes."""
+        """δ′ at the start of the impact: negative, or positive if a contact resumes."""
         return self._each(-self.speeds)
 
     @property
     def relative_bounce_velocity(self) -> float | NDArray:
-        """δ′ as the contact ends."""
+        """δ′ at the end of the contact."""
         return self._each(self._release[1])
 
     @property
     def impact_velocity(self) -> float | NDArray:
-        """Absolute velocity of the ball as an impact starts, in units of g/Ω."""
+        """Absolute velocity of the ball at the start of the impact, in units of g/Ω."""
         return self._each(self.amplitude * self.table(self.times, 1) - self.speeds)
 
     @property
     def bounce_velocity(self) -> float | NDArray:
-        """Velocity of the ball as the contact ends."""
+        """Absolute velocity of the ball at the end of the contact, in units of g/Ω."""
         leaves, speed = self._release
         return self._each(self.amplitude * self.table(leaves, 1) + speed)
 
     @property
     def apparent_restitution(self) -> float | NDArray:
-        """r_a = -δ′_b/δ′_i (Eq. 17)."""
+        """r_a = -δ′_b/δ′_i (Eq. 17).
+
+        δ′_b is `relative_bounce_velocity` and δ′_i is `relative_impact_velocity`.
+        """
         return self._each(self._release[1] / self.speeds)
 
     @cached_property
     def max_height(self) -> float:
-        """The greatest height of the ball, in a flight or in a contact."""
+        """Maximum height of the ball in flights and contacts."""
         return float(self.equations.max_height(self.z[np.newaxis])[0])
 
     @property
     def monodromy(self) -> NDArray:
-        """Derivative of the return map in (τ, δ′) as the first impact starts, shape (2, 2)."""
+        """Derivative of the return map of (τ, δ′) at the first impact, shape (2, 2)."""
         signs = np.diag([1.0, -1.0])
         return signs @ product_of(self._linear.maps)[0] @ signs
 
@@ -748,7 +848,7 @@ class PeriodicOrbit:
 
     @property
     def multipliers(self) -> NDArray:
-        """The two Floquet multipliers, complex, that of the larger modulus first."""
+        """Complex Floquet multipliers, shape (2,), in order of decreasing modulus."""
         trace, determinant = self.trace_and_determinant
         root = np.sqrt(complex(trace**2 / 4 - determinant))
         larger = trace / 2 - root if trace < 0 else trace / 2 + root
@@ -756,43 +856,52 @@ class PeriodicOrbit:
 
     @property
     def turn(self) -> float:
-        """tr/(1 + det): 1 at a saddle-node, -1 at a doubling; it may be infinite at a grazing."""
+        """tr/(1 + det): 1 at a saddle-node, -1 at a doubling. It may be infinite at a grazing."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(self.equations.turn(self._linear)[0])
 
     @property
     def stable(self) -> bool:
-        """Whether no neighbouring motion leaves; those of an elastic ball stay near."""
+        """Whether neighbouring motions stay near the orbit.
+
+        They converge to the orbit, except if the ball is elastic.
+        """
         return bool(self.equations.stable(self._linear)[0])
 
     @cached_property
     def admissible(self) -> bool:
-        """Whether a ball follows the orbit: nothing else happens in its contacts and flights."""
+        """Whether a ball follows the orbit.
+
+        It does if each contact ends at its first release, and each flight at its first impact.
+        """
         return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
 
     @property
     def defect(self) -> float:
-        """The largest residual of the equations."""
+        """Largest modulus of the residuals of the equations."""
         return float(np.abs(self._linear.legs).max())
 
     @cached_property
     def digits_left(self) -> float:
-        """How many decimal places of the times and speeds of the impacts are certain.
+        """Number of decimal places of the times and speeds of the impacts that are certain.
 
-        The rounding errors of the numbers z and of the terms of the equations, eps |J| |z|, move
-        the solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
+        Rounding errors of z and of the terms of the equations are eps |J| |z|, with the Jacobian J.
+        They move the solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
         """
         _, jacobian = self.equations.residuals(self.z[np.newaxis])
         size = self.equations.size
-        # A phase is known no better than the time from which it is computed.
+        # The error of a phase is the error of the time from which it is computed.
         z = np.abs(self.z)
         rounding = np.finfo(float).eps * np.abs(jacobian[0]) @ z
         error = np.abs(np.linalg.pinv(jacobian[0, :, :size])) @ rounding
         return float(-np.log10(error.max()))
 
     def distance(self, other: "PeriodicOrbit") -> float:
-        """The largest difference of phases, speeds and T of two orbits, from whichever impact one
-        starts; infinite for other numbers of impacts or periods."""
+        """Largest difference of the phases, speeds and T of two orbits.
+
+        It is the minimum over all choices of the first impact. It is infinite if the numbers of
+        impacts or periods differ.
+        """
         if (self.impacts, self.periods) != (other.impacts, other.periods):
             return np.inf
         shifts = [np.roll(other._impacts, j, axis=0) - self._impacts for j in range(self.impacts)]
@@ -802,7 +911,7 @@ class PeriodicOrbit:
 
 
 def _short(value: Any) -> str:
-    """A value of a quantity with six digits."""
+    """Text of a value with six digits; at most four entries of an array."""
     if isinstance(value, np.ndarray):
         text = " ".join(f"{each:.6g}" for each in value[:4])
         return f"[{text}{' …' if len(value) > 4 else ''}]"
@@ -810,8 +919,15 @@ def _short(value: Any) -> str:
 
 
 class Kind(NamedTuple):
-    """A kind of special orbit: what is zero there, a function of equations, orbits and their
-    derivatives, and why branches end there, empty if they go on."""
+    """Kind of special orbit.
+
+    Attributes
+    ----------
+    test : callable
+        Test function ``test(equations, z, linear)``, which vanishes at special orbits of the kind.
+    end : str
+        Reason why branches end there; "" if they continue.
+    """
 
     test: Callable[[Any, NDArray, Any], NDArray]
     end: str = ""
@@ -847,16 +963,18 @@ KINDS = {
         "the table no longer falls faster than a ball",
     ),
 }
-"""The kinds of special orbits of a branch, by name."""
+"""Kinds of special orbits of a branch, by name."""
 
 
 OF_RESTS = ("end of a rest", "lost lift-off")
-"""Those of orbits with a rest."""
+"""Kinds of special orbits of orbits with a rest."""
 
 
 SINGULAR = slice(2, 5)
-"""Those tests of `OrbitEquations.kinds` at which multipliers have poles or jump: beyond them
-there are no orbits."""
+"""Indices into `OrbitEquations.kinds` of the kinds at which multipliers jump or have poles.
+
+There are no orbits beyond them.
+"""
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}
-"""The multiplier that a kind of special orbit has."""
+"""Multiplier at special orbits, by kind."""

@@ -1,7 +1,8 @@
-"""How far the restitution model is from a contact: by a law in closed form, and exactly.
+"""Errors of the restitution model: by the error law in closed form, and exactly.
 
-The error of a quantity q is (q_contact - q)/q, relative to the restitution model (Eqs. 37, 38).
-The law, its symbols and how good it is are in docs/error-law.md, the proof in appendix.md.
+The error of a quantity q is (q_contact - q)/q, where q is its value in the restitution model
+(Eqs. 37, 38). docs/error-law.md has the law, its symbols and its accuracy; appendix.md has the
+proof.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,20 +29,37 @@ QUANTITIES = (
     "saddle_node",
     "period_doubling",
 )
-"""Those of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
+"""Quantities of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
 
 POINTS = chebyshev.chebpts2(13)
 ROUNDS = 12
-"""Where the logarithm of an error is sampled in a bracket, and how often its intervals are."""
+"""Samples of the logarithm of an error in a bracket, and maximum number of its subdivisions."""
 SMALL = 1e-11
-"""Last coefficients of a polynomial that is exact but for rounding, 1e-14 of an error of 1e-2."""
+"""Last coefficients below which a polynomial is exact within rounding.
+
+An error of 1e-2 has rounding errors of 1e-14.
+"""
 
 
 class FreeImpact(NamedTuple):
-    """The free impact with the closing speed v₀ of n-T orbits: its signature and derivatives.
+    """Free impact with the closing speed v₀ of n-T orbits: its signature and derivatives.
 
-    ``slope`` and ``curvature`` are those of rv over v, ``centroid_slope`` is d(v t_c)/dv, and
-    ``load_slope`` dσ/dv: numbers, or arrays of the shape of the ball's parameters.
+    Attributes
+    ----------
+    n : array
+        Number of periods of the table in one period of the orbit.
+    speed : array
+        v₀, the root of (1 + r(v)) v = 2nπ. All other quantities belong to this speed.
+    restitution, duration, centroid : array
+        r, D and t_c.
+    slope, curvature : array
+        First and second derivative of r(v) v with respect to v; ``slope`` is called b.
+    centroid_slope : array
+        d(v t_c)/dv.
+    load : array
+        σ.
+    load_slope : array
+        dσ/dv.
     """
 
     n: NDArray
@@ -56,46 +74,51 @@ class FreeImpact(NamedTuple):
     load_slope: NDArray
 
     def stretched(self, factor: ArrayLike) -> "FreeImpact":
-        """The impact on the contact with the force f(p/γ, p′)/γ, which lasts γ times as long with
-        the same r: for a spring and damper that with ϖ/γ."""
+        """Return the impact on the contact stretched by γ, with the force f(p/γ, p′)/γ.
+
+        It lasts γ times as long and has the same r. For a spring and a damper ϖ becomes ϖ/γ.
+        """
         names = ("duration", "centroid", "centroid_slope", "load", "load_slope")
         return self._replace(**{name: factor * getattr(self, name) for name in names})
 
     @property
     def half(self) -> NDArray:
-        """nπ, the velocity of the ball before and after the instant of an orbit."""
+        """nπ, the modulus of the velocity of the ball just before and after the instant."""
         return self.n * np.pi
 
     @property
     def line(self) -> NDArray:
-        """C, the Λ cos ψ of the orbits of the restitution model, and the Λ of its saddle-node."""
+        """C = v₀ - nπ, the velocity w′ of the table at the impacts of the restitution model.
+
+        On a sine it is also the Λ of the saddle-node of this model.
+        """
         return self.speed - self.half
 
     @property
     def shift(self) -> NDArray:
-        """s = σ/(1 + b), by which the line of the orbits on the contact lies nearer."""
+        """s = σ/(1 + b). On the contact C - s replaces C."""
         return self.load / (1 + self.slope)
 
     @property
     def doubling(self) -> NDArray:
-        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the Λ sin ψ at which the restitution model doubles."""
+        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the -w″ at which the restitution model doubles."""
         return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 
 def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
-    """Compute the free impact of a ball whose closing speed v solves (1 + r(v)) v = 2nπ."""
+    """Compute the free impact of a ball with the closing speed v₀, where (1 + r(v)) v = 2nπ."""
     if np.any(np.asarray(n) < 1):
         raise ValueError(f"n = {n!r}: must be a whole number from 1")
     half = np.pi * np.asarray(n)
     speed = 1.5 * half
     step = speed
-    # The error of Newton's method after a step is of the order of the square of the step.
+    # After a step of Newton's method the error is of the order of the square of the step.
     while np.any(np.abs(step) > 1e-8 * speed):
         at = speed + 1j * H
         signature = ball.signature(at)
         bounced = signature.restitution * at
         step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
-        # Because r is between 0 and 1. The durations have the shape of all parameters.
+        # nπ ≤ v ≤ 2nπ, because 0 ≤ r ≤ 1. The duration broadcasts to the shape of all parameters.
         speed = np.clip(speed - step, half, 2 * half) + 0 * np.real(signature.duration)
     aside = 1e-4 * speed
     at = np.stack([speed - aside, speed, speed + aside]) + 1j * H
@@ -117,18 +140,20 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 
 
 def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
-    """Λ, but C/max W′ where it is below it by rounding, so that C ≤ Λ max W′ at the saddle-node of
-    the restitution model itself."""
+    """Return Λ, raised to the saddle-node C/max W′ if it is less only by rounding errors.
+
+    The saddle-node of the restitution model itself then satisfies C ≤ Λ max W′.
+    """
     amplitude = np.asarray(amplitude, float)
     node = impact.line / table.slope
-    # C is a difference of numbers of the size of the speed, which is known to some roundings.
+    # C is a difference of numbers as large as the speed, so it has rounding errors of this size.
     rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
     below = (amplitude < node) & (node - amplitude <= rounding)
     return np.where(below, node, amplitude)
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
-    """The six quantities of the restitution model in closed form (Eqs. 6, 7 and R1)."""
+    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R1)."""
     amplitude = off_rounding(impact, amplitude, table)
     phase, lift, _, _ = table.instant(impact.line, amplitude)
     anywhere = 0 * (impact.line + amplitude)
@@ -147,19 +172,27 @@ def law_errors(
 ) -> dict:
     """Compute the signed relative errors of the restitution model by the error law.
 
-    They are right to the second order in the duration, and next to the saddle-node to the order
-    3/2; NaN where a model has no orbit. At the saddle-node of the restitution model itself the
-    phase is 0, and its relative error infinite. Above the period doubling, whose Λ is in
-    ``contact_values(Rigid(r), …)``, they are the errors of orbits that are unstable.
+    The law is right to the second order in the duration, and to the order 3/2 next to the
+    saddle-node.
 
     Parameters
     ----------
-    impact
+    impact : Ball or FreeImpact
         A ball, or its :func:`free_impact` for this n.
-    amplitude
-        Λ, a number or an array that broadcasts with the parameters of the ball.
-    table
-        The waveform; the orbits are those after the phase at which it rises fastest.
+    amplitude : array_like
+        Λ, which broadcasts with the parameters of the ball.
+    n : int
+        Number of periods of the table in one period of the orbit.
+    table : Table
+        The waveform. The impacts of the orbits follow the phase at which it rises fastest.
+
+    Returns
+    -------
+    dict
+        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. The error
+        of the phase is infinite at the saddle-node of the restitution model, because the phase is
+        0 there. Above the period doubling they are the errors of unstable orbits;
+        ``contact_values(Rigid(r), …)`` gives its Λ.
 
     Examples
     --------
@@ -172,7 +205,7 @@ def law_errors(
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     amplitude = off_rounding(impact, amplitude, table)
     reference = restitution_values(impact, amplitude, table)
-    # NaN below the saddle-node.
+    # r is NaN below the saddle-node.
     r = reference["apparent_restitution"]
     delay = impact.centroid
     shift = impact.shift
@@ -195,7 +228,7 @@ def law_errors(
 
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
-    """The shifts of the period doubling to first order: of w′, -w″, Λ (relative) and the phase."""
+    """Shifts of the period doubling to first order: of w′, -w″, Λ (relative) and the phase."""
     amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
     jolt = -amplitude * table(phase, 3)
     b = impact.slope
@@ -218,9 +251,10 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
 def law_coefficients(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """The coefficients K of the errors Kγ of a contact stretched by γ, far above the saddle-node.
+    """Coefficients K of the errors Kγ of a contact stretched by γ, far above the saddle-node.
 
-    The K of K/ϖ are those with ϖ = 1. At the saddle-node those of height and phase are infinite.
+    A ball with ϖ = 1 gives the coefficients of K/ϖ. At the saddle-node the coefficients of height
+    and phase are infinite. Parameters are as in :func:`law_errors`.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
@@ -230,11 +264,12 @@ def law_coefficients(
 def law_remainders(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """Estimates of what the error law leaves of the six errors, at most.
+    """Estimate upper limits of the remainders of the error law: exact error minus law.
 
-    They are Sη with η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀) and a scale S of the moduli
-    of the terms of the law; those of the period doubling are at its own Λ and Y_D. The theorem has
-    the order in D; the factor 1 is fitted to random orbits and tables (docs/error-law.md).
+    A remainder is estimated as Sη. S is a scale from the moduli of the terms of the law, and
+    η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ and Y₀ are its Λ
+    and Y_D. The theorem gives the order in D. The factor 1 is fitted to random orbits and tables
+    (docs/error-law.md). Parameters are as in :func:`law_errors`.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     amplitude = off_rounding(impact, amplitude, table)
@@ -279,19 +314,28 @@ def law_thresholds(
 ) -> dict:
     """Compute the ϖ above which the restitution model is within a tolerance, by the error law.
 
-    By the names in :data:`QUANTITIES` it is |K|/ε, but for the height and for the phase, which feel
-    the saddle-node in the first order (Eq. R7 of the article).
+    It is |K|/ε, except for the height and the phase, which the saddle-node changes in the first
+    order (Eq. R7 of the article).
 
     Parameters
     ----------
-    contacts
-        A spring and a damper, whose ϖ is disregarded; or a contact law that has units, with
-        π/(D + κ) of the free impact in place of ϖ, κ = -δ/δ′ at its end; or a function from a
-        number in the place of ϖ to the ball, with a duration in proportion to its inverse.
-    amplitude, table
+    contacts : SpringDamper, ForceLaw or callable
+        One of
+
+        1. a spring and a damper, whose ϖ is ignored;
+        2. a contact law with units, for which π/(D + κ) of the free impact replaces ϖ, with
+           κ = -δ/δ′ at its end;
+        3. a function that maps a number, which replaces ϖ, to the ball. The duration of a free
+           impact must be inversely proportional to this number.
+    amplitude, n, table
         As in :func:`law_errors`.
-    tolerance
+    tolerance : float
         Largest modulus ε of the relative error.
+
+    Returns
+    -------
+    dict
+        ϖ by the names in :data:`QUANTITIES`.
 
     Examples
     --------
@@ -313,14 +357,15 @@ def law_thresholds(
 def _first_stretch(
     impact: FreeImpact, amplitude: NDArray, tolerance: float, name: str, table: Table
 ) -> NDArray:
-    """The stretch γ at which an error first leaves the tolerance, by samples in between."""
+    """Smallest stretch γ at which an error leaves the tolerance, bracketed by samples."""
     shift = impact.shift
-    # The law has orbits as long as |C - s| is below Λ. A contact of 4π is out of its range.
+    # The law has orbits if |C - s| is below Λ max W′. It does not apply to contacts as long as 4π.
     end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
     end = np.fmin(end, 4 * np.pi / impact.duration)
     if table.is_sine:
-        # The error is concave, and largest where Y₁ rises as fast as the depth of the instant, or
-        # ψ₁ falls as fast as it is late: at these values of C - s.
+        # The error is concave. The error of the height is largest if Y₁ rises as fast as the depth
+        # of the instant. The error of the phase is largest if ψ₁ falls as fast as the delay grows.
+        # `turns` has the values of C - s there.
         deeper = shift * impact.line + impact.speed * impact.centroid
         share = shift / (shift + impact.centroid)
         turns = {
@@ -351,7 +396,7 @@ def _first_stretch(
 
 @np.errstate(invalid="ignore", divide="ignore")
 def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
-    """Where functions fall to zero for the last time in brackets, before which they may be NaN."""
+    """Last points in brackets at which functions fall to zero. They may be NaN before."""
     low, high = bracket
     columns = np.arange(low.size)
     for _ in range(ROUNDS):
@@ -379,14 +424,15 @@ def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
 def ball_at_ratio(
     contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
 ) -> Callable:
-    """The function from ϖ, or from the number in its place, to the ball."""
+    """Return a function that maps ϖ, or the number that replaces it, to the ball."""
     checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
     if isinstance(contacts, Ball):
         impact = free_impact(contacts, n)
         return contacts.at_ratio(impact.restitution, impact.centroid)
     if not callable(contacts):
         raise ValueError(
-            f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw or a function to one"
+            f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw, or a function that"
+            " returns one of them"
         )
     return contacts
 
@@ -399,22 +445,29 @@ def contact_values(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Compute quantities of the n-T orbit of a ball and of its bifurcations, as arrays by name.
+    """Compute quantities of the n-T orbit of a ball, and the Λ of its bifurcations.
 
-    They are NaN without an orbit on the stable side of the saddle-node, whether or not a ball
-    follows it. For a corrected ball, phase, velocity and apparent restitution are those of a
-    contact from t_c before its instant to D - t_c after it.
+    The orbit is on the stable side of the saddle-node. It need not be admissible.
 
     Parameters
     ----------
-    ball, amplitude, n, table
-        As in :func:`law_errors`; parameters and numbers broadcast.
-    quantities
+    ball : Ball
+        The ball.
+    amplitude, n, table
+        As in :func:`law_errors`. ``amplitude`` and ``n`` broadcast with the parameters of the ball.
+    quantities : sequence of str
         Names from :data:`QUANTITIES`.
+
+    Returns
+    -------
+    dict of arrays
+        Values by name, NaN if there is no orbit. A corrected ball has the phase, velocity and
+        apparent restitution of a contact that starts t_c before the instant and ends D - t_c after
+        it.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
         allowed = ", ".join(QUANTITIES)
-        raise ValueError(f"quantities = {quantities!r}: must be a list of names out of {allowed}")
+        raise ValueError(f"quantities = {quantities!r}: must be a list of names from {allowed}")
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
@@ -422,7 +475,7 @@ def contact_values(
         if name in found:
             found[name] = _bifurcation(row, periods, name, table)
     of_orbits = [name for name in quantities if name not in ("saddle_node", "period_doubling")]
-    # Some thousands of orbits at once keep the memory small.
+    # Blocks of about 4096 orbits limit the memory.
     blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
     for block in blocks if of_orbits else []:
         equations = OrbitEquations(row, 1, periods, table=table).rows(block)
@@ -436,11 +489,11 @@ def contact_values(
 
 
 def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
-    """The n-T orbits on the stable side of the saddle-node, (rows, N), NaN if there is none."""
+    """Find n-T orbits on the stable side of the saddle-node, shape (rows, N); NaN if none."""
     periods = np.broadcast_to(equations.periods, amplitude.shape)
     guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
     solution = newton(equations, guess)
-    # At a saddle-node steps are halved, and 12 of them are too few.
+    # At a saddle-node each Newton step only halves the error, so 12 steps are too few.
     slow = ~solution.found & (np.abs(equations.turn(solution.linear) - 1) < 0.1)
     if slow.any():
         more = newton(equations.rows(slow), solution.z[slow], iterations=40)
@@ -448,14 +501,14 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
         solution = solution._replace(linear=equations.linearized(solution.z))
         solution.found[slow] = more.found
     good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
-    # On compliant contacts Newton's method may run to a solution that is no orbit.
+    # On compliant contacts Newton's method may find a solution that is not an orbit.
     leaves = equations.ends(solution.z).speed[:, 0] > 0
     good &= leaves & (solution.z[:, 1] > 0) & (np.abs(solution.z - guess)[:, 0] < np.pi)
     return np.where(good[:, np.newaxis], solution.z, np.nan)
 
 
 def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
-    """The amplitudes of a bifurcation, by rows, from a guess by the error law."""
+    """Amplitudes of a bifurcation, shape (rows,), found from a guess by the error law."""
     impact = free_impact(row, periods)
     if name == "saddle_node":
         kind = "saddle-node"
@@ -472,7 +525,7 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
         amplitude = amplitude * (1 + share)
         phase = phase + turn
     if table.is_sine:
-        # On a sine one instant has the velocity x and the push y.
+        # On a sine the velocity x and -w″ = y determine amplitude and phase.
         amplitude, phase = table.amplitude_at(x, y)
     equations = OrbitEquations(row, 1, periods, table=table)
     delay = impact.centroid - row.elapsed_contact(impact.speed)
@@ -523,9 +576,15 @@ def exact_errors(
     ----------
     ball, amplitude, n, quantities, table
         As in :func:`contact_values`.
-    simple
-        A function from a ball to the ball in its place, such as ``Corrected``; by default the
-        restitution model with the r(v) of the ball, whose :func:`free_impact` may be given.
+    simple : callable or FreeImpact, optional
+        Function that maps the ball to the ball of the simple model, such as ``Corrected``. The
+        default is the restitution model with the r(v) of the ball. To save time, give the
+        :func:`free_impact` of the ball instead.
+
+    Returns
+    -------
+    dict of arrays
+        Errors by the names in ``quantities``.
 
     Examples
     --------
@@ -546,7 +605,7 @@ def exact_errors(
 
 
 def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
-    """Numbers in :data:`UNSTABLE` of the n-T orbits of a ball and of its simple model."""
+    """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
     if simple is None or isinstance(simple, FreeImpact):
         values = restitution_values(simple or free_impact(ball, n), amplitude, table)
         doubles = np.asarray(amplitude) > values["period_doubling"]
@@ -557,7 +616,7 @@ def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table
 
 
 def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
-    """Whether there are n-T orbits on the stable side of the saddle-node, and are unstable."""
+    """Whether n-T orbits on the stable side of the saddle-node exist and are unstable."""
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     equations = OrbitEquations(row, 1, periods, table=table)
     z = rows_of_orbits(equations, amplitudes)
@@ -567,20 +626,22 @@ def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) 
 
 
 class ErrorThreshold(NamedTuple):
-    """Frequency ratio above which an error is within a tolerance: arrays of one shape.
+    """Frequency ratios above which an error is within a tolerance, as arrays of one shape.
 
     Attributes
     ----------
-    ratio
-        NaN if it is not found.
-    status
-        "found"; "within" if the error is within the tolerance at all ratios; "outside" if it is
-        beyond the tolerance at the largest ratio; "no orbit" if there is no orbit at the largest
-        ratio, or at the smallest ratio within the tolerance.
-    unstable
-        Which orbit is unstable at this ratio, or at the largest one where the ratio is NaN: "", "in
-        the simple model", "on the contact" or "in both models"; "" for bifurcations, and where
-        there is no orbit.
+    ratio : array
+        Frequency ratios, NaN unless the status is "found".
+    status : array of str
+        - "found";
+        - "within": the error is within the tolerance at all ratios;
+        - "outside": the error exceeds the tolerance at the largest ratio;
+        - "no orbit": there is no orbit at the largest ratio, or no orbit just below the range of
+          ratios in which the error stays within the tolerance.
+    unstable : array of str
+        Which orbit is unstable at this ratio, or at the largest ratio if it is NaN: "", "in the
+        simple model", "on the contact" or "in both models". It is "" for bifurcations, and if there
+        is no orbit.
     """
 
     ratio: NDArray
@@ -589,7 +650,7 @@ class ErrorThreshold(NamedTuple):
 
 
 UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
-"""By whether the orbit is unstable in the simple model, 1, and on the contact, 2."""
+"""Texts by index: 1 if unstable in the simple model, plus 2 if unstable on the contact."""
 
 
 def error_thresholds(
@@ -605,19 +666,26 @@ def error_thresholds(
     samples: int = 49,
     table: Table = SINE,
 ) -> dict:
-    """Find the ϖ above which a simple model is within a tolerance: an :class:`ErrorThreshold` each.
+    """Find the ϖ above which the error of a simple model is within a tolerance.
 
     Parameters
     ----------
-    contacts
-        A ball or a function from an array x to the ball, as in :func:`law_thresholds`.
+    contacts : SpringDamper, ForceLaw or callable
+        As in :func:`law_thresholds`. A function must accept an array.
     amplitude, n, simple, quantities, table
         As in :func:`exact_errors`.
-    tolerance
+    tolerance : float
         Largest modulus of the relative error.
-    low, high, samples
-        The range of ϖ and the number of samples in it, at equal ratios. Two crossings between two
-        samples are not noticed.
+    low, high : float
+        Range of ϖ.
+    samples : int
+        Number of samples in this range, at equal ratios. Two crossings between neighbouring samples
+        are missed.
+
+    Returns
+    -------
+    dict of ErrorThreshold
+        Thresholds by the names in ``quantities``.
 
     Examples
     --------
@@ -627,7 +695,7 @@ def error_thresholds(
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '132.569 found']
 
-    Above the period doubling the orbit is compared as well:
+    Above the period doubling, unstable orbits are compared:
 
     >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
     >>> round(float(found.ratio), 2), str(found.unstable)
@@ -645,20 +713,20 @@ def error_thresholds(
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
     errors = exact_errors(path(ratios), quantities=quantities, **known)
-    # Those of one orbit are located together, and each bifurcation alone.
+    # The thresholds of one orbit are found together, and each bifurcation alone.
     alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
     together = [name for name in quantities if name not in alone]
     found = {}
     for names in filter(None, [together, *([name] for name in alone)]):
 
         def excess(logarithms: Values, places: Values, names: Any = names) -> Values:
-            # The ratios of all rows, because a path may depend on the place in an array.
+            # `path` gets the ratios of all rows, because it may depend on the index in an array.
             ratio = np.full((len(logarithms), len(names), *shape), float(high))
             rows = ratio.reshape(len(logarithms), -1)
             rows[:, places] = np.exp(logarithms)
             there = exact_errors(path(ratio), quantities=names, **known)
             error = np.stack([there[name][:, j] for j, name in enumerate(names)], axis=1)
-            # It is about in proportion to 1/ϖ, and its logarithm is about linear.
+            # The error is about proportional to 1/ϖ, so its logarithm is about linear.
             return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
 
         scan = np.stack([np.abs(errors[name]) for name in names], axis=1).reshape(samples, -1)

@@ -1,4 +1,4 @@
-"""Normal forms of saddle-nodes and period doublings, and what happens at a grazing flight.
+"""Normal forms of saddle-nodes and period doublings, and orbits next to a grazing flight.
 
 The derivation is in docs/orbits.md. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation
 Theory*, sections 4.3, 4.5 and 5.4; Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM
@@ -24,17 +24,28 @@ from bouncing_ball_beyond.march import newton
 NODES = np.arange(-4.0, 5.0)
 FIRST = np.array([3, -32, 168, -672, 0, 672, -168, 32, -3]) / 840
 SECOND = np.array([-9, 128, -1008, 8064, -14350, 8064, -1008, 128, -9]) / 5040
-"""Weights of central differences over the nodes, exact for polynomials of the eighth degree."""
+"""Weights of central differences at `NODES` for first and second derivatives.
+
+They are exact for polynomials of degree 8.
+"""
 
 SHARE = 0.1
-"""Step of the differences: the largest change of an unknown over the least speed, or over 1."""
+"""Largest change of an unknown in a step of the differences, divided by min(1, min |u|)."""
 
 
 # Normal forms
 
 
 class Curvature(NamedTuple):
-    """Derivatives as in `equations.Linear`, and B(v, ·) and C(v, v, ·) of docs/orbits.md."""
+    """Derivatives of the legs of one orbit, shape (k, q, q + 2 + p) each.
+
+    Attributes
+    ----------
+    derivatives : array
+        As in `LinearizedLegs`, without rows.
+    first, second : array
+        B(v, ·) and C(v, v, ·) of docs/orbits.md.
+    """
 
     derivatives: NDArray
     first: NDArray
@@ -42,7 +53,7 @@ class Curvature(NamedTuple):
 
 
 def closed(derivatives: NDArray, multiplier: float) -> NDArray:
-    """The matrix (kq, kq) of a chain of legs whose end is `multiplier` times its start."""
+    """Matrix (kq, kq) of a chain of legs whose end is `multiplier` times its start."""
     q = derivatives.shape[-2]
     turned = derivatives.copy()
     turned[-1, :, q : q + 2] *= multiplier
@@ -52,7 +63,10 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 def curvature(
     equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
-    """Derivatives along a vector v that comes back times ±1, periodic on the orbit taken twice."""
+    """Derivatives along a vector v that returns multiplied by ±1.
+
+    The orbit is taken twice, because the vector is periodic after two turns.
+    """
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
@@ -63,7 +77,7 @@ def curvature(
 
 
 def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> float:
-    """a for the multiplier 1, b for -1, with the scales of v and w."""
+    """Coefficient a for the multiplier 1, or b for -1, for v and w as scaled."""
     bend = closed(bent.first, multiplier) @ v
     if multiplier == 1:
         return float(w @ bend / 2)
@@ -72,27 +86,44 @@ def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> flo
 
 
 def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
-    """v and w, scaled so that |v_0| = 1 and p v_0 = 1."""
+    """Vectors v and w of docs/orbits.md, scaled to |v_0| = 1 and p v_0 = 1."""
     q = derivatives.shape[-2]
     left, _, right = np.linalg.svd(closed(derivatives, multiplier))
     v = right[-1]
     w = left[:, -1]
-    # The direction in which δ′ = -u or τ grows, whichever changes more.
+    # The sign of v is chosen so that τ or δ′ = -u grows, whichever changes more.
     start = v[:2] * [1.0, -1.0]
     v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
     return v, w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
 
 
 def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
-    """The step of differences along v."""
+    """Step of the differences along v."""
     speeds = z[1 : equations.size : equations.unknowns]
     return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
 
 
 @dataclass(frozen=True)
 class NormalForm:
-    """The coefficient a or b of `normal_form` with its uncertainty, the rate of the parameter, the
-    unit vector of ξ in (τ, δ′) of the first impact, and the other multiplier."""
+    """Normal form of a saddle-node or a period doubling: see `normal_form`.
+
+    Attributes
+    ----------
+    kind : str
+        "saddle-node" or "period doubling".
+    coefficient : float
+        a at a saddle-node, b at a period doubling.
+    error : float
+        Estimated error of the coefficient.
+    rate : float
+        Rate of the parameter in the map.
+    along : str
+        Name of the parameter.
+    direction : tuple of two floats
+        Unit vector of ξ in (τ, δ′) of the first impact.
+    other : float
+        The other multiplier.
+    """
 
     kind: str
     coefficient: float
@@ -104,23 +135,29 @@ class NormalForm:
 
     @property
     def supercritical(self) -> bool:
-        """Whether a period doubling has b > 0, with the doubled orbits where the orbit is unstable,
-        and stable if the other multiplier is inside the unit circle; ValueError for others."""
+        """Whether a period doubling has b > 0.
+
+        The doubled orbits then exist where the orbit is unstable. They are stable if the other
+        multiplier is inside the unit circle. Raises ValueError for a saddle-node.
+        """
         if self.kind != "period doubling":
             raise ValueError("a saddle-node is neither supercritical nor subcritical")
         return self.coefficient > 0
 
     @property
     def opens_upwards(self) -> bool:
-        """Whether the parameter is larger on the orbits that branch off, or on both that meet."""
+        """Whether the new orbits exist at larger values of the parameter.
+
+        These are the doubled orbits of a period doubling, or both orbits of a saddle-node.
+        """
         return -MULTIPLIERS[self.kind] * self.rate * self.coefficient > 0
 
 
 def normal_form(orbit: PeriodicOrbit) -> NormalForm:
-    """Compute the normal form of a saddle-node or a period doubling; ValueError for other orbits.
+    """Compute the normal form of a saddle-node or a period doubling.
 
     On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
-    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling.
+    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling. Raises ValueError for other orbits.
 
     Examples
     --------
@@ -164,17 +201,33 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
 # Grazing flights
 
 FLIGHT_SAMPLES = 2001
-"""Samples of a flight in the search for its lowest point."""
+"""Number of samples of a flight in the search for its lowest point."""
 
 TOUCHES = 1e-9
-"""A flight touches the table if its lowest point is this near: grazings are located to 1e-12."""
+"""Maximum gap at the lowest point of a flight that touches the table.
+
+Grazings are located to 1e-12.
+"""
 
 SLOW = 1e-3
-"""The speed of an added impact over aD²: orbits of a stiff contact turn back at some hundredths."""
+"""Speed of an added impact, divided by aD².
+
+The branch of a stiff contact turns back at a few hundredths.
+"""
 
 
 class Touch(NamedTuple):
-    """Where a flight touches the table: after the impact ``leg``, with δ″."""
+    """Point at which a flight touches the table.
+
+    Attributes
+    ----------
+    leg : int
+        Number of the impact before the flight, from 0.
+    time : float
+        Time of the touch.
+    acceleration : float
+        δ″ at the touch.
+    """
 
     leg: int
     time: float
@@ -182,7 +235,7 @@ class Touch(NamedTuple):
 
 
 def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
-    """Where a flight of an orbit touches the table; OrbitNotFound if none does."""
+    """Find where a flight of an orbit touches the table. Raises OrbitNotFound if none does."""
     if equations.ball.below_table:
         raise OrbitNotFound(
             "an impact of the corrected model takes effect below the table: at a grazing flight"
@@ -206,7 +259,7 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
         time = time - rate / acceleration
     if not abs(height) < TOUCHES:
         raise OrbitNotFound(
-            f"no flight of the orbit touches the table: the least gap is {height:.2g}"
+            f"no flight of the orbit touches the table: the smallest gap is {height:.2g}"
         )
     return Touch(int(leg), float(leaves[leg] + time), float(acceleration))
 
@@ -214,8 +267,15 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
 def one_impact_more(
     equations: OrbitEquations, z: NDArray
 ) -> tuple[OrbitEquations, NDArray, NDArray]:
-    """The equations of k + 1 impacts, their first orbit where a flight of z, shape (N,), touches
-    the table, and the direction in which the added impact gets faster by 1; else OrbitNotFound.
+    """Start of the orbits with one more impact, from an orbit z with a grazing flight.
+
+    Returns
+
+    1. the equations of k + 1 impacts;
+    2. their first orbit, next to z, shape (N + q,);
+    3. the direction in which the speed of the added impact grows by 1, shape (N + q,).
+
+    Raises OrbitNotFound if no flight touches the table, or if the first orbit is not found.
     """
     at = _touch(equations, z)
     _, ball, amplitude, table = equations.split(z[np.newaxis])
@@ -233,14 +293,14 @@ def one_impact_more(
     solution = newton(more, guess[np.newaxis], normal)
     if not solution.found[0]:
         raise OrbitNotFound(
-            f"no orbit with {more.impacts} impacts is found beside the grazing flight:"
+            f"no orbit with {more.impacts} impacts is found next to the grazing flight:"
             " Newton's method does not converge"
         )
     return more, solution.z[0], solution.tangent[0]
 
 
 def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """The orbit without its slowest impact; OrbitNotFound if it has no other one."""
+    """Remove the slowest impact of an orbit. Raises OrbitNotFound if it is the only impact."""
     if equations.impacts == 1:
         raise OrbitNotFound("the only impact of the orbit vanishes: there is no orbit without it")
     q = equations.unknowns
@@ -251,13 +311,28 @@ def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquatio
 
 @dataclass(frozen=True)
 class GrazingForm:
-    """What `grazing_form` returns: the impact ``leg``, from 0, before the flight, the phase of the
-    table and a = δ″ at the touch, and S.
+    """Result of `grazing_form`.
 
-    ``slope`` is the derivative of the parameter by the speed of the added impact, 0 for contacts of
-    finite duration. The orbits with one impact more are at larger parameters if the form
-    ``opens_upwards``, and where the flight would be below the table if it ``persists``; otherwise
-    both orbits disappear together.
+    Attributes
+    ----------
+    leg : int
+        Number of the impact before the flight, from 0.
+    phase : float
+        Phase of the table at the touch.
+    acceleration : float
+        a = δ″ at the touch.
+    coefficient : float
+        Coefficient S of the square root.
+    slope : float
+        Derivative of the parameter with respect to the speed of the added impact; 0 for contacts of
+        finite duration.
+    along : str
+        Name of the parameter.
+    opens_upwards : bool
+        Whether the orbits with one more impact exist at larger values of the parameter.
+    persists : bool
+        Whether they exist where the flight would be below the table. If not, they meet the orbit
+        without this impact at the grazing, and both disappear.
     """
 
     leg: int
@@ -271,11 +346,17 @@ class GrazingForm:
 
 
 def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
-    """The square root of the return map at a grazing flight, and the orbits with one impact more.
+    """Compute the square root of the return map at a grazing flight.
 
-    Where a flight would be d below the table, the added impact changes the velocity by S √d, with
-    S = (1 + r) √(2a), r at the speed 0, and S = 0 for contacts of finite duration
-    (docs/orbits.md). OrbitNotFound if no flight touches, or the ball has no slow impacts.
+    If the flight would be at the depth d below the table, an additional impact changes the velocity
+    by S √d. S is (1 + r) √(2a) with r at the speed 0, and 0 for contacts of finite duration
+    (docs/orbits.md).
+
+    Raises
+    ------
+    OrbitNotFound
+        If no flight touches the table, if the impacts of the ball take effect below the table, or
+        if no orbit with one more impact is found.
 
     Examples
     --------
@@ -287,17 +368,17 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
-    # On a curve two parameters change, of which the first one counts.
+    # On a curve two parameters change; the form belongs to the first.
     path = orbit.equations.along[0]
     equations, z = orbit.on(path)
     at = _touch(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
     tangent = newton(equations, z[np.newaxis]).tangent[0]
-    # The least gap is a smooth function: a third of all digits is enough for the sign.
+    # The smallest gap is a smooth function, so a third of all digits gives the sign.
     step = 1e-6 * max(1.0, abs(z[-1]))
     below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
-    # S = 0 for contacts of finite duration, which is r = -1.
+    # r = -1 gives S = 0 for contacts of finite duration.
     r, slope = -1.0, 0.0
     if not orbit.ball.has_duration:
         r, slope = float(orbit.ball.signature(0.0).restitution), float(direction[-1])

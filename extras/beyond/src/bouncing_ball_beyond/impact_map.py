@@ -1,11 +1,14 @@
-"""The contacts of one ball on one table as a map, by polynomials in place of integrations.
+"""Map of the contacts of one ball on one table: polynomials replace integrations.
 
-How a contact ends depends on the phase τ of the table and on the closing speed u, and does so
-analytically if the ball turns back once and leaves. T, D, δ and δ′ at the release are then Fourier
-series in τ whose coefficients are Chebyshev polynomials in ln u, on pieces of a factor 2 in u. With
-the load over the force, ε = (1 + Λ)D/u, the harmonic m is of the order of ε^m, so that a piece
-takes some hundred integrations, and a ball may have a million impacts. Contacts at slower impacts,
-whose coefficients do not fall to rounding, are integrated one by one.
+The end of a contact depends on the phase τ of the table and on the closing speed u. It is an
+analytic function of them if the ball turns back once and then leaves. T, D, δ and δ′ at the release
+are then Fourier series in τ. Their coefficients are Chebyshev polynomials in ln u, on pieces of a
+factor 2 in u.
+
+The harmonic m is of the order of ε^m, where ε = (1 + Λ)D/u is the load divided by the contact
+force. A piece therefore needs only 512 integrations, or a few times as many, and serves a million
+impacts. The coefficients of slow impacts do not decay to rounding errors, so their contacts are
+integrated one by one.
 """
 
 from dataclasses import dataclass
@@ -19,32 +22,51 @@ from bouncing_ball_beyond.balls import Ball
 from bouncing_ball_beyond.tables import Table
 
 MAP_FACTOR, MAP_DEGREE = 2.0, 15
-"""The range of speeds of a piece of the map, and its degree in ln u. A pole at ln u = x ± iπ, like
-that of a restitution 1/(1 + Cu), leaves an error of 18⁻¹⁶."""
+"""Ratio of the largest to the smallest speed of a piece of the map, and its degree in ln u.
+
+A pole at ln u = x ± iπ, as of a restitution coefficient 1/(1 + Cu), causes an error of 18⁻¹⁶.
+"""
 
 PHASES, MOST_PHASES = 32, 256
-"""The number of phases at first, which is doubled up to the largest one."""
+"""First and maximum number of phases of a piece. The number is doubled as long as needed."""
 
 ONE_SWING = 1.5
-"""A contact of the map ends within so many times the T of a free impact. Then the ball has turned
-back once, and no earlier release can appear between the points of the map."""
+"""Maximum T of a contact of the map, divided by T of a free impact.
+
+The ball has then turned back only once. No earlier release can appear between the points of the
+map.
+"""
 
 PIECES = 12
-"""The largest number of pieces, which reach down from the fastest impact."""
+"""Maximum number of pieces. They reach down from the speed of the fastest impact."""
 
 LEFT_OUT = 1e-16
-"""Harmonics whose coefficients are smaller, over the largest value, are left out."""
+"""Size of coefficients, relative to the largest value, below which harmonics are left out."""
 
 LAST_COEFFICIENTS = 1e-13
-"""The largest last coefficients of a piece, over the largest value: rounding of integrations."""
+"""Maximum last coefficients of a piece, relative to the largest value.
+
+They are then as small as rounding errors of the integrations.
+"""
 
 
 @dataclass(frozen=True)
 class ImpactMap:
-    """The contacts of a ball with one or more speeds of at most ``top``.
+    """Map of the contacts of a ball.
 
-    ``pieces`` has the coefficients on the range of speeds from ``top`` down to a half of it, and so
-    on, each complex of the shape (4, harmonics, DEGREE + 1), of T, D, δ and δ′.
+    Attributes
+    ----------
+    ball : Ball
+        The ball.
+    amplitude : float
+        Λ.
+    table : Table
+        The waveform.
+    top : float
+        Maximum closing speed.
+    pieces : tuple of complex arrays, shape (4, harmonics, MAP_DEGREE + 1)
+        Coefficients of T, D, δ and δ′. The first piece covers speeds from ``top`` down to top/2,
+        and each further piece the next factor of 2.
     """
 
     ball: Ball
@@ -54,19 +76,22 @@ class ImpactMap:
     pieces: tuple[NDArray, ...]
 
     def _places(self, u: NDArray) -> tuple[NDArray, NDArray]:
-        """The numbers of the pieces and the places in them, from -1 to 1; others are no pieces."""
+        """Return the numbers of pieces, and the positions in them, from -1 to 1.
+
+        Numbers beyond the pieces mark speeds outside the map.
+        """
         with np.errstate(divide="ignore", invalid="ignore"):
             octaves = np.log(self.top / u) / np.log(MAP_FACTOR)
         number = np.floor(octaves)
         return number, 1 - 2 * (octaves - number)
 
     def knows(self, u: NDArray) -> NDArray:
-        """Whether contacts of these speeds need no integration."""
+        """Whether contacts with the closing speeds u are in the map and need no integration."""
         number, _ = self._places(u)
         return (number >= 0) & (number < len(self.pieces))
 
     def leaves(self, tau: NDArray, u: NDArray) -> tuple[NDArray, ...]:
-        """T, D, δ and δ′ of the first release; D is infinite for a ball that stays."""
+        """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
         found = np.empty((4, u.size))
         number, x = self._places(u)
         known = np.zeros(u.shape, bool)
@@ -103,15 +128,15 @@ class ImpactMap:
 
 
 def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:
-    """Real parts of sums over harmonics and powers, shape (quantities, points)."""
+    """Real parts of the sums over harmonics and polynomials, shape (quantities, points)."""
     each = np.tensordot(coefficients, powers, ([2], [1]))
     return np.einsum("qmn,nm->qn", each, waves).real
 
 
 def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> ImpactMap:
-    """The map of contacts up to a speed, with as many pieces downwards as are analytic.
+    """Build the map of contacts with closing speeds up to ``top``.
 
-    ``top`` is the greatest closing speed u.
+    It gets pieces for lower and lower speeds until a piece is not analytic, but at most `PIECES`.
     """
     pieces: list[Any] = []
     while len(pieces) < PIECES:
@@ -123,7 +148,7 @@ def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> Impact
 
 
 def _piece(ball: Ball, amplitude: float, table: Table, top: float) -> NDArray | None:
-    """The coefficients on the range of speeds below ``top``; None if they do not fall."""
+    """Coefficients on the range of speeds below ``top``; None if they do not decay."""
     x = chebyshev.chebpts1(MAP_DEGREE + 1)
     u = top * MAP_FACTOR ** ((x - 1) / 2)
     longest = ONE_SWING * ball.free(u)
@@ -140,7 +165,7 @@ def _piece(ball: Ball, amplitude: float, table: Table, top: float) -> NDArray | 
         waves[:, 1:] *= 2
         piece = waves @ to_coefficients.T
         largest = np.abs(values).max(axis=(1, 2))
-        # δ at the release is zero but for rounding, or a part of the way in a contact.
+        # δ may be zero within rounding, so it is compared with the distance D δ′.
         largest[2] = largest[1] * largest[3]
         sizes = np.abs(piece) / largest[:, np.newaxis, np.newaxis]
         if sizes[:, :, -2:].max() > LAST_COEFFICIENTS:

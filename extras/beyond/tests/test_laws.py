@@ -581,7 +581,7 @@ class TestGivenByAnImpact:
                 ),
                 "this law has none between 0 and 0.663",
             ),
-            (lambda: tsuji(restitution=0.5, duration=0.1), "not by restitution, duration"),
+            (lambda: tsuji(restitution=0.5, duration=0.1), "given: restitution, duration"),
             (lambda: tsuji(1000.0), "stiffness and damping"),
             (lambda: tsuji(-1.0, 0.3), "stiffness = -1"),
             (lambda: linear(20.0, 0.1, release="never"), "release = 'never'"),
@@ -632,7 +632,7 @@ class TestUnits:
             with pytest.raises(ValueError, match="units: needed here") as error:
                 question()
             one_line(error)
-        with pytest.raises(ValueError, match="units: kk is no parameter") as error:
+        with pytest.raises(ValueError, match="units: kk is not a parameter") as error:
             ForceLaw(force, values, units={"kk": (1, 0, -2)})
         one_line(error)
 
@@ -655,7 +655,7 @@ class TestRefusedForces:
             (lambda p, v, k: k * float(p), "fails for arrays of complex numbers"),
             (lambda p, v, k: 3.0, "shape of p and v"),
             (lambda p, v, k: -k * p, "stops no ball"),
-            (lambda p, v, k: k * p if p > 0 else 0 * p, r"np\.where in place of if"),
+            (lambda p, v, k: k * p if p > 0 else 0 * p, r"np\.where instead of if"),
         ],
     )
     def test_reason(self, force, reason):
@@ -672,7 +672,7 @@ class TestRefusedForces:
             with pytest.raises(ValueError, match=next(iter(more))) as error:
                 ForceLaw(lambda p, v, k: k * p, {"k": 1.0}, **more)
             one_line(error)
-        with pytest.raises(ValueError, match="tau: is no name"):
+        with pytest.raises(ValueError, match="tau: is a reserved name"):
             ForceLaw(lambda p, v, tau: tau * p, {"tau": 1.0})
         with pytest.raises(ValueError, match=r"units: k = \(1, 0\): must be the powers of mass"):
             ForceLaw(lambda p, v, k: k * p, {"k": 1.0}, units={"k": (1, 0)})

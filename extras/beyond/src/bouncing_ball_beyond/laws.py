@@ -1,8 +1,8 @@
-"""Contacts of any force law: the ball whose contact has the force f(p, p′) per mass.
+"""Contacts with any force law f(p, p′), the force per mass of the ball.
 
-During a contact the penetration p = -δ obeys p″ = 1 + w″ - f. The contact ends where p = 0, or
-where the force vanishes, so that it never pulls at the ball. The laws that have names are in
-:mod:`.named_laws`; how the motion is found is in :mod:`.root_time`.
+During a contact the penetration p = -δ obeys p″ = 1 + w″ - f, where w″ is the acceleration of the
+table. The contact ends where p = 0, or where the force vanishes; in the second case it never pulls
+at the ball. :mod:`.named_laws` has laws with names. :mod:`.root_time` computes the motion.
 """
 
 from collections.abc import Callable, Mapping
@@ -43,7 +43,7 @@ from bouncing_ball_beyond.root_time import (
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "after", "load", "start_speed")
-"""Names that parameters must not have."""
+"""Names that parameters of a law must not have."""
 
 LN_DEPTHS = (-46.0, 23.0)
 """Range of ln p in which the depth of an impact is searched: p from 1e-20 to 1e10."""
@@ -52,24 +52,29 @@ HALVINGS = 9
 """Number of halvings of `LN_DEPTHS`. They find the depth within one seventh of its value."""
 
 FIRST_PANEL = 0.4
-"""Length of the first panel of a contact, in units of P^{1/m}/u.
-At half and at twice evaluations of the force change by 3 %."""
+"""Length of the first panel of a contact, in units of P^{1/m}/u, with the `depth` P.
+
+At half and at twice this length, evaluations of the force change by 3 %.
+"""
 
 SIGNATURE_FACTOR, SIGNATURE_DEGREE = 8.0, 23
-"""The range of speeds of an interpolation of signatures, and its degree. With a pole of r at
-ln u = x ± iπ, like that of 1/(1 + Cu), the error is of the order of 6⁻²⁴.
+"""Ratio of the largest to the smallest speed of an interpolation of signatures, and its degree.
+
+If r has a pole at ln u = x ± iπ, as 1/(1 + Cu) has, the error is of the order of 6⁻²⁴.
 """
 
 GUESS_FACTOR = 2.0
 """Ratio of the largest to the smallest speed of contacts that one free impact approximates."""
 
 SPARE = 1e-9
-"""Largest last Legendre coefficients of v of a free impact, divided by its speed, for which the
-coarser Gauss nodes are enough. At half and at twice: no effect."""
+"""Last Legendre coefficients of v of a free impact, divided by its speed, below which fewer Gauss
+nodes are enough. At half and at twice: no effect."""
 
 FEW_KINKS = 8
-"""Maximum number of intervals of a check that have a kink. If there are more, the force is not
-analytic."""
+"""Maximum number of faulty intervals of a check that count as kinks.
+
+If there are more, the force is not analytic.
+"""
 
 ALIKE = 1e-11
 """Largest relative difference of two forces that are equal within rounding."""
@@ -77,26 +82,29 @@ ALIKE = 1e-11
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
 SHIFT = 0.02
-"""Central differences of the sixth order with relative steps h of 2 %. They are wrong by h⁶/140 of
-the seventh derivative, 5e-13, and by rounding over h, 1e-14."""
+"""Central differences of the sixth order with the relative step h = 2 %.
+
+Their errors are h⁶/140 times the seventh derivative, about 5e-13, and rounding errors divided by h,
+about 1e-14.
+"""
 
 
 @dataclass(frozen=True, repr=False)
 class ForceLaw(Ball):
-    """A contact with a force of any law.
+    """Ball whose contacts have any force law.
 
     Parameters
     ----------
     force : callable
-        The force per mass ``force(p, v, **values)`` at the penetration p and its rate v = p′: numpy
-        arrays, also complex ones, because all derivatives are complex steps. It is analytic,
-        without ``abs`` and ``real``, or made of analytic ones by ``np.where``, if its kinks are
-        declared.
+        Force per mass ``force(p, v, **values)`` at the penetration p and its rate v = p′. p and v
+        are numpy arrays, real or complex, because all derivatives are complex steps. The function
+        must be analytic, so write it without ``abs`` and ``real``. ``np.where`` may join analytic
+        pieces if ``kinks`` declares the kinks between them.
     values : mapping
-        The parameters of the force by their names: numbers, or arrays for a row of balls.
+        Parameters of the force by name: numbers, or arrays for a row of balls.
     root : int
-        m: the force is an analytic function of p^{1/m}. It is 1 if the force is smooth at p = 0, 2
-        if it has powers of √p, such as that of Hertz, and 4 if it has powers of p^{1/4}.
+        m, if the force is an analytic function of p^{1/m}. It is 1 if the force is smooth at p = 0,
+        2 for powers of √p, as in Hertz' law, and 4 for powers of p^{1/4}.
     release : {"displacement", "force"}
         Contacts end where p = 0, or where the force vanishes.
     lag : callable, optional
@@ -104,8 +112,8 @@ class ForceLaw(Ball):
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
-        Further keyword arguments of the force: "start_speed", the speed at the start of the
-        contact, and "load", the load a = 1 + w″.
+        Additional keyword arguments of the force: "start_speed" is the speed at the start of the
+        contact, and "load" is the load a = 1 + w″.
     units : mapping
         Powers of mass, length and time in the unit of each parameter. They are needed if the
         frequency of the table or the stiffness of the contact changes.
@@ -113,7 +121,7 @@ class ForceLaw(Ball):
     Raises
     ------
     ValueError
-        If the force is not a function as described. The message says where.
+        If the force does not meet these requirements. The message says which one, and where.
 
     Examples
     --------
@@ -144,7 +152,7 @@ class ForceLaw(Ball):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number")
         for name in self.units.keys() - self.values.keys():
             known = ", ".join(self.values)
-            raise ValueError(f"units: {name} is no parameter of the law, which has {known}")
+            raise ValueError(f"units: {name} is not a parameter of the law: use {known}")
         for name, powers in self.units.items():
             if np.shape(powers) != (3,) or np.asarray(powers).dtype.kind not in "iuf":
                 raise ValueError(
@@ -152,7 +160,7 @@ class ForceLaw(Ball):
                     " such as (1, 0, -2) for N/m"
                 )
         for name in self.values.keys() & set(TAKEN):
-            raise ValueError(f"{name}: is no name for a parameter of a law; choose another")
+            raise ValueError(f"{name}: is a reserved name; choose another one for the parameter")
         check_force(self)
 
     def __repr__(self) -> str:
@@ -161,7 +169,7 @@ class ForceLaw(Ball):
 
     @property
     def known_units(self) -> Mapping:
-        """Units of all parameters. Raise a ValueError if a parameter has no unit."""
+        """Units of all parameters. Raises ValueError if a parameter has no unit."""
         for name in self.values:
             if name not in self.units:
                 raise ValueError(
@@ -179,7 +187,7 @@ class ForceLaw(Ball):
         unknown = values.keys() - self.values.keys()
         if unknown:
             raise ValueError(
-                f"{', '.join(sorted(unknown))}: no parameter of the law, which has"
+                f"{', '.join(sorted(unknown))}: no parameter of the law; its parameters:"
                 f" {', '.join(self.values)}"
             )
         if not values:
@@ -197,9 +205,10 @@ class ForceLaw(Ball):
     @cached_property
     @np.errstate(all="ignore")
     def _scales(self) -> NDArray | None:
-        """Units of length and time in which the force is that of the origin; None if none are.
+        """Units of length and time in which the force equals the force of `_origin`.
 
-        If possible they change together, which leaves speeds as they are.
+        If possible they change by the same factor, so that speeds keep their values. None if there
+        are no such units.
         """
         origin = self._origin
         if self is origin:
@@ -235,23 +244,27 @@ class ForceLaw(Ball):
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Powers of Ω to which parameters are proportional for one contact: lengths are measured in
-        g/Ω² and times in 1/Ω.
+        """Exponents s by name: for a given contact, the parameter is proportional to Ω^s.
+
+        Lengths are in units of g/Ω², and times in units of 1/Ω.
         """
         powers = {name: 2 * length + time for name, (_, length, time) in self.known_units.items()}
         return {name: power for name, power in powers.items() if power}
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """Return the law with another stiffness, as a function of a number that replaces ϖ."""
+        """Return a function that maps a number, in the role of ϖ, to the law."""
         share = np.pi * restitution / ((1 + restitution) * centroid)
-        # With lengths and times that are all γ times as large, f(p, p′) is f(p/γ, p′)/γ.
+        # If all lengths and times are γ times as large, f(p, p′) becomes f(p/γ, p′)/γ.
         powers = {name: length + time for name, (_, length, time) in self.known_units.items()}
         return lambda ratio: self.at(
             **{name: self.values[name] * (share / ratio) ** powers[name] for name in powers}
         )
 
     def in_si(self, mass: Values, length: Values, time: Values) -> dict[str, Values]:
-        """The parameters in SI units: ``mass`` in kg, the units of length in m and of time in s."""
+        """Return the parameters in SI units.
+
+        ``mass`` is in kg. ``length`` and ``time`` are the units of length and time in m and s.
+        """
         return {
             name: self.values[name] * mass**of_mass * length**of_length * time**of_time
             for name, (of_mass, of_length, of_time) in self.known_units.items()
@@ -266,7 +279,7 @@ class ForceLaw(Ball):
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """The state of the contact at the root time T, with its release function."""
+        """State of the contact at the root time T, with the release function."""
         return self._followed(tau, u, amplitude, gravity, T, table=table)[1]
 
     def first_release(
@@ -289,7 +302,7 @@ class ForceLaw(Ball):
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ at a time after the start of a contact."""
+        """δ and δ′ when ``time`` has passed since the start of a contact."""
         given = {"tau": tau, "u": u, "after": time, "amplitude": amplitude, "gravity": 1.0}
         rows, motion, start, by = self._started(given, table)
         after = rows.given.pop("after")
@@ -309,7 +322,7 @@ class ForceLaw(Ball):
         return slopes_at_release(self, tau, u, T, amplitude, table)
 
     def free(self, u: Values) -> Values:
-        """T of free impacts, without gravity and on a table at rest."""
+        """T of free impacts: without gravity, on a table at rest."""
         u = np.asarray(u)
         if self._scales is None or self.kinks or np.iscomplexobj(u) or not np.all(u > 0):
             return self._followed(0.0, u, 0.0, 0.0)[0]
@@ -320,7 +333,7 @@ class ForceLaw(Ball):
     def signature(self, u: Values) -> Signature:
         """r, D, t_c and σ of free impacts.
 
-        They are computed once for all laws that differ only by the units of length and time.
+        Laws that differ only by the units of length and time share one computation.
         """
         u = np.asarray(u)
         if self._scales is None or not np.all(u.real > 0):
@@ -334,8 +347,10 @@ class ForceLaw(Ball):
         return Signature(found[0], *(time * each for each in found[1:]))
 
     def known_signature(self, u: Values) -> NDArray:
-        """The signature of one ball, u d/du of it and T at real speeds, shape (9, ...), for a law
-        without kinks from polynomials in ln u on ranges of :data:`SIGNATURE_FACTOR` in u.
+        """Signature of one ball, its derivatives and T at real speeds, shape (9, ...).
+
+        The rows are the four quantities of the signature, u d/du of each, and T. For a law without
+        kinks they are polynomials in ln u on ranges of a factor `SIGNATURE_FACTOR` in u.
         """
         if self.kinks:
             speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
@@ -355,13 +370,13 @@ class ForceLaw(Ball):
         return found
 
     def _computed(self, u: Values) -> NDArray:
-        """As :meth:`known_signature`, by free impacts at each speed."""
+        """Compute :meth:`known_signature` from a free impact at each speed."""
         values = np.array(self.computed_signature(u * (1 + 1j * H)))
         scaled_duration = self._followed(0.0, u, 0.0, 0.0)[0]
         return np.concatenate([values.real, values.imag / H, scaled_duration[np.newaxis]])
 
     def _range(self, number: float) -> NDArray | None:
-        """Coefficients of :meth:`known_signature` in a range; None if impacts do not end."""
+        """Polynomials of :meth:`known_signature` in a range; None if impacts do not end."""
         points = chebyshev.chebpts1(SIGNATURE_DEGREE + 1)
         speeds = SIGNATURE_FACTOR ** (number + (points + 1) / 2)
         if np.isnan(self._followed(0.0, speeds[[0, -1]], 0.0, 0.0)[0]).any():
@@ -372,8 +387,10 @@ class ForceLaw(Ball):
 
     @np.errstate(all="ignore")
     def guess(self, u: NDArray, T: NDArray) -> Guess | None:
-        """Free impacts of one ball, about those at the speeds u and of the lengths T; None if some
-        do not end."""
+        """Return free impacts of one ball as a guess of contacts with the speeds u and lengths T.
+
+        Their speeds differ from u by a factor of at most √2. None if some free impacts do not end.
+        """
         numbers, which = np.unique(np.floor(np.log(u) / np.log(GUESS_FACTOR)), return_inverse=True)
         for k in set(numbers) - self._free_impacts.keys():
             self._free_impacts[k] = self._free_impact(GUESS_FACTOR ** (k + 0.5))
@@ -385,9 +402,10 @@ class ForceLaw(Ball):
         return Guess(WHOLE[-most], push * (u / T), which, [inverse for _, inverse in known])
 
     def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
-        """F of a free impact over its length and speed, and the inverse of its linear equations, at
-        the nodes of each of :data:`WHOLE` that are enough, or of the last one; no entry if it does
-        not end.
+        """F of a free impact, in units of u/T, and the inverse of its linear equations.
+
+        There is one pair for each set of nodes in :data:`WHOLE` that is fine enough; the finest set
+        is always included. The list is empty if the impact does not end.
         """
         *_, finest = WHOLE
         T = np.ravel(self.free(np.array([u])))
@@ -420,10 +438,10 @@ class ForceLaw(Ball):
 
     @np.errstate(invalid="ignore")
     def computed_signature(self, u: Values) -> Signature:
-        """As :meth:`signature`, by free impacts at each speed and parameter.
+        """Compute :meth:`signature` from free impacts at each speed and parameter.
 
-        The impulse J = u + w + aD under a constant load a gives σ = ∂J/∂a - t_c ∂J/∂u at a = 0. The
-        derivatives are differences, so that complex steps pass through.
+        The impulse J = u + w + aD under a constant load a gives σ = ∂J/∂a - t_c ∂J/∂u at a = 0.
+        These derivatives are differences, so that u and the parameters may have complex steps.
         """
         u = np.asarray(u)[..., np.newaxis]
         law = self.at(**{name: np.asarray(x)[..., np.newaxis] for name, x in self.values.items()})
@@ -431,7 +449,7 @@ class ForceLaw(Ball):
         impact = law.first_impact(0.0, speeds, 0.0, 0.0)[1]
         by_speed = (speeds + impact.speed)[..., :6] @ WEIGHTS / (SHIFT * u[..., 0])
         gap, speed, duration = (x[..., 6] for x in (impact.gap, impact.speed, impact.duration))
-        # A load that would stop the ball, within a duration of the contact, after it has left.
+        # The unit of the load stops a released ball within the duration of the contact.
         load = SHIFT * np.real(speed / duration)[..., np.newaxis]
         loaded = law.first_impact(0.0, u, 0.0, load * SHIFTS)[1]
         by_load = (loaded.speed + load * SHIFTS * loaded.duration) @ WEIGHTS / load[..., 0]
@@ -440,7 +458,7 @@ class ForceLaw(Ball):
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
     def depth(self, u: Values) -> Values:
-        """Approximate depth P at which the force would stop a ball: P f(P, 0) = u²."""
+        """Approximate depth P at which the force stops a ball with the speed u: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
         low = np.full(shape, LN_DEPTHS[0])
@@ -453,7 +471,7 @@ class ForceLaw(Ball):
         return np.exp(low)
 
     def force_at(self, p: Values, v: Values, a: Values, given: Mapping) -> Values:
-        """f under the load a, with the parameters and the speed u at the start from ``given``."""
+        """f under the load a. ``given`` has the parameters and the speed u at the start."""
         more = {"load": a, "start_speed": given["u"]}
         return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
 
@@ -461,11 +479,11 @@ class ForceLaw(Ball):
         return {name: given[name] for name in self.values}
 
     def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
-        """The release function: -q, or (-κp′)^{1/m} - q, or -f."""
+        """Release function: -q, or (-κp′)^{1/m} - q, or -f."""
         if self.release == "displacement":
             return -q
         if self.lag:
-            # q at which p + κp′ = 0, so that the zero is a simple one for κ = 0 as well.
+            # The q at which p + κp′ = 0, minus q. Its zero is simple even for κ = 0.
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
@@ -479,7 +497,10 @@ class ForceLaw(Ball):
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """From polynomials through the nodes of contacts that are found in one panel each."""
+        """As :meth:`.Ball.release_slopes`, if one panel is enough for each contact; otherwise None.
+
+        The slopes come from the polynomials through the nodes of the panels.
+        """
         given = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": 1.0, "T": T}
         rows, motion, start, _ = self._started(given, table)
         guess = self._guessed(rows)
@@ -496,8 +517,10 @@ class ForceLaw(Ball):
     def _started(
         self, values: Mapping, table: Table
     ) -> tuple[Rows, ContactMotion, NDArray, NDArray]:
-        """Contacts that are given: their rows, their motion, q and v, and the derivatives of these,
-        of the shape (2, directions, rows).
+        """Start contacts.
+
+        Returns their rows, their motion, q and v at the start, and the derivatives of q and v,
+        shape (2, directions, rows).
         """
         rows = values_by_row({**self.values, **values, **table.parameters})
         given = rows.given
@@ -510,7 +533,7 @@ class ForceLaw(Ball):
         motion = ContactMotion(
             self.root, self.force_at, self._release, tuple(kinks), given, rows.steps
         )
-        # Where a contact resumes, the ball moves away, u < 0, from the line p + κp′ = 0.
+        # If a contact resumes, the ball starts at p + κp′ = 0 and moves away from the table: u < 0.
         q = np.zeros(rows.size)
         by = np.array([none, rows.steps.get("u", none)])
         if self.lag and np.any(given["u"] < 0):
@@ -525,7 +548,7 @@ class ForceLaw(Ball):
         return rows, motion, np.array([q, given["u"]]), by
 
     def _guessed(self, rows: Rows) -> Guess | None:
-        """Free impacts in the place of contacts that end; None if they are no good guess."""
+        """Free impacts as a guess of contacts with a known end; None if they are a bad guess."""
         u = rows.given["u"]
         if self.root == 1 or self.kinks or not rows.size or not np.all(u > 0):
             return None
@@ -543,7 +566,7 @@ class ForceLaw(Ball):
         *,
         guessed: bool = True,
     ) -> tuple[Values, Impact]:
-        """The root time and the state at the root time T or at the first release."""
+        """Root time and state, at T if it is given, otherwise at the first release."""
         values = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows, motion, start, by = self._started(values if T is None else values | {"T": T}, table)
         given = rows.given
@@ -552,11 +575,11 @@ class ForceLaw(Ball):
         if T is None:
             depth = self.at(**self.own(given)).depth(u)
             first = FIRST_PANEL * depth ** (1 / self.root) / np.abs(u)
-            # A table at rest has no period; most impacts last some three times P/u, and end before.
+            # A table at rest has no period. Most impacts last about 3 P/u, and end before 8 P/u.
             period = np.where(given["amplitude"] == 0, 8 * depth / np.abs(u), period)
             ends, slopes = integrate_contacts(motion, start, by, first, period, longest)
         else:
-            # So many panels are about the least that impacts need.
+            # Impacts need at least about this number of panels.
             one = self.root == 1 and rows.size <= FEW_CONTACTS
             first = given["T"] / (1.0 if one else 1.5 * self.root)
             by_until = rows.steps.get("T", np.zeros((rows.directions, rows.size)))
@@ -570,13 +593,13 @@ class ForceLaw(Ball):
 
 
 def check_force(law: ForceLaw) -> None:
-    """Raise ValueError, in one line, unless a force is as :class:`ForceLaw` describes it.
+    """Raise ValueError unless the force meets the requirements of :class:`ForceLaw`.
 
-    Along lines of constant rates and of constant depths, its change between neighbours must be the
-    integral of its derivative by complex steps. Of a row of balls those with an extreme parameter
-    are checked.
+    The force is sampled along lines of constant rate and of constant depth. Its change between
+    neighbouring samples must equal the integral of its derivative by complex steps. In a row of
+    balls, the balls with an extreme value of a parameter are checked.
     """
-    # A force may have no parameters at all.
+    # The entry without a name serves forces without parameters.
     arrays = broadcast_named([*law.values.items(), ("", 0.0)])
     rows = np.stack([np.ravel(np.real(x)) for x in arrays], axis=-1)
     for row in np.unique(np.concatenate([rows.argmin(axis=0), rows.argmax(axis=0)])):
@@ -598,14 +621,14 @@ def _check_one(law: ForceLaw, given: dict) -> None:
 
 
 def _depth_of_one(law: ForceLaw) -> float:
-    """The depth at which a ball of the speed 1 is stopped; ValueError if there is none."""
+    """Depth at which the force stops a ball with the speed 1. Raises ValueError if it does not."""
     p = np.array([0.5, 1.0]) + 1j * H
     try:
         force = law.force_at(p, p, 0.0, {**law.values, "u": 1.0})
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(
-            f"force: fails for arrays of complex numbers, which need np.where in place of if"
+            f"force: fails for arrays of complex numbers, which need np.where instead of if"
             f" ({reason})"
         ) from None
     if np.shape(force) != p.shape:
@@ -613,12 +636,12 @@ def _depth_of_one(law: ForceLaw) -> float:
     with np.errstate(all="ignore"):
         depth = float(law.depth(1.0))
     if not LN_DEPTHS[0] + 1 < np.log(depth) < LN_DEPTHS[1] - 1:
-        raise ValueError("force: stops no ball of the speed 1 at any depth")
+        raise ValueError("force: stops no ball of the speed 1 at any depth; check its sign")
     return depth
 
 
 def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Callable) -> None:
-    """Compare the changes of the force between points x of lines with integrals of its slopes."""
+    """Compare the changes of the force between points x of lines with integrals of its slope."""
     nodes, weights = legendre.leggauss(4)
     width = np.diff(x)
     inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
@@ -629,7 +652,7 @@ def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Cal
     p, v = points
     values = law.force_at(p, v, 1.0, given)
     change = np.diff(values)
-    # The quadrature of p^{1/4} between neighbours is wrong by 1e-11 of it.
+    # The quadrature of p^{1/4} between neighbours has a relative error of 1e-11.
     wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * np.abs(values[:, 1:])
     for kink in law.kinks:
         side = np.sign(kink(*points, **law.own(given)))
@@ -641,7 +664,7 @@ def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Cal
     where = f"p = {p:.2g}, v = {v:.2g}"
     if np.count_nonzero(wrong) <= FEW_KINKS:
         raise ValueError(
-            f"force: has a kink or a jump near {where}; declare by kinks what is zero there"
+            f"force: has a kink or a jump near {where}; give kinks a function that is zero there"
         )
     raise ValueError(
         f"force: is not analytic in {name} at {where}: its derivative is"
@@ -651,14 +674,15 @@ def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Cal
 
 
 def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:
-    """Whether the force is an analytic function of q = p^{1/m} at q = 0: then its Legendre
-    coefficients on a short range of q fall geometrically.
+    """Raise ValueError unless the force is an analytic function of q = p^{1/m} at q = 0.
+
+    If it is, its Legendre coefficients on a short range of q decay geometrically.
     """
     x, _ = legendre.leggauss(24)
     to_coefficients = np.linalg.inv(legendre.legvander(x, 23))
 
     def last(root: int) -> float:
-        """The last coefficients, over those in the middle or over rounding."""
+        """Last coefficients, divided by the middle ones or by rounding errors."""
         q = (x + 1) / 2 * (0.01 * depth) ** (1 / root)
         sizes = np.abs(to_coefficients @ law.force_at(q**root, 0.5 + 0 * q, 1.0, given))
         return sizes[-4:].max() / max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())

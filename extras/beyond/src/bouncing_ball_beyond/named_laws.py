@@ -1,9 +1,11 @@
-"""Contact laws that have names: functions that return a :class:`.ForceLaw`; see docs/laws.md.
+"""Contact laws with names: functions that return a :class:`.ForceLaw` (docs/laws.md).
 
-A law is given by the parameters of its force, numbers or arrays, or by the restitution coefficient
-and the duration of a free impact at a speed. All is dimensionless: with a ball of the mass m on a
-table of the frequency Ω under gravity g, p = Ω²x/g is the penetration and f = F/(mg) the force per
-mass. A cubic step s = x²(3 - 2x) with x = p/d grows from 0 at the surface to 1 at the depth d.
+Give either the parameters of the force, as numbers or arrays, or the restitution coefficient and
+the duration of a free impact at a speed.
+
+All quantities are dimensionless. Let a ball of mass m bounce on a table of frequency Ω under
+gravity g. Then p = Ω²x/g is the penetration, and f = F/(mg) is the force per mass. Some laws use
+the cubic step s = x²(3 - 2x) with x = p/d, which grows from 0 at the surface to 1 at the depth d.
 """
 
 from collections.abc import Callable
@@ -20,7 +22,7 @@ HERTZ = (1, -0.5, -2)
 SPRING = (1, 0, -2)
 DAMPER = (1, 0, -1)
 NUMBER = (0, 0, 0)
-"""Powers of mass, length and time in N/m^{3/2}, N/m, N s/m and 1."""
+"""Powers of mass, length and time in N/m^{3/2} (`HERTZ`), N/m, N s/m and 1."""
 
 RANGES: dict[str, Any] = {
     "frequency_ratio": {"low": 0, "high": np.inf, "low_allowed": False},
@@ -29,16 +31,16 @@ RANGES: dict[str, Any] = {
     "damping_ratio": {"low": 0, "high": np.inf, "low_allowed": True},
     "damping": {"low": 0, "high": np.inf, "low_allowed": True},
 }
-"""The least and the largest value of a parameter, and whether the least one is allowed."""
+"""Lower and upper bound of each parameter, and whether the lower bound is allowed."""
 
 UNITS_OF_RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
-"""The units of ϖ and ζ."""
+"""Units of ϖ and ζ."""
 
 STEPPED = 0.1
-"""The depth d of a law that is given by an impact, over the scale of the penetration."""
+"""Depth d, divided by the scale P of the penetration, of a law that is given by an impact."""
 
 MOST_DAMPED = 1e4
-"""The largest damping that is tried for a restitution coefficient, in the unit of each law."""
+"""Maximum damping that is tried for a restitution coefficient, in the unit of each law."""
 
 
 def law_of_impact(
@@ -46,10 +48,23 @@ def law_of_impact(
 ) -> ForceLaw:
     """Find the law whose free impact at a speed has a restitution coefficient and a duration.
 
-    ``law_of(damping, length, speed)`` is the law with the scales P of length and v of speed and a
-    damping g ≥ 0, so that the equation of motion in x = p/P and s = vt/P has g and neither P nor v.
-    r in (0, 1], D > 0 and the speed > 0 may be arrays. Raise a ValueError if no g up to 10⁴ gives
-    this r.
+    Parameters
+    ----------
+    law_of : callable
+        Function ``law_of(damping, length, speed)`` that returns the law with the damping g ≥ 0, the
+        scale P of length and the scale v of speed. The equation of motion in x = p/P and s = vt/P
+        must depend on g only, not on P and v.
+    restitution : array_like
+        r in (0, 1].
+    duration : array_like
+        D > 0.
+    speed : array_like
+        Closing speed of the impact, > 0.
+
+    Raises
+    ------
+    ValueError
+        If no g up to about 10⁴ gives this r.
 
     Examples
     --------
@@ -71,10 +86,10 @@ def law_of_impact(
 
 
 def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float, float]:
-    """The g with which impacts have a restitution coefficient, and D of the one with P = v = 1."""
+    """Damping g that gives a restitution coefficient, and D of this law for P = v = 1."""
 
     def impact(damping: Values) -> tuple[float, float]:
-        """w and D; w = 0 if the ball stays."""
+        """w and D of a free impact with the speed 1; w = 0 if the ball stays."""
         _, end = law_of(damping, 1.0, 1.0).first_impact(0.0, 1.0, 0.0, 0.0)
         return float(np.nan_to_num(end.speed)), float(end.duration)
 
@@ -91,7 +106,8 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
     if abs(r - restitution) > 1e-9:
         least = max(r, impact(low)[0])
         raise ValueError(
-            f"restitution = {restitution:g}: this law has none between 0 and {least:.4g}"
+            f"restitution = {restitution:g}: this law has none between 0 and {least:.4g};"
+            f" give a larger one"
         )
     return damping, duration
 
@@ -99,10 +115,19 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
 def _given(
     values: dict[str, Values], impact: dict[str, Values], of_scales: Callable, **kind: Any
 ) -> ForceLaw:
-    """The law of a kind with the given values of its parameters, or that of an impact.
+    """Return a law from the values of its parameters, or from an impact.
 
-    ``impact`` has restitution, duration and speed, and ``of_scales(g, P, v)`` the values of the
-    parameters at the scales P and v. ``kind`` are the other arguments of :class:`.ForceLaw`.
+    Parameters
+    ----------
+    values : dict
+        Parameters of the force, each None if an impact is given.
+    impact : dict
+        Restitution, duration and speed, each None if the parameters are given.
+    of_scales : callable
+        Function ``of_scales(g, P, v)`` that returns the parameters for the damping g and the scales
+        P and v, as in `law_of_impact`.
+    **kind
+        Other arguments of :class:`.ForceLaw`.
     """
     without = [name for name, value in values.items() if value is None]
     lacking = [name for name, value in impact.items() if value is None]
@@ -111,8 +136,8 @@ def _given(
     if without or len(lacking) < len(impact):
         present = [name for name, value in (values | impact).items() if value is not None]
         raise ValueError(
-            f"a law is given by {' and '.join(values)}, or by restitution, duration and speed,"
-            f" and not by {', '.join(present) or 'nothing'}"
+            f"give either {' and '.join(values)}, or restitution, duration and speed;"
+            f" given: {', '.join(present) or 'nothing'}"
         )
     values = {name: checked(name, value, **RANGES[name]) for name, value in values.items()}
     return ForceLaw(values=values, **kind)
@@ -127,11 +152,13 @@ def linear(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = ϖ²p + 2ζϖp′, ϖ > 0, ζ ≥ 0: a spring and a damper, as :class:`.SpringDamper`, but
-    integrated.
+    """f = ϖ²p + 2ζϖp′ with ϖ > 0, ζ ≥ 0: a spring and a damper, integrated numerically.
 
-    ``release`` is "displacement", "force" or "approach": contacts end where p = 0 or where f = 0.
-    With "approach" they end where p = 0 and the damper acts on approach only, p′ > 0.
+    :class:`.SpringDamper` is this law in closed form. ``release`` determines where contacts end:
+
+    - "displacement": where p = 0;
+    - "force": where f = 0;
+    - "approach": where p = 0, and the damper acts only on approach, p′ > 0.
 
     Examples
     --------
@@ -185,11 +212,12 @@ def hunt_crossley(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K p^{3/2} (1 + C p′), K > 0, C ≥ 0: the damping is proportional to the force of Hertz.
+    """f = K p^{3/2} (1 + C p′) with K > 0, C ≥ 0: damping proportional to the force of Hertz.
 
     The force k x^{3/2} (1 + λẋ) has K = k√g/(mΩ³) and C = λg/Ω. For slow impacts 1 - r = (2/3) C v.
-    K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as quoted by
-    Simbody (``HuntCrossleyContact.h``).
+
+    Source: K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as
+    quoted by Simbody (``HuntCrossleyContact.h``).
     """
     return _given(
         {"stiffness": stiffness, "damping": damping},
@@ -213,13 +241,13 @@ def tsuji(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K p^{3/2} + C √K p^{1/4} p′, K > 0, C ≥ 0: Hertz' contact with one restitution at all
-    speeds.
+    """f = K p^{3/2} + C √K p^{1/4} p′ with K > 0, C ≥ 0: Hertz' contact with a constant r.
 
-    C = √5 (-ln r)/√(π² + ln² r); from C = √5 on the ball does not leave. The force
-    k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α. Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71
-    (1992) 239-250, as quoted by LAMMPS; D. Antypov and J. A. Elliott, Europhysics Letters 94 (2011)
-    50004, as quoted by Yade.
+    r is the same at all speeds, with C = √5 (-ln r)/√(π² + ln² r). If C ≥ √5, the ball does not
+    leave the table. The force k x^{3/2} + α √(mk) x^{1/4} ẋ has C = α.
+
+    Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as quoted by
+    LAMMPS; D. Antypov and J. A. Elliott, Europhysics Letters 94 (2011) 50004, as quoted by Yade.
 
     Examples
     --------
@@ -250,14 +278,17 @@ def kuwabara_kono(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = K (p^{3/2} + C√p p′), K > 0, C ≥ 0: a viscoelastic sphere that does not adhere.
+    """f = K (p^{3/2} + C√p p′) with K > 0, C ≥ 0: a viscoelastic sphere that does not adhere.
 
-    The contact ends where the force vanishes, p + C p′ = 0; the surface is still deformed there.
-    The force k (x^{3/2} + (3/2) A √x ẋ) has C = (3/2) AΩ. For slow impacts 1 - r = 1.15 C K^{2/5}
-    v^{1/5}. G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as
+    The contact ends where the force vanishes, p + C p′ = 0. The surface is still deformed there.
+    The force k (x^{3/2} + (3/2) A √x ẋ) has C = (3/2) AΩ. For slow impacts
+    1 - r = 1.15 C K^{2/5} v^{1/5}.
+
+    Sources: G. Kuwabara and K. Kono, Japanese Journal of Applied Physics 26 (1987) 1230-1233, as
     quoted by the CGNS standard; N. V. Brilliantov, F. Spahn, J.-M. Hertzsch and T. Pöschel,
-    Physical Review E 53 (1996) 5382-5392, as quoted by LAMMPS; for the end T. Schwager and T.
-    Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox Approx-ViscoElastic-CoR.
+    Physical Review E 53 (1996) 5382-5392, as quoted by LAMMPS. For the end of the contact:
+    T. Schwager and T. Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox
+    Approx-ViscoElastic-CoR.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping},
@@ -288,11 +319,13 @@ def adams_impact(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = max(0, K p^{3/2} + C s p′), K > 0, C ≥ 0, d > 0: the function IMPACT of Adams.
+    """f = max(0, K p^{3/2} + C s p′) with K > 0, C ≥ 0, d > 0: the function IMPACT of Adams.
 
-    A damper that would pull is left out, and the contact ends at p = 0. Impacts that are much less
-    deep than d, the depth of full damping, lose little. If an impact is given, d is a tenth of
-    (v²/K)^{2/5}. Sources: the manuals of SolidWorks Motion and Altair MotionSolve.
+    The force is 0 where the damper would make it pull. The contact ends at p = 0. The damping is
+    full from the depth d on, so much shallower impacts lose little energy. If an impact is given, d
+    is a tenth of (v²/K)^{2/5}.
+
+    Sources: the manuals of SolidWorks Motion and Altair MotionSolve.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},
@@ -321,7 +354,7 @@ def _full_depth(p: Values, v: Values, stiffness: Values, damping: Values, depth:
 
 
 def _pulls(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
-    """The force over p^{3/2}, where it is not limited."""
+    """Force without the limit 0, divided by p^{3/2}."""
     inside = np.sqrt(p) * (3 - 2 * p / depth) / (depth * depth)
     deep = np.maximum(p, depth)
     step = np.where(np.real(p) < np.real(depth), inside, 1 / (deep * np.sqrt(deep)))
@@ -337,10 +370,10 @@ def simscape_contact(
     duration: Values = None,
     speed: Values = None,
 ) -> ForceLaw:
-    """f = s (K p + C p′), K > 0, C ≥ 0, d > 0: the Spatial Contact Force of Simscape Multibody.
+    """f = s (K p + C p′) with K > 0, C ≥ 0, d > 0: Spatial Contact Force of Simscape Multibody.
 
-    Spring and damper grow over the transition region of the width d. The contact ends where the
-    force vanishes, p + κp′ = 0 with κ = C/K. The manual gives no formula of its step; the cubic is
+    Spring and damper increase over a transition region of width d. The contact ends where the force
+    vanishes: p + κp′ = 0 with κ = C/K. The manual gives no formula of the step, so a cubic is
     assumed. If an impact is given, d is a tenth of v/√K.
     """
     return _given(

@@ -165,7 +165,7 @@ class Ball:
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """End, at T, of an impact that starts at the time τ with the closing speed u."""
+        """State at T of an impact that starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
     def contact_after(
@@ -280,8 +280,8 @@ def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
 def checked(name: str, value: Values, low: float, high: float, *, low_allowed: bool) -> Values:
     """Return ``value`` as a float or an array of floats.
 
-    Raises ValueError unless all entries are finite, from ``low`` to ``high``. ``low`` itself counts
-    only if ``low_allowed``.
+    Raises ValueError unless all entries are finite, from ``low`` to ``high``. ``low`` itself is
+    allowed only if ``low_allowed``.
     """
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
@@ -312,7 +312,7 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(f"{what} must accept arrays, also complex ones ({reason})") from None
-    # Errors of the difference: eps/step by rounding, and step² times the third derivative.
+    # The difference errs by eps/step (rounding) and by step² times the third derivative.
     size = np.abs(along) + np.abs(across)
     if np.any(np.abs(along - across) > 1e-4 * size.max() + 1e-9 * np.abs(values).max() / reach):
         raise ValueError(f"{what} must be analytic: write it without abs, real, sign and the like")

@@ -133,9 +133,9 @@ def landings(
 def emergences(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """Find the first times, not before ``start``, at which balls are at or above the level.
+    """Find when balls are first at or above the level of the table, not before ``start``.
 
-    The level is the level of the table. The time is infinite for balls that fall back before.
+    The time is infinite for balls that fall back before.
     """
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:

@@ -92,7 +92,10 @@ class FollowedBranch:
 
     @property
     def values(self) -> NDArray:
-        """Values of this parameter, shape (points,); for a curve, of the second one."""
+        """Values of the parameter that changes, shape (points,).
+
+        For a curve they are the values of its second parameter.
+        """
         return self.z[:, -1]
 
     @cached_property
@@ -217,8 +220,8 @@ class _Passed(NamedTuple):
     def order(self) -> tuple:
         """Sort key along the branch.
 
-        If a flight vanishes, an impact grazes and a release is lost at the same point, the order is
-        the order of `OrbitEquations.kinds`.
+        If a flight vanishes, an impact grazes and a release is lost at the same point, they
+        come in the order of `OrbitEquations.kinds`.
         """
         kinds = [*self.orbit.equations.kinds, self.orbit.kind]
         return self.number, round(self.place, 6), kinds.index(self.orbit.kind)

@@ -29,7 +29,7 @@ AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
 def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
     """Follow a periodic orbit along a parameter, or many orbits side by side.
 
-    The branch goes through an ordinary orbit. From a special orbit, its kind determines the branch:
+    The branch goes through an ordinary orbit. At a special orbit it depends on the kind:
 
     - saddle-node: the stable branch;
     - period doubling: orbits of twice the period;
@@ -57,12 +57,13 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
     Returns
     -------
     FollowedBranch, or a list of FollowedBranch and OrbitNotFound
-        A list for a sequence of orbits, with the reason instead of each branch that is missing.
+        A list for a sequence of orbits. An OrbitNotFound is the reason why a branch is missing.
 
     Raises
     ------
     OrbitNotFound
-        If a single orbit has no branch, for example on the side of `to` of a period doubling.
+        If a single orbit has no branch. For example, the doubled orbits may not be on the side of
+        the period doubling on which `to` is.
 
     Examples
     --------
@@ -92,8 +93,8 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     Returns
     -------
     list of FollowedBranch, or a list of such lists and OrbitNotFound
-        Branches of the cascade. A sequence of doublings gives a list of cascades, with the reason
-        instead of each cascade that is missing.
+        Branches of the cascade. A sequence of doublings gives a list of cascades. An OrbitNotFound
+        is the reason why a cascade is missing.
 
     Raises
     ------
@@ -317,7 +318,7 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
-    """First special orbit of a kind, or an OrbitNotFound that quotes the end of the branch."""
+    """First special orbit of a kind, or an OrbitNotFound: why the branch ends before."""
     of_kind = (each for each in special if each.kind == kind)
     return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
 

@@ -21,7 +21,7 @@ from bouncing_ball_beyond.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables import FUNDAMENTAL, SINE, Table
 
 FAR = 10.0
-"""Maximum clearance. It is the clearance of a flight whose gap has no minimum."""
+"""Maximum clearance, and the clearance of a flight whose gap has no local minimum."""
 
 
 POINT = (1.0,), (1.0,), 1e-7
@@ -105,7 +105,7 @@ class Flights(NamedTuple):
     table: Table
 
     def at(self, t: NDArray) -> tuple[NDArray, NDArray]:
-        """δ and δ′ when the times t have passed since the release, shape (rows, k, times)."""
+        """δ and δ′ at times t after the release, shape (rows, k, times)."""
         leaves, gap, speed, _, amplitude = (each[..., np.newaxis] for each in self[:5])
         table = self.table.rows(np.s_[..., np.newaxis])
         return flight(t, leaves, gap, speed, amplitude, table)
@@ -206,7 +206,7 @@ class OrbitEquations:
         return here
 
     def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
-        """Return the orbit z, shape (N,), with its quantities."""
+        """Return the orbit z, shape (N,), as a `PeriodicOrbit`."""
         return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
@@ -217,8 +217,8 @@ class OrbitEquations:
     def sizes(self, z: NDArray) -> NDArray:
         """Sizes of the entries of z, shape (rows, N).
 
-        They are 1 + the largest unknown for all unknowns of the impacts, and 1 + |λ| for a
-        parameter λ.
+        All unknowns of the impacts have the size 1 + their largest modulus. A parameter λ has the
+        size 1 + |λ|.
         """
         sizes = 1 + np.abs(z)
         sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
@@ -383,7 +383,7 @@ class OrbitEquations:
         return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
 
     def ends(self, z: NDArray) -> Flights:
-        """Ends of the contacts, and the flights after them."""
+        """Return the flights after the contacts."""
         x, ball, amplitude, table = self.split(z)
         impact = ball.contact(x[..., 0], x[..., 1], x[..., -1], amplitude, table=table)
         leaves = x[..., 0] + impact.duration
@@ -408,9 +408,9 @@ class OrbitEquations:
         ).min(axis=-1)
 
     def contact_clearance(self, z: NDArray) -> NDArray:
-        """Smallest distance of a local maximum of the release function below zero, shape (rows,).
+        """Minus the largest local maximum of the release function in all contacts, shape (rows,).
 
-        All contacts are searched. The distance is at most `FAR`, also for instantaneous impacts.
+        It is at most `FAR`, and `FAR` for instantaneous impacts.
         """
         if not self.ball.has_duration:
             return np.full(len(z), FAR)
@@ -519,7 +519,7 @@ class OrbitEquations:
         return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
 
     def later(self, z: NDArray, turns: Any) -> NDArray:
-        """Shift orbits by a number of turns of the table, by rows."""
+        """Shift each orbit by a number of turns of the table."""
         z = z.copy()
         z[:, : self.size : self.unknowns] += 2 * np.pi * np.reshape(turns, (-1, 1))
         return z
@@ -557,7 +557,7 @@ def _derivative(function: Callable, t: NDArray) -> NDArray:
 def flight(
     s: Any, leaves: Any, gap: Any, speed: Any, amplitude: Any, table: Table = SINE
 ) -> tuple[Any, Any]:
-    """δ and δ′ in a flight, δ″ = -1 - w″, when a time s has passed since the release.
+    """δ and δ′ in a flight, a time s after the release; δ″ = -1 - w″.
 
     The release is at the time `leaves` with δ = gap and δ′ = speed.
     """
@@ -677,7 +677,7 @@ class PeriodicOrbit:
             "bounce_velocity": self.bounce_velocity,
             "apparent_restitution": self.apparent_restitution,
             "max_height": self.max_height,
-            # A special orbit is between stable and unstable orbits: rounding errors would decide.
+            # Rounding errors would decide on the stability of a special orbit.
             **({} if self.kind else {"stable": self.stable}),
             "admissible": self.admissible,
         }

@@ -37,7 +37,7 @@ ROUNDS = 12
 SMALL = 1e-11
 """Last coefficients below which a polynomial is exact within rounding.
 
-An error of 1e-2 has rounding errors of 1e-14.
+The rounding errors of an error of 1e-2 are 1e-14.
 """
 
 
@@ -146,7 +146,7 @@ def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDAr
     """
     amplitude = np.asarray(amplitude, float)
     node = impact.line / table.slope
-    # C is a difference of numbers as large as the speed, so it has rounding errors of this size.
+    # C is a difference of numbers as large as the speed: its error is a few eps times the speed.
     rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
     below = (amplitude < node) & (node - amplitude <= rounding)
     return np.where(below, node, amplitude)
@@ -192,7 +192,7 @@ def law_errors(
         Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. The error
         of the phase is infinite at the saddle-node of the restitution model, because the phase is
         0 there. Above the period doubling they are the errors of unstable orbits;
-        ``contact_values(Rigid(r), …)`` gives its Λ.
+        ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
 
     Examples
     --------
@@ -264,9 +264,10 @@ def law_coefficients(
 def law_remainders(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """Estimate upper limits of the remainders of the error law: exact error minus law.
+    """Estimate upper limits of the remainders of the error law.
 
-    A remainder is estimated as Sη. S is a scale from the moduli of the terms of the law, and
+    A remainder is the exact error minus the error of the law. The limit is Sη: S is a scale from
+    the moduli of the terms of the law, and
     η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ and Y₀ are its Λ
     and Y_D. The theorem gives the order in D. The factor 1 is fitted to random orbits and tables
     (docs/error-law.md). Parameters are as in :func:`law_errors`.
@@ -314,8 +315,8 @@ def law_thresholds(
 ) -> dict:
     """Compute the ϖ above which the restitution model is within a tolerance, by the error law.
 
-    It is |K|/ε, except for the height and the phase, which the saddle-node changes in the first
-    order (Eq. R7 of the article).
+    This ϖ is |K|/ε, except for the height and the phase. The saddle-node changes their errors in
+    the first order (Eq. R7 of the article).
 
     Parameters
     ----------
@@ -396,7 +397,10 @@ def _first_stretch(
 
 @np.errstate(invalid="ignore", divide="ignore")
 def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
-    """Last points in brackets at which functions fall to zero. They may be NaN before."""
+    """Find the last point in each bracket at which a function falls to zero.
+
+    The function may be NaN before this point.
+    """
     low, high = bracket
     columns = np.arange(low.size)
     for _ in range(ROUNDS):
@@ -639,9 +643,9 @@ class ErrorThreshold(NamedTuple):
         - "no orbit": there is no orbit at the largest ratio, or no orbit just below the range of
           ratios in which the error stays within the tolerance.
     unstable : array of str
-        Which orbit is unstable at this ratio, or at the largest ratio if it is NaN: "", "in the
-        simple model", "on the contact" or "in both models". It is "" for bifurcations, and if there
-        is no orbit.
+        Which orbit is unstable: "", "in the simple model", "on the contact" or "in both models".
+        This is the orbit at ``ratio``, or at the largest ratio if ``ratio`` is NaN. The text is ""
+        for bifurcations, and if there is no orbit.
     """
 
     ratio: NDArray
@@ -650,7 +654,11 @@ class ErrorThreshold(NamedTuple):
 
 
 UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
-"""Texts by index: 1 if unstable in the simple model, plus 2 if unstable on the contact."""
+"""Texts by index.
+
+The index is 1 if the orbit is unstable in the simple model, plus 2 if it is unstable on the
+contact.
+"""
 
 
 def error_thresholds(

@@ -63,9 +63,9 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 def curvature(
     equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
-    """Derivatives along a vector v that returns multiplied by ±1.
+    """Differentiate the legs along a vector v that returns multiplied by ±1.
 
-    The orbit is taken twice, because the vector is periodic after two turns.
+    The orbit is taken twice, so that the vector is periodic in both cases.
     """
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
@@ -77,7 +77,7 @@ def curvature(
 
 
 def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> float:
-    """Coefficient a for the multiplier 1, or b for -1, for v and w as scaled."""
+    """Coefficient a for the multiplier 1, or b for -1; the scales of v and w enter it."""
     bend = closed(bent.first, multiplier) @ v
     if multiplier == 1:
         return float(w @ bend / 2)
@@ -212,7 +212,7 @@ Grazings are located to 1e-12.
 SLOW = 1e-3
 """Speed of an added impact, divided by aD².
 
-The branch of a stiff contact turns back at a few hundredths.
+At a stiff contact the branch turns back at a few hundredths.
 """
 
 

@@ -33,7 +33,7 @@ PHASES, MOST_PHASES = 32, 256
 ONE_SWING = 1.5
 """Maximum T of a contact of the map, divided by T of a free impact.
 
-The ball has then turned back only once. No earlier release can appear between the points of the
+The ball has then turned back only once, and no earlier release can appear between the points of the
 map.
 """
 

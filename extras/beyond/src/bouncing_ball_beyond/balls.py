@@ -33,8 +33,20 @@ A step on arrays costs as much as the steps of this many balls in a loop.
 
 
 class Impact(NamedTuple):
-    """The end of an impact, as arrays of one shape; `release` is negative in a contact, zero at its
-    end, and zero for an instant."""
+    """State at the end of an impact, as arrays of one shape.
+
+    Attributes
+    ----------
+    duration : array
+        Duration D.
+    gap : array
+        δ at the end.
+    speed : array
+        δ′ at the end.
+    release : array
+        Release function: negative during a contact, zero at its end. Zero for an instantaneous
+        impact.
+    """
 
     duration: np.ndarray
     gap: np.ndarray
@@ -130,11 +142,11 @@ class Ball:
         return 0.0 * np.asarray(u)
 
     def elapsed_contact(self, u: Values) -> Values:
-        """How long a contact would have lasted at the instant that stands for it; 0 for others."""
+        """Duration of a contact before the instant that replaces it; 0 for other balls."""
         return 0.0 * u
 
     def remaining_contact(self, u: Values) -> Values:
-        """Remaining duration of a contact after the instant that replaces it; 0 for other balls."""
+        """Duration of a contact after the instant that replaces it; 0 for other balls."""
         return 0.0 * u
 
     def loop_parameters(self, table: Table) -> tuple | None:
@@ -171,8 +183,10 @@ class Ball:
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ a time after the start of a contact, or of a rest on the table, where both are
-        zero."""
+        """δ and δ′ when ``time`` has passed since the start of a contact.
+
+        If impacts are instantaneous, the contact is a rest on the table, and both are zero.
+        """
         nothing = 0.0 * (tau + u + time + amplitude)
         return nothing, nothing
 
@@ -503,7 +517,7 @@ class SpringDamper(Ball):
     def end_slopes(
         self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
     ) -> NDArray:
-        """Derivatives as of :meth:`Ball.end_slopes`, in closed form where there is one.
+        """Derivatives as in :meth:`Ball.end_slopes`, in closed form if there is one.
 
         The motion depends linearly on the table and on the initial state, so its derivatives are
         responses of the same oscillator.
@@ -594,7 +608,7 @@ class SpringDamper(Ball):
 def slopes_at_release(
     ball: Ball, tau: Values, u: Values, T: Values, amplitude: Values, table: Table
 ) -> NDArray:
-    """Derivatives as of :meth:`Ball.end_slopes` for a contact, by complex steps."""
+    """Derivatives as in :meth:`Ball.end_slopes` for a contact, by complex steps."""
     steps = 1j * H * np.eye(3).reshape(3, 3, *np.ones(np.ndim(tau), int))
     impact = ball.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude, table=table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
@@ -726,11 +740,11 @@ class Corrected(Ball):
         return -u * self.of.signature(u).centroid
 
     def elapsed_contact(self, u: Values) -> Values:
-        """t_c."""
+        """t_c, the duration of the contact before the impact."""
         return self.of.signature(u).centroid
 
     def remaining_contact(self, u: Values) -> Values:
-        """D - t_c, the remaining duration of the contact after the impact."""
+        """D - t_c, the duration of the contact after the impact."""
         signature = self.of.signature(u)
         return signature.duration - signature.centroid
 

@@ -126,7 +126,10 @@ def unknowns_of(ball: Ball) -> int:
 
 
 def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) -> NDArray:
-    """The row z of impacts, without the T of instants, and the values of what may change."""
+    """Row z from the unknowns of impacts and the values of the parameters that may change.
+
+    T is left out if the impacts have no duration.
+    """
     columns = np.stack([times, speeds, T][: unknowns_of(ball)], axis=-1)
     return np.append(columns.ravel(), values)
 
@@ -168,7 +171,7 @@ class OrbitEquations:
 
     @cached_property
     def unknowns(self) -> int:
-        """The number q of unknowns of an impact."""
+        """Number q of unknowns of an impact."""
         return unknowns_of(self.ball)
 
     @cached_property
@@ -777,7 +780,7 @@ class PeriodicOrbit:
 
     @property
     def scaled_durations(self) -> NDArray:
-        """T of the contacts, shape (impacts,); empty for instants."""
+        """T of the contacts, shape (impacts,); empty for instantaneous impacts."""
         return self._impacts[:, 2:].ravel()
 
     @property

@@ -541,7 +541,7 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
 
 
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
-    """Height, velocity, phase and apparent restitution of orbits with one impact, by rows."""
+    """Height, velocity, phase and apparent restitution of orbits with one impact, (rows,) each."""
     impacts, _, amplitudes, _ = equations.split(z)
     touch, speed = impacts[:, 0, :2].T
     amplitude = amplitudes[:, 0]
@@ -549,7 +549,7 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     leaves = ends.leaves[:, 0]
     table = equations.table
     velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
-    # An instant stands for a contact that began earlier and ends later.
+    # An instant replaces a contact that starts earlier and ends later.
     before = equations.ball.elapsed_contact(speed)
     after = equations.ball.remaining_contact(speed)
     approach = amplitude * table(touch, 1) - speed + before

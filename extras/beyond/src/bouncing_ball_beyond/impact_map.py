@@ -107,7 +107,7 @@ class ImpactMap:
         return tuple(found)
 
     def end_slopes(self, tau: NDArray, u: NDArray, T: NDArray, w: NDArray) -> NDArray:
-        """Derivatives as of :meth:`.Ball.end_slopes`; NaN where u is NaN."""
+        """Derivatives as in :meth:`.Ball.end_slopes`; NaN if u is NaN."""
         found = np.full((3, 2, *u.shape), np.nan)
         number, x = self._places(u)
         known = np.zeros(u.shape, bool)

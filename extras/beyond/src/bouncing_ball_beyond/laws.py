@@ -318,7 +318,7 @@ class ForceLaw(Ball):
     def end_slopes(
         self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
     ) -> NDArray:
-        """Derivatives as of :meth:`.Ball.end_slopes`."""
+        """Derivatives as in :meth:`.Ball.end_slopes`."""
         return slopes_at_release(self, tau, u, T, amplitude, table)
 
     def free(self, u: Values) -> Values:

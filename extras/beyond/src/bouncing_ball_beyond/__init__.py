@@ -1,8 +1,8 @@
 """Periodic orbits and motions of a ball on a vibrating table, with any contact.
 
-All quantities are dimensionless: the table is at Λ sin τ, gravity is 1, velocities are in units
-of g/Ω. A ball is an object of one of the classes of :mod:`.balls` or :mod:`.laws`; the public
-functions take it as their first argument.
+All quantities are dimensionless. The height of the table is ΛW(τ), by default Λ sin τ. Gravity is
+1, and velocities are in units of g/Ω. A ball is an instance of a class of :mod:`.balls` or
+:mod:`.laws`. Functions such as `orbit` and `simulate` take it as their first argument.
 """
 
 from importlib import import_module as _import_module
@@ -10,7 +10,7 @@ from typing import Any as _Any
 
 __version__ = "0.1.0"
 
-# The module of each public name; a module is imported with the first use of one of its names.
+# Module of each public name. A module is imported when one of its names is first used.
 _MODULES = {
     "Ball": "balls",
     "Corrected": "balls",

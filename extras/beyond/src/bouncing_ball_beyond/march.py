@@ -25,12 +25,13 @@ The next step would consist of rounding errors only.
 """
 
 SPECIAL = 1e-9
-"""As `TOLERANCE`, for special orbits, whose gradients have errors of up to 1e-7."""
+"""`TOLERANCE` for special orbits. Their gradients have errors of up to 1e-7."""
 
 NOISE = 1e-3
-"""Newton step, in the same units, that is not taken if the equations hold within rounding.
+"""If the equations hold within rounding, Newton steps larger than this are not taken.
 
-Such a step consists of rounding errors divided by a nearly singular matrix, as at a saddle-node.
+Units as for `TOLERANCE`. Such a step consists of rounding errors divided by a nearly singular
+matrix, as at a saddle-node.
 """
 
 FAST = 0.1
@@ -62,13 +63,17 @@ LARGEST_TURN = 0.3
 """Largest change of arctan(tr/(1 + det)) in a step. A larger change could hide two bifurcations."""
 
 FADED = 1e-6
-"""Impact speed, in g/Ω, below which an impact has vanished if a step does not halve the speed.
+"""Impact speed, in g/Ω, below which an impact counts as vanished, and its branch ends.
 
-This ends branches on which contacts become longer and longer.
+The step must also reduce the speed by less than half. This ends branches on which contacts become
+longer and longer.
 """
 
 BEFORE_END = 1e-3
-"""Distance from the end of a branch to the extra point before it, as a fraction of the step."""
+"""Relative distance of the extra point before the end of a branch from this end.
+
+It is a fraction of the part of the step before the end.
+"""
 
 
 AT_GOAL = "the end of the window"
@@ -156,9 +161,8 @@ def newton(
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
     """Newton's method for special orbits.
 
-    Gradients are expensive. Rows that have converged are therefore not iterated further. While the
-    steps to an isolated special orbit shrink fast (see `FAST`), Broyden's rule updates the gradient
-    instead.
+    Gradients are expensive, so the iteration of a row stops once it has converged. While the steps
+    to an isolated special orbit shrink fast (see `FAST`), Broyden's rule updates the gradient.
     """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
@@ -251,8 +255,9 @@ class Points(NamedTuple):
         Orbits and tangents.
     tests : array, shape (rows, tests)
         Test functions, which vanish at special orbits (`OrbitEquations.kinds`).
-    halves : array
-        Differences between both halves of the orbit, which vanish at a period halving.
+    halves : array, shape (rows, ...)
+        Differences between the first and the second half of the orbit. They vanish at a period
+        halving.
     """
 
     z: NDArray
@@ -273,10 +278,10 @@ def points_at(
 
 
 def _same_sign(before: Points, after: Points) -> Points:
-    """Return ``after`` with a test for period halving that changes its sign at one.
+    """Return ``after`` with a signed test for period halving.
 
-    This test, the last one, is the norm of ``halves`` and never negative. A step across a period
-    halving reverses ``halves``, and the test then gets the opposite sign.
+    The last test is the norm of ``halves``, which is never negative. A step across a period halving
+    reverses the direction of ``halves``. The test then gets the opposite sign.
     """
     merged = np.sum(before.halves * after.halves, axis=1) < 0
     tests = after.tests.copy()

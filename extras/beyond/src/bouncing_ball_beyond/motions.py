@@ -38,8 +38,8 @@ from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 RETURNED = 1e-7
 """Largest distance of a state from the fixed point of a periodic motion; see `apart`.
 
-It is far above rounding errors. It is far below the distance between two orbits with multipliers
-less than 1 - `MARGIN`.
+It is far above rounding errors. It is far below the distance between two orbits whose multipliers
+are less than 1 - `MARGIN`.
 """
 NEAR_BEFORE = 1e-5
 """Largest distance between corresponding impacts of the last two laps of a periodic motion."""
@@ -56,11 +56,11 @@ MAX_SECTIONS = 1024
 IMPACTS_AT_ONCE = 1 << 16
 """Number of impacts computed at once, summed over all balls."""
 RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
-"""Map that restarts a deviation after a lift-off, in an arbitrary direction."""
+"""Map that replaces a deviation by an arbitrary one after a lift-off."""
 RESET_OFFSET = 1e6
-"""Offset that exceeds the logarithm of the growth over all impacts computed at once."""
+"""Offset larger than the logarithm of the growth over all impacts computed at once."""
 WORTH_A_MAP = 20_000
-"""Number of impacts above which an :class:`.ImpactMap` saves time.
+"""Number of impacts, summed over all balls, above which an :class:`.ImpactMap` saves time.
 
 Building the map takes as long as about a thousand contacts.
 """
@@ -108,7 +108,7 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
     """Derivatives of the next impact (τ, u) with respect to the present one.
 
     Returns an array of the shape (2, 2, impacts, balls). It is zero at a lift-off, where the next
-    impact does not depend on the present one.
+    impact does not depend on the present impact.
     """
     ball = balls.ball
     table = balls.table
@@ -182,8 +182,8 @@ def ends_of(balls: Balls, impacts: int) -> dict:
 def is_worth_a_map(balls: Balls, impacts: int) -> bool:
     """Whether an :class:`.ImpactMap` saves time.
 
-    This is so for many impacts if the contact law must be integrated numerically, and if all balls
-    have the same parameters and the same table amplitude.
+    It does if there are at least `WORTH_A_MAP` impacts, if the contact law must be integrated
+    numerically, and if all balls have the same parameters and the same table amplitude.
     """
     ball = balls.ball
     if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
@@ -206,7 +206,7 @@ def _take(track: dict, which: Any) -> dict:
 def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
     """Follow balls until the motion of each is known, and store it in ``found``.
 
-    Floating-point warnings are off: deviations of long motions overflow, and deviations vanish at a
+    Floating-point warnings are off, because deviations overflow in long motions and vanish at a
     lift-off.
     """
     zeros = np.zeros(lane.size)
@@ -574,26 +574,34 @@ def motion_of(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motion on which a ball ends, after a first impact as in :func:`.simulate`.
+    """Find the motion on which a ball ends; the first impact is that of :func:`.simulate`.
 
     Parameters
     ----------
     ball, amplitude, phase, velocity, relative_velocity, table
         As in :func:`.simulate`; arrays span a grid.
     impacts : int
-        Number of impacts after which the search for a repetition ends, up to the next multiple of
-        25.
+        Number of impacts after which the search for a repetition ends. It is rounded up to a
+        multiple of 25, or of ⌈impacts/1024⌉ if that is larger.
 
     Returns
     -------
     xarray.Dataset
-        The ``kind``: "periodic"; "locked", if the ball also sticks to the table in each repetition;
-        "permanent contact"; "chaotic"; or "undecided", for the ``reason`` given. ``impacts`` and
-        the ``periods`` of the table until the motion repeats; a locked motion has 0 if rounding
-        decides on them, as the ``reason`` says. ``lyapunov_exponent`` per period of the table with
-        ``lyapunov_error``, 0 for motions that repeat, and ``exponent_sum``, that of both exponents.
-        The number of impacts ``followed``, one impact of the motion (``end_phase``,
-        ``end_velocity``), and all ``in_words``.
+        Variables over the grid:
+
+        - ``kind``: "periodic", "locked", "permanent contact", "chaotic" or "undecided". A locked
+          motion is periodic, and the ball sticks to the table in each period.
+        - ``reason``: why the motion is undecided, or why its period is unknown.
+        - ``impacts``, ``periods``: number of impacts, and of periods of the table, until the motion
+          repeats; 0 if it does not. They are also 0 for a locked motion if rounding errors
+          determine them; ``reason`` then reports this.
+        - ``lyapunov_exponent``: largest Lyapunov exponent per period of the table.
+        - ``lyapunov_error``: error of the exponent; 0 if the motion repeats.
+        - ``exponent_sum``: sum of both Lyapunov exponents, per period of the table.
+        - ``followed``: number of impacts for which the ball was followed.
+        - ``end_phase``, ``end_velocity``: phase of the table at one impact of the motion, and
+          velocity of the ball before this impact.
+        - ``in_words``: description of the motion as text.
 
     Raises
     ------
@@ -612,7 +620,7 @@ def motion_of(
 
 
 def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) -> xr.Dataset:
-    """The dataset of motions over a grid."""
+    """Convert the results of :func:`ends_of` to a dataset over a grid."""
     found = ends.copy()
     found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
     words = zip(ends["kind"], ends["followed"], ends["reason"], strict=True)
@@ -622,7 +630,7 @@ def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) 
 
 
 def in_words(kind: str, followed: int, reason: str) -> str:
-    """A motion in words.
+    """Describe a motion as text.
 
     Examples
     --------
@@ -655,26 +663,29 @@ def lyapunov(
     ball, amplitude, phase, velocity, relative_velocity, impacts, table
         As in :func:`motion_of`.
     neighbours : int
-        Where the motion looks chaotic, so many balls that start next to its end are followed for as
-        many impacts. If one of them comes to rest on the table or repeats its motion, the chaos may
-        be a transient: the kind is "undecided", and the exponent NaN. With 0 a transient is not
-        recognized, and a contact law takes a third of the time.
+        Number of neighbours that test each motion that looks chaotic. They start next to its last
+        state, and each is followed for up to ``impacts`` impacts. If a neighbour comes to rest on
+        the table or repeats its motion, the chaos may be a transient: the kind is then "undecided",
+        and the exponent is NaN. With 0 neighbours, transients are not detected, and a contact law
+        takes a third of the time.
 
     Returns
     -------
     xarray.Dataset
-        As of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m with its larger
-        multiplier μ, and -∞ if the later motion does not depend on earlier impacts. The error is
-        NaN if a ball was followed for too few relaxation lengths of about 1/(1 - r²) impacts.
+        Variables as of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m, where μ is
+        the multiplier of the larger modulus. It is -∞ if the later motion does not depend on
+        earlier impacts. The error is NaN if a ball was followed for too few relaxation lengths; one
+        such length is about 1/(1 - r²) impacts.
 
     Warnings
     --------
-    One ball of a contact law takes 5 to 10 ms of the processor for each impact, and the neighbours
-    two or three times as much: 2,000 impacts of ``linear(…, release="approach")`` take a minute.
+    With a contact law, one ball takes 5 to 10 ms of processor time per impact. The neighbours take
+    two or three times as long as the ball: 2,000 impacts of ``linear(…, release="approach")`` take
+    a minute.
 
     Examples
     --------
-    The multipliers of the 1-T orbit are complex, of modulus r:
+    The multipliers of the 1-T orbit are complex, and their modulus is r:
 
     >>> from bouncing_ball_beyond import Rigid
     >>> found = lyapunov(Rigid(0.85), amplitude=1.0, phase=1.1)
@@ -703,11 +714,12 @@ def lyapunov(
 
 
 def fastest(ball: Ball, amplitude: Values, table: Table = SINE) -> Values:
-    """A speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r), for 1 - r ≥ 0.05.
+    """Return a speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r).
 
-    V is the greatest speed of the table, Λ for a sine. An impact changes the absolute speed v of a
-    ball to r v + (1 + r) V at most, which is less than v above this. r is that of a free impact of
-    the speed 2π, or 0 if there is none.
+    V is the maximum speed of the table: Λ for a sine. An impact at the absolute speed v results in
+    a speed of at most r v + (1 + r) V, which is less than v above this speed. r is the restitution
+    coefficient of a free impact at the speed 2π, or 0 if that impact never ends. A divisor 1 - r
+    below 0.05 is replaced by 0.05.
 
     Examples
     --------
@@ -728,7 +740,7 @@ def basins(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motions on which balls end from a grid of first impacts, and their shares.
+    """Find the motions on which balls end that start from a grid of first impacts.
 
     Parameters
     ----------
@@ -737,25 +749,35 @@ def basins(
     amplitude : float
         Λ.
     starts : int
-        Number of starts along each axis, the phase of the table and the closing speed.
+        Number of starts along each axis. The axes are the phase of the table and the closing speed.
     relative_velocity_max : float, optional
-        The largest closing speed; by default (1 + r) max(Λ, 1)/(1 - r), above which every impact
-        slows the ball, for 1 - r ≥ 0.05.
+        Largest closing speed. The default is (1 + r) max(V, 1)/(1 - r), where V is the maximum
+        speed of the table; a divisor below 0.05 is replaced by 0.05. If r ≤ 0.95, every impact
+        above the default slows the ball.
     table : Table
-        The waveform of the table, by default a sine.
+        Waveform of the table, by default a sine.
     impacts : int
-        As in :func:`motion_of`. A ball is no longer followed once its motion is known.
+        Maximum number of impacts of a ball, as in :func:`motion_of`. A ball is no longer followed
+        once its motion is known.
 
     Returns
     -------
     xarray.Dataset
-        The ``destination`` of each start, the number of a ``motion``, and of each motion the
-        ``kind``, the ``impacts`` and ``periods``, the ``share`` of the starts with its standard
-        error, and its fastest impact (``end_phase``, ``end_velocity``). Each motion that repeats is
-        one of its own, also if others have as many impacts and periods. Those whose period is not
-        known cannot be told apart: they are one motion of each kind, without an impact. The
-        attribute ``impacts`` is the number of impacts after which the search for a repetition
-        ended.
+        One variable over the grid of starts:
+
+        - ``destination``: number of the motion on which the start ends.
+
+        Variables over the axis ``motion``:
+
+        - ``kind``, ``impacts``, ``periods``: as in :func:`motion_of`.
+        - ``share``, ``share_error``: share of the starts that end on the motion, and its standard
+          error.
+        - ``end_phase``, ``end_velocity``: fastest impact of the motion.
+
+        Motions that repeat are distinguished by their impacts, even if they have equal numbers of
+        impacts and periods. Motions of unknown period cannot be distinguished: all those of one
+        kind count as one motion, and its fastest impact is NaN. The attribute ``impacts`` is the
+        argument of the same name.
 
     Raises
     ------
@@ -764,12 +786,13 @@ def basins(
 
     Warnings
     --------
-    "chaotic" after ``impacts`` impacts may be a long transient. For ϖ = 15, r = 0.7, Λ = 1.3 and
-    60 starts along each axis, 2 % are chaotic after 2,000 impacts, and none is after 20,000.
+    A motion that is "chaotic" after ``impacts`` impacts may be a long transient. For ϖ = 15,
+    r = 0.7, Λ = 1.3 and 60 starts along each axis, 2 % are chaotic after 2,000 impacts, and 0 %
+    after 20,000.
 
-    Where a transient is chaotic, rounding decides on its end: with Tsuji's law (r = 0.85 and a
-    duration of 0.1 at the speed 3, Λ = 1.2) 21 of 900 balls end elsewhere if their first speeds
-    change by 10⁻¹⁴ of them. That is less than what the standard errors of the shares say.
+    Rounding errors determine where a chaotic transient ends. An example is Tsuji's law with
+    r = 0.85, a duration of 0.1 at the speed 3, and Λ = 1.2. A relative change of 10⁻¹⁴ in the first
+    speeds changes the end of 21 of 900 balls. This is less than the standard errors of the shares.
 
     Examples
     --------
@@ -782,7 +805,7 @@ def basins(
     check_table(table)
     given = axis("amplitude", amplitude)
     if given.ndim or any(np.ndim(value) for value in ball.parameters.values()):
-        raise ValueError("amplitude, ball: basins are those of a single ball on one table")
+        raise ValueError("amplitude, ball: must be one amplitude and a single ball, not arrays")
     amplitude = float(given)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
     fast = (
@@ -806,7 +829,11 @@ def basins(
 
 
 def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
-    """The different motions on which balls end."""
+    """Distinguish the motions on which balls end.
+
+    Returns the number of the motion of each ball, shape (balls,), and columns over the motions by
+    name.
+    """
     kinds = ends["kind"].astype(str)
     balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])
     which = np.full(kinds.size, -1)
@@ -819,7 +846,7 @@ def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
         (same,) = (same & (which < 0)).nonzero()
         fastest_impact = np.nan, np.nan
         if k:
-            # A ball on the same motion ends at one of the impacts of this one.
+            # A ball on the same motion ends at an impact of this motion.
             phase, u = bounce(balls.take(np.array([first])), k)[0][:, 1:3, 0].T
             amplitude = balls.amplitude[first]
             near = np.full(same.size, np.inf)
@@ -852,21 +879,21 @@ def orbit_diagram(
     ----------
     ball : Ball
     amplitude : float or array
-        Λ. Either it or a parameter of the ball is an array.
+        Λ. Either Λ or one parameter of the ball must be an array.
     starts : int
-        Number of balls at each value, spread evenly over phases and speeds. As many more start from
-        the ends of those at the next larger and the next smaller value, so that motions are
-        followed in both directions.
+        Number of balls at each value, spread evenly over phases and speeds. An equal number starts
+        from the final states at the next larger value, and another from those at the next smaller
+        value. Motions are thus followed in both directions.
     samples : int
-        Number of impacts that are recorded of each motion.
+        Number of recorded impacts of each motion.
     impacts, table
         As in :func:`motion_of`.
 
     Returns
     -------
     xarray.Dataset
-        As of :func:`motion_of` for each ``start``, with ``impact_phase`` and ``impact_speed`` of
-        each ``impact``, NaN in permanent contact.
+        Variables of :func:`motion_of` for each ``start``. In addition, ``impact_phase`` and
+        ``impact_speed`` of each ``impact``; they are NaN in permanent contact.
 
     Examples
     --------
@@ -921,12 +948,13 @@ def orbit_of_motion(
 ) -> PeriodicOrbit:
     """Find the periodic orbit on which a ball ends, and correct it by Newton's method.
 
-    A locked motion with instantaneous impacts is an orbit with a rest, a :class:`.RestOrbit`.
+    If the ball has instantaneous impacts and its motion is locked, the orbit is a
+    :class:`.RestOrbit`.
 
     Parameters
     ----------
     ball, amplitude, phase, velocity, relative_velocity, impacts, table
-        As in :func:`motion_of`, all of them numbers.
+        As in :func:`motion_of`. All must be numbers.
 
     Returns
     -------
@@ -935,7 +963,8 @@ def orbit_of_motion(
     Raises
     ------
     OrbitNotFound
-        If the motion does not repeat, or with rests that the table does not end at one lift-off.
+        If the motion does not repeat, if the ball rests several times before it repeats, or if the
+        ball is a :class:`.Corrected` that rests on the table.
     ValueError
         As :func:`.simulate`.
 
@@ -948,7 +977,7 @@ def orbit_of_motion(
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
     if grid.ndim:
-        raise ValueError("the orbit of a motion is that of a single ball from one start")
+        raise ValueError("ball, amplitude, phase, velocity: must be a single ball and numbers")
     ends = ends_of(balls, impacts)
     words = in_words(*(ends[name][0] for name in ("kind", "followed", "reason")))
     k = int(ends["impacts"][0])

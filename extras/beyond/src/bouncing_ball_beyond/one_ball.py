@@ -1,9 +1,12 @@
-r"""One ball from impact to impact: first landings and first releases as scalar loops, on a sine.
+r"""Follow one ball from impact to impact on a sinusoidal table, with scalar loops.
 
-Both are first zeros of functions f ≥ 0 with f″ ≥ -K from now on and \|f‴\| ≤ J, of which no step
-passes one (docs/impacts.md). Where numba is installed, :func:`compile_loops` compiles them, which
-gives the same numbers; its cache notices only changes of the file of the function that is called.
-Many balls, and other tables: :mod:`.bounces`.
+Landings and releases are first zeros of functions f ≥ 0. Bounds of the derivatives, f″ ≥ -K and
+\|f‴\| ≤ J, give steps that never pass a zero (docs/impacts.md).
+
+If numba is installed, :func:`compile_loops` compiles the loops. The results stay the same. The
+cache of numba only notices changes of the file that contains the called function.
+
+:mod:`.bounces` follows many balls, and balls on other tables.
 """
 
 import math
@@ -12,19 +15,24 @@ from numpy.typing import NDArray
 
 PERIOD = 2 * math.pi
 REACH = 4.0
-"""The reach H of the second bound, in steps of the first one."""
+"""Reach H of the parabola with the bound J, divided by the step of the parabola with K alone.
+
+See docs/impacts.md.
+"""
 PATIENCE = 100 * PERIOD
-"""A contact without a release for this long is a lasting one."""
+"""Duration, times Ω, from which a contact without a release counts as permanent."""
 SLOWEST = 1e-12
-"""The closing speed that is given to a ball without one, which is laid on the table."""
+"""Closing speed of a ball that is laid on the table, instead of 0."""
 CHATTER = 1e-5
-"""Chattering is summed up once Λ T₀ and T₀ are below this multiple of the gravity on the table: the
-sum has a relative error of the order of the square.
+"""Largest T₀ and Λ T₀, divided by the gravity on the table, at which chattering is summed up.
+
+T₀ is the time in which all bounces end; see :func:`settling`. The relative error of the sum is of
+the order of the square of this limit.
 """
 STEPS = 20_000
-"""Maximum number of steps of a search for a zero. A search that needs more is undecided, NaN.
+"""Maximum number of steps of a search for a zero. A search that needs more returns NaN.
 
-It is only a bound: of 4000 random flights, Λ between 0.1 and 1000, none needed more than 21 steps.
+Of 4000 random flights with Λ between 0.1 and 1000, all needed at most 21 steps.
 """
 EPS = 2.0**-52
 COLUMNS = (
@@ -37,13 +45,21 @@ COLUMNS = (
     "bounce_speed",
     "flight_time",
 )
-"""What is recorded of each impact: the number of turns of the table and its phase τ as the impact
-starts, the closing speed u, T, the duration D, δ and δ′ as it ends, and the time of the flight that
-follows. T and δ′ are NaN, and D is infinite, for a ball that stays on the table."""
+"""Columns of the record of an impact.
+
+- ``turns``, ``phase``: number of turns and phase τ of the table when the impact starts;
+- ``speed``: closing speed u;
+- ``scaled_duration``: T, the duration of the contact in the time of its equations;
+- ``duration``: duration D of the contact;
+- ``gap``, ``bounce_speed``: δ and δ′ when the contact ends;
+- ``flight_time``: duration of the flight that follows.
+
+For a ball that stays on the table, T and δ′ are NaN, and D is infinite.
+"""
 
 
 def root_of_parabola(f: float, slope: float, bend: float) -> float:
-    """The first h > 0 at which f + f′h - B h²/2 vanishes, for f ≥ 0; infinity if there is none."""
+    """Return the first h > 0 at which f + f′h - B h²/2 vanishes, or infinity. f must be ≥ 0."""
     square = slope * slope + 2 * bend * f
     if square < 0:
         return math.inf
@@ -57,8 +73,10 @@ def root_of_parabola(f: float, slope: float, bend: float) -> float:
 def safe_step(
     t: float, f: float, slope: float, second: float, bend: float, jerk: float
 ) -> tuple[float, bool]:
-    """A step from the time t that passes no zero of f, by K = ``bend`` and J = ``jerk``, and
-    whether it ends there.
+    """Return a step from the time t that passes no zero of f, and whether it ends at the zero.
+
+    ``f``, ``slope`` and ``second`` are f, f′ and f″ at t. The bounds are K = ``bend`` and
+    J = ``jerk``.
     """
     step = root_of_parabola(f, slope, bend)
     reach = REACH * step
@@ -69,9 +87,10 @@ def safe_step(
 
 
 def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
-    """δ, δ′ and δ″ a time t after a release, where the table has Λ cos τ = x and Λ sin τ = y.
+    """Return δ, δ′ and δ″ at the time t after a release.
 
-    Written with 1 - cos t and t - sin t, short flights lose no digits.
+    ``gap`` and ``w`` are δ and δ′ at the release; x = Λ cos τ and y = Λ sin τ there. The formulas
+    contain 1 - cos t and t - sin t, so that short flights keep all digits.
     """
     half = math.tan(t / 2)
     sine = 2 * half / (1 + half * half)
@@ -84,8 +103,11 @@ def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
 def rise(
     gap: float, w: float, x: float, y: float, amplitude: float, kappa: float
 ) -> tuple[bool, float]:
-    """Whether the contact of a ball that was released below the level of the table resumes, where
-    δ + κδ′ falls back to zero, and the time of this, or that at which the ball is above the level.
+    """Follow a ball that was released below the level of the table until it rises above the level.
+
+    Returns whether the contact resumes, and a time after the release. The contact resumes if
+    δ + κδ′ falls back to zero; the time is then that of the zero. Otherwise the ball is above the
+    level of the table at this time.
     """
     forcing = amplitude * math.sqrt(1 + kappa * kappa)
     t = 0.0
@@ -93,7 +115,7 @@ def rise(
         position, rate, second = flight(t, gap, w, x, y)
         if position >= 0:
             return False, t
-        # The fourth derivative of δ is -Λ sin τ = -(1 + δ″), and the third one Λ cos τ.
+        # The third derivative of δ is Λ cos τ, and the fourth derivative is -Λ sin τ = -(1 + δ″).
         third = x * math.cos(t) - y * math.sin(t)
         f = position + kappa * rate
         slope = rate + kappa * second
@@ -106,7 +128,7 @@ def rise(
 
 
 def earliest(w: float, x: float, y: float, amplitude: float) -> float:
-    """A time before which a ball that leaves at the level of the table has certainly not landed."""
+    """Return a time before which a ball released at the level of the table cannot land."""
     start = 2 * max(w, 0.0) / (1 + amplitude)
     if y < 1:
         return start
@@ -116,9 +138,10 @@ def earliest(w: float, x: float, y: float, amplitude: float) -> float:
 def landing(
     start: float, gap: float, w: float, x: float, y: float, amplitude: float
 ) -> tuple[float, float]:
-    """The first landing, which is not before the time ``start``, and the closing speed.
+    """Return the time of the first landing after a release, and the closing speed.
 
-    The part of a flight above the highest point of the table is skipped.
+    The search begins at the time ``start``. It skips the part of the flight above the highest point
+    of the table.
     """
     absolute = w + x
     square = absolute * absolute + 2 * (gap + (y - amplitude))
@@ -140,8 +163,10 @@ def landing(
 def contact(
     s: float, gap: float, u: float, x: float, y: float, gravity: float, ratio: float, zeta: float
 ) -> tuple:
-    """δ and δ′ at the time s after an impact has started from δ = gap and δ′ = -u, for ζ < 1, and
-    the height of the table and its velocity: :func:`.oscillator.closed_motion`, in real numbers.
+    """Return δ, δ′, w and w′ at the time s after the start of a contact, for ζ < 1.
+
+    The contact starts with δ = gap and δ′ = -u. w and w′ are the height and the velocity of the
+    table. Same formulas as :func:`.oscillator.closed_motion`, for real numbers.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -170,8 +195,9 @@ def contact(
 
 
 def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: float) -> tuple:
-    """f = -δ - κδ′ in a contact, f′, δ″ and δ‴, K and J, and whether it stays for ever, from what
-    :func:`contact` returns; see :func:`.oscillator.bounds`.
+    """Return f, f′, δ″, δ‴, K, J and whether the contact is permanent; see `oscillator.bounds`.
+
+    f = -δ - κδ′ is the release function. ``motion`` is the result of :func:`contact`.
     """
     position, rate, push, shove = motion
     loss = 2 * zeta * ratio
@@ -206,8 +232,10 @@ def release(
     zeta: float,
     kappa: float,
 ) -> tuple:
-    """The duration of a contact up to its first release, where f = -δ - κδ′ falls to zero, and δ′
-    there; infinity if it lasts.
+    """Return the duration of a contact up to its first release, and δ′ at the release.
+
+    The release is the zero of f = -δ - κδ′. If the contact is permanent, the duration is infinite
+    and δ′ is NaN.
     """
     if u == 0:
         u = SLOWEST
@@ -225,8 +253,10 @@ def release(
 
 
 def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
-    """The time T₀ (1 - g′T₀/(3g) + ...), T₀ = 2w/(g (1 - r)), in which the bounces after an impact
-    end on the table, with the gravity g = 1 - Y on it and g′ = -X; -1 if they are not summed up.
+    """Return the total time of the infinitely many bounces after an impact with the speed w.
+
+    The time is T₀ (1 - g′T₀/(3g) + ...), where T₀ = 2w/(g (1 - r)). The gravity on the table is
+    g = 1 - y, and its rate is g′ = -x. Returns -1 if the bounces are not summed up; see `CHATTER`.
     """
     gravity = 1 - y
     if gravity < 0 or (gravity == 0 and x > 0):
@@ -242,7 +272,7 @@ def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
 
 
 def until_lift_off(phase: float, amplitude: float) -> float:
-    """How long a ball rests: until Λ sin τ rises to 1, or for ever (Eq. 9)."""
+    """Return the time until Λ sin τ rises to 1, when a resting ball leaves (Eq. 9), or infinity."""
     if amplitude <= 1:
         return math.inf
     wait = (math.asin(1 / amplitude) - phase) % PERIOD
@@ -251,8 +281,10 @@ def until_lift_off(phase: float, amplitude: float) -> float:
 
 
 def settle(w: float, restitution: float, phase: float, amplitude: float) -> tuple[float, float]:
-    """How long a ball rests after an instant that leaves it with the speed w, or a negative time,
-    and the phase at which it leaves.
+    """Return how long a ball stays on the table, and the phase at which it leaves.
+
+    The ball starts with the speed w after an instantaneous impact. The time covers the last bounces
+    and the rest after them. It is negative if the bounces are not summed up.
     """
     settled = settling(
         w, restitution, amplitude * math.cos(phase), amplitude * math.sin(phase), amplitude
@@ -265,14 +297,15 @@ def settle(w: float, restitution: float, phase: float, amplitude: float) -> tupl
 
 
 def reduced(phase: float) -> tuple[float, float]:
-    """The number of turns of the table in a phase, and what is left of it, from -π to π."""
+    """Split a phase into a number of whole turns and a remainder in [-π, π)."""
     turns = float(math.floor(phase / PERIOD + 0.5))
     return turns, phase - turns * PERIOD
 
 
 def fly(gap: float, w: float, x: float, y: float, amplitude: float, kappa: float) -> tuple:
-    """The time of the flight up to the next impact, and its closing speed, which is negative where
-    the contact resumes.
+    """Return the time of the flight up to the next impact, and the closing speed of this impact.
+
+    If the contact resumes below the table, the closing speed is negative.
     """
     if gap == 0:
         return landing(earliest(w, x, y, amplitude), gap, w, x, y, amplitude)
@@ -293,9 +326,10 @@ def impacts(
     kappa: float,
     out: NDArray,
 ) -> tuple:
-    """Impacts of a ball into the rows of ``out``, instants if ϖ is 0.
+    """Compute impacts of a ball and record them in the rows of ``out``, with `COLUMNS`.
 
-    Returns whether the ball stays on the table, and the turns, the phase and u of the next impact.
+    If the frequency ratio is 0, the impacts are instantaneous. Returns whether the ball stays on
+    the table, and the turns, the phase and the closing speed of the next impact.
     """
     for i in range(len(out)):
         x = amplitude * math.cos(phase)
@@ -322,7 +356,7 @@ def impacts(
         passed, phase = reduced(phase + duration)
         turns += passed
         if rests:
-            # The state at a lift-off is the same each time, so that later motions are too.
+            # Assign the exact phase of the lift-off: motions after equal lift-offs are then equal.
             phase = leaves
         x = amplitude * math.cos(phase)
         y = amplitude * math.sin(phase)
@@ -355,7 +389,10 @@ LOOPS = (
 
 
 def compile_loops() -> None:
-    """Compile the functions above by numba, which finds them by their names, if it is installed."""
+    """Compile the functions above with numba, if it is installed.
+
+    The compiled functions replace the originals, because numba finds functions by their names.
+    """
     try:
         from numba import njit
     except ImportError:
@@ -364,5 +401,5 @@ def compile_loops() -> None:
         try:
             globals()[function.__name__] = njit(cache=True)(function)
         except RuntimeError:
-            # There is no folder for the cache that can be written to.
+            # No folder for the cache is writable.
             globals()[function.__name__] = njit(function)

@@ -1,12 +1,16 @@
-"""The linear contact: a spring and a damper under the motion of any table.
+"""The linear contact: a ball on a spring and a damper, on any table.
 
-δ″ + 2ζϖδ′ + ϖ²δ = -1 - w″ (Eq. 11). The motion is a sum of the responses at rest: g(s) to an
-impulse, (1 - K)/ϖ² to a constant force, with K = g′ + 2ζϖg, and h = C + iS to e^{iks}::
+The equation of motion is δ″ + 2ζϖδ′ + ϖ²δ = -1 - w″ (Eq. 11). The solution is a sum of responses
+of an oscillator that starts at rest:
 
-    h = (e^{iks} - K - ikg)/(ϖ² - k² + 2ikζϖ)
+- g(s): response to an impulse;
+- (1 - K)/ϖ²: response to a constant force, where K = g′ + 2ζϖg;
+- h = C + iS: response to e^{iks}::
 
-Written with 1 - K and 1 - cos ks, short contacts lose no digits. Where terms cancel, near a
-resonance ϖ = k and near ζ = 1, the responses are found by doublings. Motions may be complex.
+      h = (e^{iks} - K - ikg)/(ϖ² - k² + 2ikζϖ)
+
+The formulas contain 1 - K and 1 - cos ks, so that short contacts keep all digits. Near a resonance
+ϖ = k and near ζ = 1 terms cancel, and doublings compute the responses. Motions may be complex.
 """
 
 from math import factorial
@@ -17,20 +21,28 @@ import numpy as np
 from bouncing_ball_beyond.tables import Table, Values, swing
 
 DELICATE = 0.25
-"""A contact with |ϖ² - k² + 2ikζϖ| < k DELICATE is near a resonance."""
+"""Limit of |ϖ² - k² + 2ikζϖ|/k below which a contact is near a resonance."""
 
 UNDERDAMPED = 0.99
-"""Contacts with a larger ζ are found by doublings when a release is searched for."""
+"""Damping ratio above which the search for a release computes contacts by doublings."""
 
 TERMS = 20
-"""Terms of Taylor series over times that are at most 1."""
+"""Number of terms of Taylor series, for times of at most 1."""
 
 FACTORS = np.array([[1 / factorial(j + n) for j in range(TERMS)] for n in range(4)])
-"""1/(j + n)!: the factor of the derivative j in a function that is integrated n times."""
+"""1/(j + n)!: factor of derivative j in the Taylor series of an n-fold integral."""
 
 
 class Motion(NamedTuple):
-    """A contact at a time: δ and δ′, and what each harmonic of -w″ and of -w‴ is."""
+    """State of a contact at one time.
+
+    Attributes
+    ----------
+    gap, speed : array
+        δ and δ′.
+    pushes, shoves : list of array
+        Contributions of the harmonics to -w″ and -w‴, one entry per harmonic.
+    """
 
     gap: np.ndarray
     speed: np.ndarray
@@ -39,7 +51,7 @@ class Motion(NamedTuple):
 
 
 def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Values:
-    """Whether ϖ is next to a harmonic of the table, and hardly damped."""
+    """Whether a contact is near the resonance with a harmonic of the table; see `DELICATE`."""
     near = False
     for k in orders:
         detuning = ratio * ratio - k * k
@@ -49,7 +61,7 @@ def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Va
 
 
 def free_responses(s: Values, ratio: Values, zeta: Values) -> tuple:
-    """g, g′ and 1 - K, for a ζ that is not next to 1."""
+    """Return g, g′ and 1 - K. ζ must not be close to 1, where terms cancel."""
     square = (1 - zeta) * (1 + zeta)
     over = zeta.real > 1
     if not np.any(over):
@@ -64,7 +76,7 @@ def free_responses(s: Values, ratio: Values, zeta: Values) -> tuple:
 
 
 def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple:
-    """The same for ζ < 1, with ω = ϖ√(1 - ζ²)."""
+    """Return g, g′ and 1 - K for ζ < 1, where ``omega`` = ϖ√(1 - ζ²)."""
     decay = zeta * ratio
     lost = -np.expm1(-decay * s)
     sine, versine = swing(omega * s)
@@ -76,7 +88,7 @@ def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple
 
 
 def _overdamped(s: Values, ratio: Values, zeta: Values, root: Values) -> tuple:
-    """The same for ζ > 1, with √(ζ² - 1)."""
+    """Return g, g′ and 1 - K for ζ > 1, where ``root`` = √(ζ² - 1)."""
     slow = np.exp(-ratio * s / (zeta + root))
     fast = np.exp(-ratio * s * (zeta + root))
     g = (slow - fast) / (2 * ratio * root)
@@ -96,9 +108,10 @@ def closed_motion(
     *,
     loads: bool = True,
 ) -> Motion:
-    """A contact by the closed form (Eqs. 12 and 13), a time s after it started from δ′ = -u.
+    """Return the state of a contact at the time s after its start, in closed form (Eqs. 12, 13).
 
-    The pushes and shoves of the table are left out without ``loads``.
+    The contact starts with δ = gap and δ′ = -u. ``waves`` is the phase of the table at the start
+    (:meth:`.Table.waves`). If ``loads`` is false, the lists of pushes and shoves stay empty.
     """
     g, slope, lost = free_responses(s, ratio, zeta)
     loss = 2 * zeta * ratio
@@ -112,9 +125,9 @@ def closed_motion(
         scale = detuning * detuning + damped * damped
         sine, versine = swing(s if k == 1 else k * s)
         if k > 1:
-            # What pushes the contact is k² times as large, and its rate k³ times.
+            # The load -w″ of harmonic k is k² times its height.
             x, y = k * k * x, k * k * y
-        # Divided before the times come in: these are a few real numbers.
+        # Divide before multiplying by functions of s: the quotients are a few real numbers.
         in_phase, behind = detuning / scale, damped / scale
         real = lost - versine
         imaginary = sine - (g if k == 1 else k * g)
@@ -144,9 +157,11 @@ def doubled_motion(
     *,
     loads: bool = True,
 ) -> Motion:
-    """The same by a Taylor series over s/2^m and m doublings, which divide by nothing.
+    """Return the state of a contact as :func:`closed_motion` does, by doublings.
 
-    The responses are g, g′, G to a constant force, and S to sin ks and C to cos ks::
+    Taylor series give the responses at the time s/2^m, and each of m doublings doubles the time.
+    This involves no division, so no digits are lost at resonances. The responses are g and g′ to an
+    impulse, G to a constant force, S to sin ks, and C to cos ks::
 
         g″ + 2ζϖg′ + ϖ²g = 0,   g′(0) = 1,    G′ = g,    S′ = kC,    C′ = g - kS
     """
@@ -156,7 +171,7 @@ def doubled_motion(
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
     part = (s + 0 * loss) / 2.0**doublings
     square = part * part
-    # The derivatives of g′, and of C″, over the powers of what a part is.
+    # Derivatives j of g′ at 0, times part^j; `bends` below contains those of C″.
     rates = np.empty((TERMS, *np.shape(part)), np.asarray(part).dtype)
     rates[0] = 1.0
     rates[1] = damped = -loss * part
@@ -200,7 +215,10 @@ def doubled_motion(
 
 
 def _series(derivatives: Values, *integrals: int) -> list:
-    """Taylor series of functions that are integrated so often, over the power of the time."""
+    """Return n-fold integrals of a function, divided by the nth power of the time, for several n.
+
+    ``derivatives`` are derivatives j at 0, times the time to the power j, shape (TERMS, ...).
+    """
     flat = derivatives.reshape(TERMS, -1)
     return [(FACTORS[n] @ flat).reshape(derivatives.shape[1:]) for n in integrals]
 
@@ -215,7 +233,11 @@ def motion(
     ratio: Values,
     zeta: Values,
 ) -> tuple:
-    """δ and δ′ a time s after an impact, by the formula that keeps all digits for each number."""
+    """Return δ and δ′ at the time s after the start of a contact.
+
+    Each element is computed by the formula that keeps all digits: :func:`closed_motion` or
+    :func:`doubled_motion`.
+    """
     time, frequency, damping = np.real(s), np.real(ratio), np.real(zeta)
     square = time * time
     damped = damping * damping
@@ -227,7 +249,7 @@ def motion(
         return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
     if np.all(delicate):
         return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
-    with np.errstate(all="ignore"):  # of the closed form where it is not used
+    with np.errstate(all="ignore"):  # for elements whose closed form is replaced below
         found = closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)
     position, rate = found.gap, found.speed
     delicate = np.broadcast_to(delicate, position.shape)
@@ -246,8 +268,15 @@ def motion(
 def forcing(
     table: Table, waves: list, ratio: Values, zeta: Values, kappa: Values, resonant: Values
 ) -> tuple:
-    """The largest steady response of δ + κδ′ to the table, of its second derivative and of its
-    third, and the growth of the energy of F, for :func:`bounds`.
+    """Return four bounds that are constant during a contact, for :func:`bounds`.
+
+    1. The largest steady response of δ + κδ′ to the table.
+    2. The contribution of the table to K: the largest second derivative of this response.
+    3. The contribution of the table to J: the largest third derivative of this response.
+    4. The largest growth of the energy e of F: 0 away from resonances.
+
+    Near a resonance the steady response is not split off. The first bound is then 0, and the second
+    and the third follow from the forces.
     """
     loss = 2 * zeta * ratio
     held = bend = jerk = pushed = jerked = 0.0
@@ -275,10 +304,12 @@ def bounds(
     kappa: Values,
     resonant: Values,
 ) -> tuple:
-    """f = -δ - κδ′, f′, δ″ and δ‴, K and J of the search for a release, and whether there is none.
+    """Return f, f′, δ″, δ‴, K, J and whether the contact is permanent.
 
-    ``forced`` is from :func:`forcing`, and ``resonant`` 1 next to a resonance and 0 elsewhere; the
-    bounds follow from an energy that never grows (docs/impacts.md).
+    f = -δ - κδ′ is the release function; K and J are bounds of its derivatives (:mod:`.one_ball`).
+    They follow from an energy that never grows (docs/impacts.md). ``motion`` is a :class:`Motion`,
+    and ``forced`` is the result of :func:`forcing`. ``resonant`` is 1 near a resonance and 0
+    elsewhere.
     """
     position, rate, pushes, shoves = motion
     held, bend_forced, jerk_forced, gained = forced

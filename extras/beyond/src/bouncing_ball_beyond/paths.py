@@ -1,4 +1,7 @@
-"""Along what orbits change, by numbers, arrays or complex steps of one variable."""
+"""Paths: parameters along which orbits are followed.
+
+A value on a path is a number, an array, or a complex step.
+"""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,22 +17,22 @@ LIMITS = {
     "frequency_ratio": (0.0, 1e8),
     "damping_ratio": (0.0, 1e4),
 }
-"""The least and the greatest value of parameters; of all others, they are 0 and infinite."""
+"""Minimum and maximum of parameters. The default is 0 and infinity; see `Path.limits`."""
 
 OF_TABLES = ("harmonic_", "phase_")
-"""How the names of the parameters of tables begin."""
+"""Prefixes of the names of the parameters of tables."""
 
 
 @dataclass(frozen=True)
 class Path:
-    """One parameter: "amplitude" is Λ, all others are those of the ball or of the table."""
+    """A path along one parameter: "amplitude" (Λ), or a parameter of the ball or of the table."""
 
     name: str
 
     def apply(
         self, value: Any, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[Ball, Any, Table]:
-        """The ball, Λ and the table at a value of the variable, from those at another one."""
+        """Return the ball, Λ and the table after the parameter is set to ``value``."""
         if self.name == "amplitude":
             return ball, value, table
         if self.name.startswith(OF_TABLES):
@@ -37,11 +40,11 @@ class Path:
         return ball.at(**{self.name: value}), amplitude, table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
-        """The value of the variable at a ball, an amplitude and a table."""
+        """Return the value of the parameter for a ball, an amplitude and a table."""
         return {"amplitude": amplitude, **ball.parameters, **table.parameters}[self.name]
 
     def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
-        """The least and the greatest value of the variable."""
+        """Return the minimum and the maximum of the parameter."""
         least = -np.inf if self.name.startswith(OF_TABLES) else 0.0
         return LIMITS.get(self.name, (least, np.inf))
 
@@ -51,15 +54,18 @@ AMPLITUDE = Path("amplitude")
 
 @dataclass(frozen=True)
 class Frequency(Path):
-    """A table that changes its frequency Ω at a fixed stroke a, by Ω/√(g/a) = √Λ; parameters of the
-    ball change by their `Ball.frequency_powers`."""
+    """A path along the frequency Ω of the table at a fixed stroke a.
+
+    The variable is Ω/√(g/a) = √Λ. Parameters of the ball change with the powers of Ω in
+    `Ball.frequency_powers`.
+    """
 
     name: str = "frequency"
 
     def apply(
         self, value: Any, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[Ball, Any, Table]:
-        """The ball and Λ = value², from those at another frequency."""
+        """Return the ball, Λ = value² and the table after the frequency is set to ``value``."""
         times = value / np.sqrt(amplitude)
         old = ball.parameters
         powers = ball.frequency_powers.items()
@@ -67,17 +73,17 @@ class Frequency(Path):
         return new, value**2, table
 
     def place(self, ball: Ball, amplitude: Any, table: Table = SINE) -> Any:
-        """√Λ."""
+        """Return √Λ."""
         return np.sqrt(amplitude)
 
     def limits(self, ball: Ball, amplitude: Any) -> tuple[float, float]:
-        """The frequencies at which Λ is within its limits."""
+        """Return the square roots of the limits of Λ."""
         low, high = LIMITS["amplitude"]
         return np.sqrt(low), np.sqrt(high)
 
 
 def path_of(along: str, ball: Ball, table: Table = SINE) -> Path:
-    """The path of a name; ValueError if there is no such parameter."""
+    """Return the path of a name. Raises ValueError if ball and table have no such parameter."""
     allowed = ["amplitude", "frequency", *ball.parameters, *table.parameters]
     if along in allowed:
         return Frequency() if along == "frequency" else Path(along)
@@ -90,8 +96,11 @@ def path_of(along: str, ball: Ball, table: Table = SINE) -> Path:
 
 
 def usual_range(path: Path, value: float, least: float, greatest: float) -> tuple[float, float]:
-    """Where a curve ends if nothing is said, within the limits: after a turn of a phase; else at a
-    tenth and at ten times a value or at 10, and as much below zero if it is not positive."""
+    """Return the default range of a parameter, cut off at its limits ``least`` and ``greatest``.
+
+    A phase covers one turn: value ± π. For other parameters the upper end is the larger of 10 and
+    10 |value|. The lower end is value/10 if value > 0, or otherwise minus the upper end.
+    """
     if path.name.startswith("phase_"):
         return value - np.pi, value + np.pi
     far = max(10.0, 10 * abs(value))

@@ -271,7 +271,7 @@ def test_a_reason_tells_two_amplitudes_apart():
         (lambda: limits(Rigid(0.5), n=1.5), "n = 1.5: must be a whole number"),
         (lambda: orbit(Rigid(0.5), amplitude=1, n=0), "n = 0: must be in [1, 1000]"),
         (lambda: orbit(Rigid(0.5), amplitude=1, side="left"), "side = 'left': must be 'stable' or"),
-        (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "one entry"),
+        (lambda: orbit_near(Rigid(0.5), amplitude=1, phases=[0, 1], velocities=[-1]), "length"),
     ],
 )
 def test_wrong_arguments_are_named_in_one_line(call, text):

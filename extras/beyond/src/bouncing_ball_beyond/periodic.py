@@ -1,4 +1,4 @@
-"""Periodic orbits of a ball at an amplitude: the n-T orbit, all orbits, or the one near a guess."""
+"""Find periodic orbits of a ball at one amplitude: the n-T orbit, all orbits, or near a guess."""
 
 from typing import Any
 
@@ -33,7 +33,11 @@ from bouncing_ball_beyond.tables import SINE, Table, check_table, finite_row
 
 
 def solved(equations: OrbitEquations, z: NDArray, what: str) -> PeriodicOrbit:
-    """The orbit near a guess, shape (N,); OrbitNotFound if Newton's method does not converge."""
+    """Return the orbit near a guess z, shape (N,).
+
+    Raises OrbitNotFound if Newton's method does not converge. ``what`` names the orbit in the
+    message.
+    """
     solution = newton(equations, z[np.newaxis], iterations=40)
     if not solution.found[0]:
         raise OrbitNotFound(f"{what} is not found: Newton's method does not converge")
@@ -50,16 +54,34 @@ def orbit(
 ) -> Any:
     """Find the n-T orbit of a ball, with one impact in n periods of the table.
 
-    OrbitNotFound if all arguments are numbers and there is none.
-
     Parameters
     ----------
-    ball, amplitude, n
-        Numbers, or arrays: then there is a list of orbits, with the OrbitNotFound in place of one
-        that there is not.
+    ball : Ball
+        A ball. Its parameters may be arrays.
+    amplitude : float or array
+        Λ > 0.
+    n : int or array
+        Number of periods of the table in one period of the orbit.
     side : {"stable", "unstable"}
-        The side of the saddle-node: impacts after or before the phase at which the table rises
-        fastest. Tables that rise several times in a period have more orbits: see `orbits`.
+        Side of the saddle-node. On the stable side the impact comes after the phase at which the
+        table rises fastest, and on the unstable side before it. Tables that rise several times in a
+        period have more orbits: see `orbits`.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    PeriodicOrbit or list
+        One orbit if all arguments are numbers. If arguments are arrays, a list with an entry for
+        each element of the broadcast arrays: the orbit, or the OrbitNotFound if it does not exist.
+        If no ball follows the orbit, its ``admissible`` is False.
+
+    Raises
+    ------
+    OrbitNotFound
+        If all arguments are numbers and the orbit does not exist.
+    ValueError
+        If an argument is out of range.
 
     Examples
     --------
@@ -86,13 +108,20 @@ def orbit(
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
-    """The orbits with the shortest contact on a side of the saddle-node, by rows; else those that
-    no ball follows, if possible of ``near``; and the reason below the saddle-node of the branch."""
+    """Return one orbit, or the OrbitNotFound, for each row.
+
+    In this order:
+
+    1. the orbit with the shortest contact on the side of the saddle-node, if a ball follows it;
+    2. the OrbitNotFound, if Λ is below the saddle-node of the branch;
+    3. an orbit that no ball follows: the orbit of ``near``, or otherwise of the search;
+    4. the OrbitNotFound.
+    """
     shortest, admissible = shortest_contacts(equations, amplitude, sign)
     found: list = [*shortest]
     missing = np.flatnonzero(~admissible)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
-    # The limits of balls that creep off the table take long to find.
+    # Limits are slow to find if free impacts do not end, because the ball creeps off the table.
     ending = missing[ends[missing]]
     rows = equations.rows(ending)
     lowest = limits(rows.ball, n=rows.periods, table=equations.table) if len(ending) else []
@@ -115,7 +144,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
 
 
 def one_amplitude(amplitude: Any) -> float:
-    """The amplitude as a positive number, or ValueError."""
+    """Return the amplitude as a float. Raises ValueError unless it is one positive number."""
     value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     if np.ndim(value):
         raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
@@ -125,11 +154,31 @@ def one_amplitude(amplitude: Any) -> float:
 def orbits(
     ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
 ) -> list[PeriodicOrbit]:
-    """Find the orbits with k impacts in m periods that a ball follows, stable and unstable.
+    """Find the stable and unstable orbits with k impacts in m periods that a ball follows.
 
-    With one impact the list is complete; with several this is a search from 2592 first impacts, and
-    orbits may be missed. With a contact law it takes seconds, and several impacts up to a minute.
-    They are in the order of the durations of their contacts, then of phases.
+    If k = 1, the list is complete. If k > 1, the search starts from 2592 first impacts and may miss
+    orbits. With a contact law the search takes seconds, or up to a minute if k > 1. Orbits are
+    sorted by the total duration of their contacts, and then by the phase of their first impact.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Λ > 0.
+    impacts, periods : int
+        Numbers k and m.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    list of PeriodicOrbit
+
+    Raises
+    ------
+    ValueError
+        If the ball or the amplitude is an array, or if an argument is out of range.
 
     Examples
     --------
@@ -160,17 +209,41 @@ def orbit_near(
     velocities: ArrayLike,
     table: Table = SINE,
 ) -> PeriodicOrbit:
-    """Find the periodic orbit near a guess: phases and absolute velocities before its impacts.
+    """Find the periodic orbit near a guess.
 
-    Both have the shape (impacts,). The number of periods follows from the velocities.
-    OrbitNotFound if Newton's method does not converge.
+    The number of periods follows from the velocities.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Λ > 0.
+    phases : array, shape (impacts,)
+        Guess of the phases of the table at the impacts.
+    velocities : array, shape (impacts,)
+        Guess of the absolute velocities of the ball before the impacts.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    PeriodicOrbit
+
+    Raises
+    ------
+    OrbitNotFound
+        If Newton's method does not converge, if an impact of the guess does not end, or if the
+        guess takes less than half a period.
+    ValueError
+        If an argument is out of range, or if the shapes differ.
     """
     check_ball(ball)
     amplitude = one_amplitude(amplitude)
     tau = finite_row("phases", np.atleast_1d(phases))
     before = finite_row("velocities", np.atleast_1d(velocities))
     if tau.shape != before.shape:
-        raise ValueError("phases, velocities: must have one entry for each impact")
+        raise ValueError("phases, velocities: must have the same length, the number of impacts")
     check_table(table)
     u = amplitude * table(tau, 1) - before
     T = ball.first_release(tau, u, amplitude, table=table)
@@ -183,7 +256,10 @@ def orbit_near(
     times = tau[0] + np.append(0.0, np.cumsum(np.roll(tau, -1) - tau + 2 * np.pi * turns))
     periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
     if periods < 1:
-        raise OrbitNotFound("the guess takes no time: its velocities are not those of flights")
+        raise OrbitNotFound(
+            "the guess takes less than half a period: give the velocities of the ball before its"
+            " impacts, negative if it falls"
+        )
     z = row_of(ball, times[:-1], u, T, amplitude)
     equations = OrbitEquations(ball, len(u), periods, table=table)
     what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"

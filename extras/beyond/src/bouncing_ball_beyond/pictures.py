@@ -1,7 +1,7 @@
-"""Pictures of branches of orbits and of curves of special orbits.
+"""Draw branches of orbits and curves of special orbits.
 
-Lines are solid where orbits are stable, dashed where they are not, and pale where no ball follows
-them; special orbits have marks. Nothing is drawn by pyplot or depends on the user's settings.
+Stable orbits are solid lines, unstable orbits dashed lines. Orbits that no ball follows are pale.
+Special orbits have marks. The pictures do not use pyplot or the user's settings of matplotlib.
 """
 
 from dataclasses import replace
@@ -31,7 +31,7 @@ MARKS = {
     "end of a rest": "d",
     "lost lift-off": "x",
 }
-"""Marks of special orbits."""
+"""Marker of each kind of special orbit."""
 
 MARK: dict[str, Any] = {
     "fillstyle": "none",
@@ -40,31 +40,49 @@ MARK: dict[str, Any] = {
     "markeredgewidth": 1.0,
     "zorder": 4,
 }
-"""The look of all marks."""
+"""Style of all marks."""
 
 HEIGHT = 2.8
 """Height of a figure in inches."""
 
 DECADES = 2, 8
-"""An axis on which more powers of ten lie is logarithmic, but not one that is as good as zero."""
+"""An axis is logarithmic if it covers more than 2 and fewer than 8 powers of ten.
+
+If it covers more, the smallest values are zero within rounding.
+"""
 
 TITLE = 50
-"""Letters of a line of a title, which does not break at an equals sign."""
+"""Maximum number of letters in a line of a title. Lines do not break at an equals sign."""
 EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 BESIDE = 1e-3
-"""Multipliers of special orbits are nearer to the unit circle."""
+"""Distance from the unit circle above which a multiplier shows that an orbit is not special."""
 
 MARKED = 4
-"""Orbits with more impacts have no marks, which would hide their lines."""
+"""Number of impacts above which special orbits have no marks. More marks would hide the lines."""
 
 
 def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure:
-    """Draw branches over what changes, or curves of special orbits over their two parameters.
+    """Draw branches against their parameter, or curves of special orbits against two parameters.
 
-    `found` are branches, curves, or lists of them such as a cascade, all along the same parameters.
-    The quantity is one of the dataset, such as "max_height"; those of impacts have a line for each.
-    By default the figure is a new one.
+    Parameters
+    ----------
+    *found : FollowedBranch, SpecialCurve or list of them
+        Branches or curves, all along the same parameters. A cascade is a list of branches.
+    quantity : str
+        Quantity drawn against the parameter of a branch: "max_height" or a quantity of impacts,
+        such as "phase", which gives one line per impact.
+    ax : matplotlib.axes.Axes, optional
+        Axes to draw into. By default the figure is new.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    ValueError
+        If ``found`` contains anything else, or if there is no such quantity.
     """
     branches = [each for group in found for each in _branches(group)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
@@ -96,13 +114,13 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
 
 
 def _branches(group: Any) -> list[FollowedBranch]:
-    """One branch, or those of a list without the reasons why some were not found."""
+    """Return the branches of a list, or one branch as a list. An OrbitNotFound is left out."""
     several = group if isinstance(group, list | tuple) else [group]
     return [each for each in several if isinstance(each, FollowedBranch)]
 
 
 def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:
-    """Draw one branch or curve; returns what a legend says of it."""
+    """Draw one branch or curve. Returns its entries for the legend: samples of lines by text."""
     is_curve = isinstance(branch, SpecialCurve)
     shown = branch.refined()
     orbits = shown.with_special()
@@ -121,7 +139,8 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
         axes.plot(x[part], y[part], **look)
         kind = getattr(whole, "kind", "stable" if steady else "unstable")
         text = kind if admissible else f"{kind}, no ball follows"
-        # Curves of several kinds differ in their colours, and branches also in their lines.
+        # Colours distinguish the kinds of curves. Several branches share a line style, so its
+        # entry is black.
         common = colour if is_curve else "black"
         entries[text] = sample(**look | {"color": common if admissible else pale(common)})
     for each, abscissa, ordinates in zip(orbits, x, y, strict=True):
@@ -133,9 +152,10 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 
 
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
-    """For each orbit the number of the next one, or of the last one, that is not special.
+    """For each orbit, return the index of the next ordinary orbit, or of the last one.
 
-    An end counts if it is alone beside a special orbit and no multiplier is near the unit circle.
+    Orbits at the ends of the branch are left out, because they may be special. An end is ordinary
+    if its only neighbour is special and its multipliers are away from the unit circle.
     """
     places = [each.z for each in special]
     marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]
@@ -152,13 +172,13 @@ def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -
 
 
 def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:
-    """The order of a legend: lines, from those of stable orbits on, before marks."""
+    """Sort key of a legend: lines of stable orbits, other lines, marks."""
     text, line = entry
     return line.get_linestyle() == "None", "no ball" in text, text == "unstable"
 
 
 def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArray]:
-    """Abscissa (points,) and ordinates (points, lines)."""
+    """Return the abscissas, shape (points,), and the ordinates, shape (points, lines)."""
     if isinstance(branch, SpecialCurve):
         return branch.z[:, -2], branch.z[:, -1:]
     if quantity == "max_height":
@@ -169,7 +189,7 @@ def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArra
 
 
 def _scale(axes: Axes) -> None:
-    """Make axes logarithmic on which the data are positive and cover many powers of ten."""
+    """Make an axis logarithmic if its data are positive and cover many powers of ten."""
     data = axes.dataLim
     for name, (low, high) in (("x", data.intervalx), ("y", data.intervaly)):
         if low > 0 and DECADES[0] < np.log10(high / low) < DECADES[1]:
@@ -177,26 +197,26 @@ def _scale(axes: Axes) -> None:
 
 
 def _label(name: str) -> str:
-    """The label of an axis."""
+    """Label of an axis: name and symbol."""
     _, symbol, unit = (OF_IMPACTS | OF_ORBITS | PARAMETERS).get(name, (name, "", "1"))
     symbol = f"{symbol}/π" if unit == "rad" else symbol
     return f"{name} {symbol}".replace("_", " ").rstrip()
 
 
 def _name(branch: FollowedBranch) -> str:
-    """What a legend says of the colour of a branch."""
+    """Text of a branch in a legend: its numbers of impacts and periods."""
     return f"{branch.impacts} impact{'s'[: branch.impacts - 1]} in {branch.periods} T"
 
 
 def _title(branches: list[FollowedBranch]) -> str:
-    """The parameters that do not change and are the same on all branches."""
+    """Title of a figure: the parameters that are constant and equal on all branches."""
     others = [branch.orbits[i].parameters for branch in branches for i in (0, -1)]
     same = {
         name: value
         for name, value in others[0].items()
         if all(each.get(name) == value for each in others)
     }
-    # The default phases of harmonics, and the default size of the first one, are not said.
+    # Leave out default values: phases 0, and size 1 of the first harmonic.
     texts = [
         f"{_symbol(name)}{EQUAL}{value:.4g}"
         for name, value in same.items()
@@ -208,7 +228,7 @@ def _title(branches: list[FollowedBranch]) -> str:
 
 
 def _symbol(name: str) -> str:
-    """What a title calls a parameter: a₃ and p₃ are the size and the phase of a sin(3τ + p)."""
+    """Symbol of a parameter in a title: a₃ and p₃ are size and phase of a sin(3τ + p)."""
     if not name.startswith(OF_TABLES):
         return PARAMETERS.get(name, ("", name))[1]
     order = name.rpartition("_")[2].translate(str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉"))

@@ -106,7 +106,7 @@ def test_a_function_of_a_user_is_given_again():
     ball = Rigid(slower)
     one = orbit(ball, amplitude=1.4)
     data = to_dataset(one)
-    with pytest.raises(ValueError, match="the ball has a function, slower: give it as ball="):
+    with pytest.raises(ValueError, match="the function slower of the ball: give the ball as ball="):
         read_orbits(data)
     assert read_orbits(data, ball=ball).distance(one) == 0
 
@@ -135,7 +135,7 @@ def test_quantities_are_those_of_the_orbits(rigid):
 def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
     file = tmp_path / "other.nc"
     xr.Dataset({"x": 1.0}).to_netcdf(file)
-    with pytest.raises(ValueError, match=r"other\.nc: no dataset of orbits"):
+    with pytest.raises(ValueError, match=r"other\.nc: not a dataset of orbits"):
         read_orbits(file)
     one = orbit(Rigid(0.5), amplitude=1.6)
     several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
@@ -259,7 +259,7 @@ def test_pictures_refuse_what_they_cannot_draw(rigid):
 
 
 def test_a_list_of_branches_has_a_dataset_for_each(rigid):
-    with pytest.raises(ValueError, match="each branch has a dataset of its own"):
+    with pytest.raises(ValueError, match="a dataset stores one branch"):
         to_dataset([rigid, rigid])
 
 

@@ -509,7 +509,7 @@ TEXT = {"quantities": "max_height"}
             "amplitude = -1: must be at least 0",
         ),
         (lambda: bb.law_errors(bb.SpringDamper(9.0, restitution=0.5), amplitude=-1), "must be in"),
-        (lambda: bb.read_orbits(3), "source = 3: must be a file or a dataset"),
+        (lambda: bb.read_orbits(3), "source = 3: must be a path or an xarray.Dataset"),
         (lambda: bb.basins(ONE, amplitude=1.2, starts=0), "starts = 0: must be a whole number"),
         (lambda: bb.history(ONE, amplitude=1.0, periods=0), r"periods = 0: must be in \(0, ∞\)"),
         (
@@ -534,7 +534,7 @@ TEXT = {"quantities": "max_height"}
         (lambda: bb.cascade(TWO, to=2.0, impacts=1), "impacts = 1: must be a whole number from 2"),
         (
             lambda: bb.read_orbits(bb.to_dataset(TWO), ball=bb.SpringDamper(9.0, restitution=0.5)),
-            "the ball of the orbits has no frequency_ratio: give it as ball=",
+            "ball: its parameter frequency_ratio is not in the dataset; give the ball of the",
         ),
     ],
 )

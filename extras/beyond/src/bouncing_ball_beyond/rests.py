@@ -1,7 +1,7 @@
-"""Orbits of a ball that comes to rest on the table and leaves it with the next lift-off.
+"""Orbits of a ball that comes to rest on the table and leaves it at the next lift-off.
 
-The return to rest is no equation, because it holds for all values of the parameters nearby; the
-length of the rest is a test function: docs/orbits.md.
+The ball also comes to rest at all neighbouring values of the parameters. The equations therefore
+do not contain the return to rest. The length of the rest is a test function (docs/orbits.md).
 """
 
 from dataclasses import dataclass
@@ -28,23 +28,28 @@ from bouncing_ball_beyond.periodic import one_amplitude
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 SLOW_BOUNCE = 1e-2
-"""The last bounces that are slower than this do not tell where a flight or an impact grazes."""
+"""Speed below which the last bounces are left out of the tests for grazing flights and impacts."""
 
 SOON = 1e-6
-"""A flight after a lift-off does not turn back so soon: it starts as slowly as t³."""
+"""Time after a lift-off before which zeros of δ′ are ignored, because δ grows as slowly as t³.
+
+Also the tolerance with which successive lift-offs must agree in phase.
+"""
 
 MOST = 2000
-"""The largest number of impacts between a lift-off and the rest after it."""
+"""Maximum number of impacts between a lift-off and the next rest."""
 
 CYCLES = 20
-"""The largest number of rests after which a ball leaves at the same lift-off again."""
+"""Maximum number of rests before the ball leaves at the same phase as after the rest before."""
 
 
 @dataclass(frozen=True)
 class RestEquations(OrbitEquations):
-    """Orbits with a rest: z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), with the lift-off at τ₀, and
-    the functions of :class:`OrbitEquations`. After the last of the k impacts the bounces are summed
-    up.
+    """Equations of orbits with a rest.
+
+    An orbit is a row z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), where τ₀ is the time of the
+    lift-off. The bounces after the last of the k impacts are summed up. Methods are those of
+    :class:`OrbitEquations`.
     """
 
     unknowns = 2
@@ -61,18 +66,18 @@ class RestEquations(OrbitEquations):
         "lost lift-off",
         "end of a rest",
     )
-    """The first two have no tests: both multipliers are zero."""
+    """Kinds of special orbits. The first two never occur, because both multipliers are zero."""
 
     def orbit(self, z: NDArray, kind: str = "") -> "RestOrbit":
         return RestOrbit(self, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
-        """The impacts (rows, k, 2), ball, Λ and table; the lift-off is not among them."""
+        """Split z into impacts, shape (rows, k, 2), ball, Λ and table. The lift-off is left out."""
         x = z[..., : 2 * self.impacts].reshape(*z.shape[:-1], self.impacts, 2)
         return x, *self.at(z[..., self.size :])
 
     def ends(self, z: NDArray) -> Flights:
-        """The flights after the lift-off and after all impacts but the last."""
+        """Flights after the lift-off and after all impacts except the last, shape (rows, k)."""
         x, ball, amplitude, table = self.split(z)
         before = x[..., :-1, :]
         bounce = ball.contact(before[..., 0], before[..., 1], None, amplitude, table=table)
@@ -83,8 +88,9 @@ class RestEquations(OrbitEquations):
         return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
 
     def linearized(self, z: NDArray) -> LinearizedLegs:
-        """The equations, shape (rows, N - p, 1), their derivatives, and the times of flight,
-        without the last slow bounces.
+        """Evaluate the equations, shape (rows, N - p, 1), their derivatives and times of flight.
+
+        Flights to the last slow bounces count as long (`FAR`).
         """
         y = z + 1j * H * np.eye(z.shape[1])[:, np.newaxis]
         x, _, amplitude, _ = self.split(y)
@@ -98,7 +104,7 @@ class RestEquations(OrbitEquations):
 
     @staticmethod
     def _tail(speeds: NDArray) -> NDArray:
-        """Which of the speeds are those of the last slow bounces, shape (rows, k)."""
+        """Whether each speed belongs to the last slow bounces (`SLOW_BOUNCE`), shape (rows, k)."""
         return np.cumprod(np.abs(speeds[:, ::-1]) < SLOW_BOUNCE, axis=1)[:, ::-1].astype(bool)
 
     def solve(self, linear: LinearizedLegs, border: NDArray, right: NDArray) -> NDArray:
@@ -111,7 +117,10 @@ class RestEquations(OrbitEquations):
         return linear.legs[..., 0], linear.derivatives
 
     def rest(self, z: NDArray) -> NDArray:
-        """How long the ball rests, shape (rows,), by the sum of :func:`.one_ball.settling`."""
+        """Duration of the rest, shape (rows,).
+
+        The time of the last bounces is the sum of :func:`.one_ball.settling`.
+        """
         x, ball, amplitude, table = self.split(z)
         tau, u = (x[..., -1:, i] for i in (0, 1))
         w = ball.contact(tau, u, None, amplitude, table=table).speed
@@ -122,18 +131,19 @@ class RestEquations(OrbitEquations):
         return z[:, self.size - 1] + period - (tau + bounces)[..., 0]
 
     def fall(self, z: NDArray) -> NDArray:
-        """How fast the table falls away at the lift-off, shape (rows,): -w‴."""
+        """Rate -w‴ at which the table falls away at the lift-off, shape (rows,)."""
         _, _, amplitude, table = self.split(z)
         return -(amplitude * table(z[:, self.size - 1 : self.size], 3))[..., 0]
 
     def least_speed(self, z: NDArray) -> NDArray:
-        """The least closing speed, without the last slow bounces."""
+        """Minimum closing speed, without the last slow bounces, shape (rows,)."""
         speeds = self.split(z)[0][..., 1]
         return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
 
     def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
-        """How far the ball is above the table where flights turn back, without the last slow
-        bounces.
+        """Minimum height above the table at the turning points of flights, shape (rows,).
+
+        The last slow bounces are left out.
         """
         ends = self.ends(z)
         slow = self._tail(ends.speed)
@@ -148,14 +158,21 @@ class RestEquations(OrbitEquations):
         return np.ones((len(z), 1))
 
     def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
-        """Whether a ball follows the orbit: it touches the table only at its impacts, and rests."""
+        """Whether a ball follows the orbits, shape (rows,).
+
+        The ball must touch the table only at the impacts, rest for a positive time, and leave it at
+        the lift-off.
+        """
         linear = linear or self.linearized(z)
         good = (self.least_speed(z) > 0) & (linear.flights > 0).all(axis=1)
         return good & (self.rest(z) > 0) & (self.fall(z) > 0) & (self.clearance(z) > 0)
 
 
 class _Superstable(LinearizedLegs):
-    """Equations of orbits whose multipliers are zero, because the ball leaves without a memory."""
+    """Linearised equations of orbits with a rest.
+
+    Both multipliers are zero, because the state at the lift-off does not depend on earlier impacts.
+    """
 
     @property
     def trace_and_determinant(self) -> tuple[NDArray, NDArray]:
@@ -163,10 +180,10 @@ class _Superstable(LinearizedLegs):
 
 
 class _Lifted(Flights):
-    """Flights of which the first one starts with a lift-off."""
+    """Flights, the first of which starts with a lift-off."""
 
     def bends(self) -> NDArray:
-        """As of other flights, without the lift-off itself."""
+        """Times of the turning points of flights, without the lift-off itself."""
         times = super().bends()
         first = times[:, 0]
         times[:, 0] = np.where(first < SOON, self.flight[:, :1], first)
@@ -174,10 +191,11 @@ class _Lifted(Flights):
 
 
 class RestOrbit(PeriodicOrbit):
-    """A periodic motion of a ball that rests on the table once in its period.
+    """A periodic motion of a ball that rests on the table once in a period.
 
-    Its impacts are those up to the bounces that are summed up. Times of flight are those before the
-    impacts, the first one from the lift-off on; see :class:`PeriodicOrbit`.
+    It has the attributes of a :class:`PeriodicOrbit`. Its impacts end where the bounces are summed
+    up. Times of flight are the flights *before* the impacts; the first flight starts at the
+    lift-off.
     """
 
     equations: RestEquations
@@ -193,7 +211,7 @@ class RestOrbit(PeriodicOrbit):
 
     @property
     def rest(self) -> float:
-        """How long the ball rests on the table."""
+        """Duration of the rest on the table."""
         return float(self.equations.rest(self.z[np.newaxis])[0])
 
     @cached_property
@@ -203,22 +221,43 @@ class RestOrbit(PeriodicOrbit):
 
     @property
     def monodromy(self) -> NDArray:
-        """Zero: the ball leaves without a memory."""
+        """Zero matrix, shape (2, 2): the lift-off does not depend on earlier impacts."""
         return np.zeros((2, 2))
 
     @property
     def multipliers(self) -> NDArray:
-        """Both are zero."""
+        """Floquet multipliers, shape (2,): both are zero."""
         return np.zeros(2, complex)
 
 
 def orbit_with_rest(
     ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
 ) -> RestOrbit:
-    """Find the periodic motion with one rest of a ball with instantaneous impacts.
+    """Find the periodic motion, with one rest, of a ball with instantaneous impacts.
 
-    After so many `impacts` the bounces are summed up; by default after those of the simulation,
-    which leaves an error of 1e-15. OrbitNotFound if the ball does not leave, or come to rest.
+    Parameters
+    ----------
+    ball : Ball
+        A single ball with instantaneous impacts, such as ``Rigid(0.3)``.
+    amplitude : float
+        Λ > 0.
+    impacts : int, optional
+        Number of impacts after which the bounces are summed up. The default is the number in the
+        simulation, with an error of 1e-15.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    RestOrbit
+
+    Raises
+    ------
+    OrbitNotFound
+        If the ball never leaves the table, does not come to rest again, or rests several times
+        before its motion repeats.
+    ValueError
+        If the impacts have a duration, or if an argument is out of range.
 
     Examples
     --------
@@ -238,13 +277,13 @@ def orbit_with_rest(
     starts = table.lift_offs(amplitude)
     if np.isnan(starts[0]):
         raise OrbitNotFound(
-            f"the table never falls faster than a ball: its greatest -w″ is"
-            f" {amplitude * table.lift:.6g}"
+            f"the table never falls faster than a ball: its maximum -w″ is"
+            f" {amplitude * table.lift:.6g}, but must be above 1: increase the amplitude"
         )
     start = float(starts[0])
     zero = np.zeros(1)
     for _ in range(CYCLES):
-        # A ball that is laid on the table where it lifts off leaves at once.
+        # A ball laid on the table at a lift-off phase leaves at once.
         laid = Balls(ball, zero + amplitude, zero, zero + start, zero, table)
         record = bounce(laid, MOST)[0][1:, :, 0]
         turns, phase, u, _, rests, _, w, _ = record.T
@@ -262,11 +301,11 @@ def orbit_with_rest(
         start = float(reduced(start + length)[1])
     else:
         raise OrbitNotFound(
-            "the ball leaves at other lift-offs each time: its motion does not repeat, or has"
-            " several rests, with which it is not followed"
+            f"the lift-offs of {CYCLES} successive rests differ: the motion does not repeat, or has"
+            " several rests; only motions with one rest are found"
         )
     hops = list(zip(times[: at + 1], u[: at + 1], strict=True))
-    # Bounces that the simulation sums up: Newton's method makes them exact.
+    # Guesses of bounces that the simulation sums up. Newton's method corrects them.
     while impacts is not None and len(hops) < impacts:
         tau, fast = hops[-1]
         slow = float(ball.contact(tau, fast, None, amplitude, table=table).speed)

@@ -1,4 +1,4 @@
-"""Orbits, branches and curves as labelled datasets, and back from them and their files."""
+"""Convert orbits, branches and curves to labelled datasets, and restore them."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -59,12 +59,12 @@ PARAMETERS = {
     "damping_ratio": ("damping ratio", "ζ", "1"),
     "frequency": ("frequency of a table with a fixed stroke", "Ω/√(g/a)", "1"),
 }
-"""Parameters; those of laws have their names as long names."""
+"""Parameters. The long name of a parameter of a law is its name."""
 
 BALLS: dict[str, Any] = {each.__name__: each for each in (Rigid, SpringDamper, Corrected, ForceLaw)}
 
 Found = PeriodicOrbit | FollowedBranch | Sequence
-"""What a dataset is made of, and read as: an orbit, a branch or a curve, or a list of orbits."""
+"""Objects that datasets store: an orbit, a branch, a curve, or a list of orbits."""
 
 
 # Datasets
@@ -73,10 +73,24 @@ Found = PeriodicOrbit | FollowedBranch | Sequence
 def to_dataset(found: Found) -> xr.Dataset:
     """Convert an orbit, a branch, a curve or a list of orbits to a labelled dataset.
 
-    It has a row for each orbit along ``point``, with quantities of its impacts along ``impact``;
-    special orbits have a ``kind``, and are at their places. Attributes are ball and table of the
-    first orbit; parameters are variables. The orbits of a list have the same number of impacts and
-    balls of one kind; an `OrbitNotFound` is left out.
+    Parameters
+    ----------
+    found : PeriodicOrbit, FollowedBranch, SpecialCurve or list of PeriodicOrbit
+        The orbits of a list must have the same number of impacts, balls of one kind, and tables
+        with the same harmonics. An `OrbitNotFound` is left out.
+
+    Returns
+    -------
+    xarray.Dataset
+        One row per orbit along ``point``. Quantities of impacts also have the axis ``impact``.
+        Special orbits stand between their neighbours on the branch, and have a ``kind``. Parameters
+        are variables. Attributes contain the ball and the table of the first orbit.
+
+    Raises
+    ------
+    ValueError
+        If there is no orbit, if ``found`` is a list of branches, or if the orbits of a list differ
+        in kind.
 
     Examples
     --------
@@ -130,7 +144,7 @@ def to_dataset(found: Found) -> xr.Dataset:
 
 
 def _listed(found: Found) -> list[PeriodicOrbit]:
-    """All orbits in order, the special ones of a branch at their places."""
+    """Return all orbits in order, including the special orbits of a branch."""
     if isinstance(found, PeriodicOrbit):
         return [found]
     if isinstance(found, FollowedBranch):
@@ -138,15 +152,15 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
     several: list[Any] = list(found) if isinstance(found, Iterable) else [found]
     if any(isinstance(each, FollowedBranch) for each in several):
         raise ValueError(
-            "each branch has a dataset of its own: [to_dataset(branch) for branch in branches]"
+            "a dataset stores one branch: write [to_dataset(branch) for branch in branches]"
         )
     orbits = [each for each in several if isinstance(each, PeriodicOrbit)]
     if not orbits:
-        raise ValueError("there is no orbit to make a dataset of")
+        raise ValueError("there is no orbit to store: give an orbit, a branch or a list of orbits")
     if len({(type(each), type(each.ball), each.impacts, *each.parameters) for each in orbits}) > 1:
         raise ValueError(
-            "the orbits of one dataset have the same number of impacts, balls of one kind and"
-            " tables of the same harmonics, and change along one path"
+            "the orbits of one dataset must have the same number of impacts, balls of one kind and"
+            " tables with the same harmonics, and change along one path"
         )
     return orbits
 
@@ -155,7 +169,7 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
 
 
 def encoded(value: Any) -> Any:
-    """A ball as its class and its fields, and a function as its name, for json."""
+    """Encode a ball by its class and fields, and a function by its name, for json."""
     if isinstance(value, Ball):
         ball: Any = value
         given = {field.name: getattr(ball, field.name) for field in fields(ball)}
@@ -168,10 +182,13 @@ def encoded(value: Any) -> Any:
 
 
 def decoded(values: dict[str, Any]) -> Any:
-    """What was encoded; ValueError if a function is none of the named laws."""
+    """Reverse :func:`encoded`. Raises ValueError if a function is not a named law."""
     if "function" in values:
         if not values["named"]:
-            raise ValueError(f"the ball has a function, {values['function']}: give it as ball=")
+            raise ValueError(
+                f"the file does not contain the function {values['function']} of the ball: give"
+                " the ball as ball="
+            )
         return getattr(named_laws, values["function"])
     if "class" not in values:
         return values
@@ -180,10 +197,25 @@ def decoded(values: dict[str, Any]) -> Any:
 
 
 def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
-    """Restore what :func:`to_dataset` converted, from the dataset or its netCDF file.
+    """Restore orbits, a branch or a curve from a dataset of :func:`to_dataset`.
 
-    A ball with a function of its user's is not in the file and is given again; ValueError if it is
-    missing, or if the dataset has no orbits.
+    Parameters
+    ----------
+    source : xarray.Dataset, str or path
+        The dataset or its netCDF file.
+    ball : Ball, optional
+        The ball of the orbits. It is required if the ball contains a function that is not a named
+        law, because datasets do not store functions.
+
+    Returns
+    -------
+    PeriodicOrbit, FollowedBranch, SpecialCurve or list of PeriodicOrbit
+
+    Raises
+    ------
+    ValueError
+        If the dataset contains no orbits, if a required ball is missing, or if the ball does not
+        have the parameters of the dataset.
 
     Examples
     --------
@@ -194,18 +226,24 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
     """
     is_file = isinstance(source, str | PathLike)
     if not is_file and not isinstance(source, xr.Dataset):
-        raise ValueError(f"source = {source!r}: must be a file or a dataset")
+        raise ValueError(f"source = {source!r}: must be a path or an xarray.Dataset")
     data = xr.load_dataset(source) if is_file else source
     name = f"{source}: " if is_file else ""
     if not {"ball", "along", "form"} <= data.attrs.keys():
-        raise ValueError(f"{name}no dataset of orbits: it has no attributes ball, along and form")
+        raise ValueError(
+            f"{name}not a dataset of orbits: the attributes ball, along and form are missing; give"
+            " a result of to_dataset"
+        )
     ball = ball or json.loads(data.attrs["ball"], object_hook=decoded)
-    # A sine has no parameters.
+    # SINE has no parameters, so its dataset has no variables of a table.
     of_table = [name for name in map(str, data.variables) if name.startswith(OF_TABLES)]
     table = Table(json.loads(data.attrs["table"])) if of_table else SINE
     missing = ball.parameters.keys() - data.variables
     if missing:
-        raise ValueError(f"{name}the ball of the orbits has no {min(missing)}: give it as ball=")
+        raise ValueError(
+            f"{name}ball: its parameter {min(missing)} is not in the dataset; give the ball of the"
+            " orbits as ball="
+        )
     paths = [path_of(each, ball, table) for each in json.loads(data.attrs["along"])]
     numbers = range(data.sizes["point"])
     orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in numbers]
@@ -225,7 +263,7 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
 
 
 def _orbit_at(row: xr.Dataset, ball: Ball, table: Table, paths: list[Path]) -> PeriodicOrbit:
-    """The orbit of one row."""
+    """Restore the orbit of one row of a dataset."""
     T = row.get("scaled_duration")
     impacts = row.impact_time.values, -row.relative_impact_velocity.values, T
     here = ball.at(**{name: float(row[name]) for name in ball.parameters})

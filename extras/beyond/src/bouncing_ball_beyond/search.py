@@ -1,4 +1,7 @@
-"""Where periodic orbits are: near those of instants, or near motions that come back."""
+"""Search for periodic orbits.
+
+Newton's method starts from orbits of instantaneous impacts, or from motions that nearly repeat.
+"""
 
 from dataclasses import replace
 from typing import Any
@@ -13,12 +16,19 @@ from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 AT_FOLD = 1e-6
-"""1 - tr/(1 + det) below which an orbit is that of the saddle-node, and of both its sides. It grows
-with the square root of Λ - Λ_SN, so that errors of 1e-13 of a contact make it 3e-7."""
+"""|1 - tr/(1 + det)| below which an orbit is the saddle-node and counts on both of its sides.
+
+1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
+cause a value of 3e-7.
+"""
 
 
 def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple[int, ...]]:
-    """A ball and further numbers as rows of one length, and the shape which these had."""
+    """Broadcast the parameters of a ball and further numbers to rows of one length.
+
+    Returns the ball, a list of arrays of the shape (rows,), and the shape of the broadcast
+    arguments.
+    """
     check_ball(ball)
     fields = ball.parameters
     broadcast = broadcast_named([*fields.items(), *others.items()])
@@ -30,18 +40,21 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
 
 
 def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Orbits whose first impact is in the first period of the table, at a time in [0, 2π)."""
+    """Shift orbits by whole periods of the table until the first impact is in [0, 2π)."""
     return equations.later(z, -np.floor(z[:, 0] / (2 * np.pi)))
 
 
 def guess_of_instants(
     ball: Ball, periods: int | NDArray, amplitude: NDArray, side: int = 1, table: Table = SINE
 ) -> NDArray:
-    """Rows z near n-T orbits, from impacts as instants of free impacts (the corrected model).
+    """Guess n-T orbits from the corrected model, which replaces contacts by instants.
 
-    At the centroid of its force, at the phase ψ, an impact has the speed u with
-    (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn; below the saddle-node the table rises
-    fastest at ψ. Orbits are stable on the side 1 and not on -1. The amplitude is that of rows.
+    An instant takes place at the phase ψ of the centroid of the contact force. The speed u and ψ
+    satisfy (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node these have
+    no solution, and ψ is the phase at which the table rises fastest. Orbits are stable on the side
+    1 of the saddle-node, and unstable on the side -1.
+
+    ``amplitude`` has the shape (rows,). Returns rows z, shape (rows, N).
     """
     u = np.full(amplitude.shape, 1.2 * np.pi) * periods
     psi = np.full(amplitude.shape, table.phase_of_slope(table.slope / 2, side))
@@ -49,14 +62,15 @@ def guess_of_instants(
     at: Any = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
-            # For a guess, the signature at a speed is that at another one within some percent.
+            # The signature of a speed within 5 % is exact enough for a guess.
             if np.any(np.abs(u - at) > 0.05 * u):
                 at = u
                 r, _, centroid, loss = ball.signature(u)
             known = np.isfinite(r)
             load = np.where(known, loss * (1 + amplitude * table(psi, 2)), 0.0)
             excess = (2 * np.pi * periods - load) / (1 + np.where(known, r, 0.5)) - u
-            # The secant method, with a slope of -2 at first, and limited as the phase nears 0.
+            # Secant method. The first slope is -2. Slopes are limited, because they become large
+            # when the phase approaches 0.
             slope = np.where(step == 0, -2.0, np.clip((excess - before) / step, -8.0, -1.0))
             step = -excess / slope
             before = excess
@@ -73,8 +87,11 @@ def guess_of_instants(
 def near_instants(
     equations: OrbitEquations, amplitude: NDArray, sign: int
 ) -> tuple[list[PeriodicOrbit | None], NDArray]:
-    """Orbits with one impact near those of the corrected model on a side of the saddle-node, by
-    rows, or None; and which of them a ball follows."""
+    """Find orbits with one impact near the orbits of the corrected model.
+
+    ``sign`` is the side of the saddle-node (:func:`guess_of_instants`). Returns the orbit of each
+    row, or None, and whether a ball follows it, shape (rows,).
+    """
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
@@ -88,8 +105,11 @@ def near_instants(
 def shortest_contacts(
     equations: OrbitEquations, amplitude: NDArray, sign: int
 ) -> tuple[list[PeriodicOrbit | None], NDArray]:
-    """Orbits with the shortest contact on a side of the saddle-node, by rows, or None, if possible
-    some that a ball follows; and which of them it follows."""
+    """Find the orbit with the shortest contact on one side of the saddle-node for each row.
+
+    Orbits that a ball follows come first. Returns the orbit of each row, or None, and whether a
+    ball follows it, shape (rows,).
+    """
     found: list[PeriodicOrbit | None] = []
     for i, each in enumerate(amplitude):
         alone = single(equations, i)
@@ -101,7 +121,7 @@ def shortest_contacts(
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:
-    """The equations of one row alone, with numbers in place of arrays."""
+    """Return the equations of row i, with numbers instead of arrays."""
     return replace(
         equations,
         ball=equations.ball.rows(i),
@@ -112,20 +132,23 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
 
 
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Orbits of one ball, also those it does not follow, shape (orbits, N)."""
+    """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
     z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
     z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
     x = equations.split(z)[0]
     z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
     z = z[(equations.ends(z).flight > 0).all(axis=1)]
     z = _distinct(equations, z)
-    # Some starts lead to orbits many periods later, at times with fewer digits.
+    # Some starts lead to orbits many periods later, whose times have fewer digits. Iterate again.
     return newton(equations, z).z if len(z) else z
 
 
 @np.errstate(all="ignore")
 def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near all orbits with one impact: impacts at many phases whose speed comes back."""
+    """Guess all orbits with one impact.
+
+    The guesses are impacts, at many phases, whose closing speed returns after n periods.
+    """
     table = equations.table
     longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
     phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)
@@ -133,7 +156,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
 
     def impacts(tau: NDArray, u: NDArray) -> NDArray:
-        # Contacts of an orbit are shorter than its period.
+        # The contact of an orbit is shorter than its period.
         within: dict[str, Any] = {"periods": equations.periods, "table": table}
         T = equations.ball.first_release(tau, u, amplitude, **within)
         columns = [tau, u, T][: equations.unknowns]
@@ -142,12 +165,12 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
     at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
     share = change[:, :-1][at] / (change[:, :-1] - change[:, 1:])[at]
-    # The lengths of contacts may jump from one sample to the next, and are not interpolated.
+    # Durations of contacts may jump between samples. Compute them again instead of interpolating.
     return impacts(tau[:, :-1][at], u[:, :-1][at] + share * np.diff(u, axis=1)[at])
 
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Starts near orbits of k impacts: simulated motions of them that take about m periods."""
+    """Guess orbits with k impacts: simulated motions of k impacts that take about m periods."""
     turn = 2 * np.pi
     fastest = 1.1 * np.pi * equations.periods + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
@@ -166,7 +189,10 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
 
 
 def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """The solutions to which Newton's method leads from starts, lost where it is far from all."""
+    """Iterate Newton's method from many starts, and return the solutions.
+
+    A start is given up when its iterates become larger than twice the largest start.
+    """
 
     def sizes(z: NDArray) -> NDArray:
         return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)
@@ -178,22 +204,22 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
             break
         solution = newton(equations, z, iterations=1)
         found.append(solution.z[solution.found])
-        # NaN is not inside either.
+        # The comparison is false for NaN.
         inside = (sizes(solution.z) <= largest).all(axis=1)
         z = solution.z[inside & ~solution.found]
     return np.concatenate(found)
 
 
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """One row for each orbit: its first impact is the one of the greatest speed.
+    """Return each orbit once, with its fastest impact first.
 
-    Orbits of a shorter period, taken several times, are left out.
+    Repetitions of orbits of a shorter period are left out.
     """
     k = equations.impacts
     x = equations.split(z)[0]
     later = x.copy()
     later[..., 0] += 2 * np.pi * equations.periods
-    # Of impacts with the same speed, such as those of an elastic ball, that of the least phase.
+    # If impacts have the same speed, as for an elastic ball, the smallest phase comes first.
     rank = x[..., 1].round(6) - 1e-8 * (x[..., 0] % (2 * np.pi))
     first = rank.argmax(axis=1)[:, np.newaxis] + np.arange(k)
     x = np.take_along_axis(np.concatenate([x, later], axis=1), first[..., np.newaxis], axis=1)
@@ -205,7 +231,7 @@ def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
         x = x[~again] if k % j == 0 else x
     rows = x.reshape(len(x), equations.size)
     rows = rows[np.unique(rows.round(6), axis=0, return_index=True)[1]]
-    # Two roundings of one orbit.
+    # Remove the second of two rows that were rounded differently but are the same orbit.
     apart = np.abs(rows[:, np.newaxis] - rows).max(axis=-1, initial=0.0)
     rows = rows[~np.tril(apart < 1e-5, -1).any(axis=1)]
     return np.concatenate([rows, z[: len(rows), -1:]], axis=1)

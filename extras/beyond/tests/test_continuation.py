@@ -553,7 +553,7 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
         (lambda: cascade(follow(start), to=2.0), "doubling = FollowedBranch.*: must be a period d"),
         (lambda: follow(start, to=2.0, points=0), "points = 0: must be a whole number from 2"),
         (lambda: cascade([doubling], to=[1.8, 1.9]), "to: has 2 values for 1 orbits"),
-        (lambda: follow(start, to=1.3), "amplitude = 1.3 is that of the orbit already"),
+        (lambda: follow(start, to=1.3), "amplitude = 1.3 is already the value of the orbit"),
         (
             lambda: follow(orbit(SpringDamper(9.0, 0.5), amplitude=1.3), along="damping_ratio"),
             "along = 'damping_ratio': the ball is given by frequency_ratio and restitution; start",

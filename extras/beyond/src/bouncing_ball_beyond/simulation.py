@@ -1,4 +1,4 @@
-"""Motions over time: the impacts of simulated balls, and their heights, as labelled datasets."""
+"""Simulate balls: compute their impacts or their heights over time, as labelled datasets."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -17,7 +17,7 @@ AT_ONCE = 32
 """Number of impacts that :func:`history` computes before it checks whether the time is over."""
 
 MOST_IMPACTS = 1_000_000
-"""Maximum number of impacts of a ball in :func:`history`. More raise a ValueError."""
+"""Maximum number of impacts of a ball in :func:`history`. More impacts raise a ValueError."""
 
 
 def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
@@ -25,7 +25,7 @@ def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if np.asarray(value).dtype.kind in "SU":
-        raise ValueError(f"{name} = {brief(value)}: is a text, and must be a number")
+        raise ValueError(f"{name} = {brief(value)}: is a text, but must be a number")
     value = np.asarray(value, float)
     if value.ndim > 1 or not np.isfinite(value).all():
         raise ValueError(f"{name}: must be a finite number, a list of them or an xarray.DataArray")
@@ -34,10 +34,10 @@ def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
 
 
 def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray]]:
-    """Span a grid by arguments and by the array parameters of a ball.
+    """Span a grid with array arguments and array parameters of a ball.
 
-    One argument must be the amplitude. Parameters of the ball share one axis. Its name is that of
-    the parameter, or "ball" if several parameters are arrays.
+    One argument must be ``amplitude``. Array parameters of the ball share one axis. The axis has
+    the name of the parameter, or "ball" if several parameters are arrays.
 
     Returns
 
@@ -69,7 +69,7 @@ def first_impacts(
     relative_velocity: Values,
     table: Table = SINE,
 ) -> tuple[xr.DataArray, Balls]:
-    """Return the grid of first impacts of :func:`simulate`, and the balls before these impacts."""
+    """Return the grid of the first impacts of :func:`simulate`, and the balls before them."""
     check_table(table)
     absolute = relative_velocity is None
     if not absolute and velocity is not None:
@@ -160,8 +160,8 @@ def simulate(
     phase : float or array
         Phase of the table at the first impact.
     velocity, relative_velocity : float or array
-        Velocity of the ball before the first impact in units of g/Ω, or its velocity δ′ ≤ 0
-        relative to the table. Give at most one of both; the default is ``velocity`` = -π.
+        Velocity of the ball before the first impact, in units of g/Ω; or its velocity δ′ ≤ 0
+        relative to the table. Give at most one of them. The default is ``velocity`` = -π.
     impacts : int
         Maximum number of impacts.
     table : Table
@@ -170,12 +170,18 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        ``time``, ``impact_phase``, ``impact_velocity``, ``bounce_velocity``, ``contact_duration``
-        and ``flight_time`` of each ``impact``, and ``relative_impact_velocity`` and
-        ``relative_bounce_velocity``, NaN after the last one; and the ``status`` of the ball,
-        "bouncing" or "permanent contact". A ball may come to rest after infinitely many bounces.
-        Their total time, with the rest up to the lift-off, is then the ``contact_duration`` of one
-        impact.
+        Variables of each ``impact``, NaN after the last impact:
+
+        - ``time`` since the start;
+        - ``impact_phase``: phase of the table at the start of the impact;
+        - ``impact_velocity``, ``bounce_velocity``: velocities of the ball before and after it;
+        - ``relative_impact_velocity``, ``relative_bounce_velocity``: the same velocities relative
+          to the table;
+        - ``contact_duration`` and ``flight_time`` after it.
+
+        The ``status`` of each ball is "bouncing" or "permanent contact". A ball may come to rest
+        after infinitely many bounces. One impact then stands for these bounces: its
+        ``contact_duration`` is their total time plus the rest up to the lift-off.
 
     Raises
     ------
@@ -221,7 +227,7 @@ def history(
     samples: int = 200,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Compute the height of a ball over time, from a first impact as in :func:`simulate`.
+    """Compute the height of a ball over time, starting with the first impact of :func:`simulate`.
 
     Parameters
     ----------
@@ -235,8 +241,12 @@ def history(
     Returns
     -------
     xarray.Dataset
-        Height and velocity of the ``ball``, height of the ``table`` and whether they are in
-        ``contact``, over ``time``. Times are Ωt and heights Ω²y/g.
+        Variables over ``time``. Times are Ωt, heights are Ω²y/g, and velocities are in units of
+        g/Ω.
+
+        - ``ball``, ``ball_velocity``: height and velocity of the ball;
+        - ``table``: height of the table;
+        - ``contact``: whether the ball touches the table.
 
     Raises
     ------
@@ -263,9 +273,11 @@ def drop(
     Parameters
     ----------
     height : float or array
-        Height above the middle of the motion of the table, in units of g/Ω².
-    ball, amplitude, phase, periods, samples, table
-        As in :func:`history`; the phase is that of the table when the ball is dropped.
+        Initial height z of the ball, in units of g/Ω². The table is at z = ΛW(τ).
+    phase : float or array
+        Phase of the table when the ball is dropped.
+    ball, amplitude, periods, samples, table
+        As in :func:`history`.
 
     Returns
     -------
@@ -297,7 +309,7 @@ def drop(
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)
     dropped = Leaving(nothing, nothing, nothing, phase, gap, w, emerges=nothing)
     time, speed = fly(balls, dropped)
-    # A ball that lies on a table which does not fall faster is at its first impact already.
+    # A ball on the table starts with an impact, unless the table falls away faster than the ball.
     gravity = 1 + amplitude * table(phase, 2)
     lies = (gap == 0) & ((w < 0) | ((w == 0) & (gravity >= 0)))
     time = np.where(lies, 0.0, time)
@@ -311,9 +323,10 @@ def drop(
 def over_time(
     grid: xr.DataArray, balls: Balls, fall: NDArray, periods: float, samples: int
 ) -> xr.Dataset:
-    """Return balls over time as a dataset.
+    """Return the heights of balls over time as a dataset.
 
-    ``fall`` records the flights before the first impacts, and is empty if there are none.
+    ``fall`` records the flights before the first impacts, shape (flights, 8, balls). It has no
+    flights if the motions start with an impact.
     """
     periods = checked("periods", periods, 0, np.inf, low_allowed=False)
     times = np.linspace(0, PERIOD * periods, round(periods * whole_number("samples", samples)) + 1)
@@ -328,7 +341,9 @@ def over_time(
             more, _, one = bounce(one, AT_ONCE)
             records.append(more[:, :, 0])
             if AT_ONCE * len(records) > MOST_IMPACTS:
-                raise ValueError(f"a ball has more than {MOST_IMPACTS} impacts in this time")
+                raise ValueError(
+                    f"a ball has more than {MOST_IMPACTS} impacts in this time: reduce periods"
+                )
         record = np.concatenate(records)
         record = record[np.isfinite(record[:, 0])]
         one = balls.take([j])
@@ -342,11 +357,14 @@ def over_time(
 def states_at(
     record: NDArray, origin: float, balls: Balls, times: NDArray
 ) -> tuple[NDArray, NDArray, NDArray]:
-    """δ, δ′ and whether one ball is in contact at times after the phase ``origin`` of the table."""
+    """Return δ, δ′ and whether a ball is in contact, each of the shape (times,).
+
+    ``times`` count from the phase ``origin`` of the table. ``balls`` contains one ball.
+    """
     ball = balls.ball
     amplitude = float(balls.amplitude[0])
     begin = PERIOD * record[:, 0] + record[:, 1] - origin
-    # Rounding may put the beginning after the first of the times.
+    # By rounding, the first impact may begin after the first time.
     number = np.maximum(np.searchsorted(begin, times, side="right") - 1, 0)
     _, phase, u, _, duration, gap, w, _ = record[number].T
     since = np.maximum(times - begin[number], 0.0)

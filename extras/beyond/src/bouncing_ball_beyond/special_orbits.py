@@ -1,4 +1,4 @@
-"""Special orbits: where they are between two orbits of a march, or near a guess."""
+"""Locate special orbits between two orbits of a march, or near a guess."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -11,8 +11,20 @@ from bouncing_ball_beyond.march import Solution, ends_at, newton
 
 
 class Crossings(NamedTuple):
-    """Steps in which a test changes its sign: their rows, numbers and kinds, and the orbits,
-    tangents and tests at both ends, along the first axis.
+    """Steps of branches in which a test function changes its sign.
+
+    Attributes
+    ----------
+    row : array of int, shape (steps,)
+        Branch of each step.
+    number : array of int, shape (steps,)
+        Index of the step along its branch.
+    kind : array of str, shape (steps,)
+        Kind of special orbit whose test function changes its sign.
+    ends, slopes : array, shape (2, steps, N)
+        Orbits and tangents at the start and at the end of each step.
+    values : array, shape (2, steps)
+        Test functions at the start and at the end.
     """
 
     row: NDArray
@@ -26,14 +38,18 @@ class Crossings(NamedTuple):
 def crossings_of(
     equations: OrbitEquations, row: NDArray, z: NDArray, slopes: NDArray, tests: NDArray
 ) -> Crossings:
-    """All steps in which a test changes its sign, of orbits (points, N) that belong to rows."""
+    """Find all steps in which a test function changes its sign.
+
+    ``z`` contains the orbits of all branches, shape (points, N). ``row`` is the branch of each
+    orbit.
+    """
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
     others = sorted({"grazing of a flight", "grazing of a release"} - {equations.kind})
     names = [*equations.kinds, *others]
     values = np.array([*tests.T, *(KINDS[name].test(every, z, None) for name in others)])
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
-    # Where tr/(1 + det) has a pole or jumps, it changes its sign without passing 1 or -1.
+    # At a pole or a jump of tr/(1 + det), the tests change sign although no multiplier is ±1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
     crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
     which, at = np.nonzero(crossed)
@@ -43,7 +59,11 @@ def crossings_of(
 
 
 def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
-    """Hermite's cubic between the ends of steps, with slopes per unit of the part of a step."""
+    """Interpolate between the ends of steps with Hermite cubics.
+
+    ``part`` is the position in each step, from 0 to 1; ``slopes`` are derivatives with respect to
+    it.
+    """
     x = part[:, np.newaxis]
     chord = ends[1] - ends[0]
     bend = slopes[0] + slopes[1] - 2 * chord
@@ -51,7 +71,7 @@ def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
 
 
 def _tests_of(kinds: NDArray, equations: OrbitEquations, solution: Solution) -> NDArray:
-    """The tests of orbits, each that of its kind."""
+    """Evaluate the test function of the kind of each orbit, shape (rows,)."""
     values = np.empty(len(kinds))
     for name in np.unique(kinds):
         these = kinds == name
@@ -62,10 +82,12 @@ def _tests_of(kinds: NDArray, equations: OrbitEquations, solution: Solution) -> 
 
 @np.errstate(all="ignore")
 def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, NDArray]:
-    """The orbits at which the tests are zero, and which of them were found.
+    """Find the orbits at which the test functions are zero.
 
-    The zero is bracketed along the chord of each step, by the rule of Anderson and Björck (BIT 13,
-    253, 1973); the orbits are on the planes across the chord.
+    The zero is bracketed along the chord of each step by the rule of Anderson and Björck (BIT 13,
+    253, 1973). Newton's method corrects each orbit on the plane perpendicular to the chord.
+
+    Returns the orbits, shape (steps, N), and whether each was found.
     """
     equations = equations.rows(crossings.row)
     ends = crossings.ends.copy()
@@ -78,7 +100,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     each = np.arange(len(chord))
     place = np.array([0 * each, 0 * each + 1.0])
     latest = 0 * each - 1
-    # The equations are singular at a period halving, which is found by those of half the period.
+    # The equations are singular at a period halving: use `halved_at`.
     found = crossings.kind != "period halving"
     singular = np.array([ends_at(name, None) for name in crossings.kind])
     z = ends[0]
@@ -90,7 +112,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         guess = _cubic(part, ends, slopes * step[:, np.newaxis])
         solution = newton(equations, guess, normal)
         if equations.kind:
-            # Curves are smooth where they end, but their equations are singular there.
+            # At the end of a curve the equations are singular, but the curve is smooth.
             lost = ~solution.found & singular
             solution.z[lost] = guess[lost]
             solution.tangent[lost] = slopes[0, lost]
@@ -115,7 +137,8 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         latest = side
         if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
             break
-    # Equations are singular at the ends of curves: rounding may lead away from there again.
+    # At the ends of curves the equations are singular, and rounding errors may move later iterates
+    # away. Use the iterate with the smallest test.
     z[singular] = nearest[singular]
     value[singular] = least[singular]
     largest = np.abs(crossings.values).max(axis=0)
@@ -125,13 +148,20 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
 def special_near(
     equations: OrbitEquations, kind: str, z: NDArray, iterations: int = 20
 ) -> tuple[NDArray, NDArray]:
-    """Special orbits of a kind near guesses, shape (rows, N), and which of them are found."""
+    """Find special orbits of one kind near guesses z, shape (rows, N).
+
+    Returns the orbits, shape (rows, N), and whether each was found.
+    """
     solution = newton(replace(equations, kind=kind), z, iterations=iterations)
     return solution.z, solution.found
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Where orbits merge with those of half their period: the doubling of these, taken twice."""
+    """Find the period halving in a step, at which orbits merge with orbits of half their period.
+
+    It is a period doubling of the orbits of half the period, passed twice. Returns None if Newton's
+    method fails, or if the period doubling is far from the step.
+    """
     half, near = equations.halved(ends)
     solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))
     if not found[0]:

@@ -1,4 +1,4 @@
-"""Where branches start: at an ordinary orbit, or at a special one at which another one begins."""
+"""Start branches at ordinary orbits, or at special orbits at which another branch begins."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -13,16 +13,30 @@ from bouncing_ball_beyond.march import Solution, Start, newton, tangents, unit
 from bouncing_ball_beyond.search import single
 
 NEAREST = 1e-9
-"""Relative distance of the parameter from a period doubling below which doubled orbits are not told
-apart: it is proportional to ξ², and at a distance ξ their rounding errors are eps/ξ²."""
+"""Relative distance of the parameter from a period doubling below which rounding hides the branch.
+
+The distance of the parameter is proportional to ξ², where ξ is the distance of the doubled orbits.
+Their rounding errors are eps/ξ².
+"""
 
 
 class Task(NamedTuple):
-    """Orbits to be followed, by rows.
+    """Orbits to be followed, one per row.
 
-    ``goal`` is the value to be reached, ``other`` that of the other way, NaN if there is only one;
-    ``limits`` are those of the parameter, shape (rows, 2), and ``until`` the kinds of special
-    orbits at which branches end, or None.
+    Attributes
+    ----------
+    equations : OrbitEquations
+    z : array, shape (rows, N)
+        Orbits.
+    goal : array, shape (rows,)
+        Parameter values at which the branches end.
+    other : array, shape (rows,)
+        Parameter values at which the branches in the opposite direction end; NaN if only one
+        direction is followed.
+    limits : array, shape (rows, 2)
+        Minimum and maximum of the parameter.
+    until : array of str or None, shape (rows,)
+        Kinds of special orbits at which branches end.
     """
 
     equations: OrbitEquations
@@ -34,7 +48,11 @@ class Task(NamedTuple):
 
 
 def _refuse(reasons: NDArray, which: NDArray, task: Task, text: str, away: NDArray) -> None:
-    """Give rows without a reason one, with the place of the orbit and the side of the branch."""
+    """Store a reason for the rows ``which`` that do not have one yet.
+
+    ``text`` contains {name}, the parameter, {place}, the parameter with its value, or {side},
+    "above" or "below".
+    """
     name = task.equations.along[-1].name
     for i in np.flatnonzero((reasons == "") & which):
         place = f"{name} = {task.z[i, -1]:.10g}"
@@ -43,16 +61,17 @@ def _refuse(reasons: NDArray, which: NDArray, task: Task, text: str, away: NDArr
 
 
 def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Directions in which orbits of twice the period leave period doublings; shape (rows, 2kq + p).
+    """Directions in which the doubled orbits leave period doublings, shape (rows, 2kq + p).
 
-    It is the null vector of the equations of an orbit whose first impact comes back with the other
-    sign, and after it this vector with the other sign.
+    At the multiplier -1, a deviation of the first impact changes its sign after a period. The null
+    vector v of the equations with this condition is the direction in the first half of the doubled
+    orbit. The direction in the second half is -v.
     """
     q = equations.unknowns
     derivatives = equations.linearized(z).derivatives[..., : q + 3].copy()
     rows, k, _, _ = derivatives.shape
     derivatives[:, -1, :, q : q + 2] *= -1
-    # Any column and any row beside the singular matrix, if they are not special.
+    # Border the singular matrix with an arbitrary column and row.
     derivatives[..., q + 2 :] = np.cos(np.arange(k * q)).reshape(k, q, 1)
     border = np.cos(np.sqrt(2) * np.arange(k * q + 1))
     border[-1] = 0.0
@@ -63,26 +82,30 @@ def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 
 def _beside(equations: OrbitEquations, z: NDArray, direction: NDArray, step: Any) -> Solution:
-    """Orbits at a distance from special ones in a direction, on the planes across it."""
+    """Find orbits at the distance ``step`` from special orbits in a direction.
+
+    Newton's method corrects the orbits on planes perpendicular to the direction.
+    """
     units = equations.scales(z)
     ahead = unit(direction / units)
     return newton(equations, z + step * ahead * units, ahead / units)
 
 
 def _ordinary_start(task: Task) -> Start:
-    """The branch through orbits."""
+    """Start branches that pass through ordinary orbits."""
     ahead = task.goal - task.z[:, -1]
     direction = tangents(task.equations, task.z)
     direction = direction * np.sign(ahead * direction[:, -1])[:, np.newaxis]
     reasons = np.full(len(task.z), "", object)
-    _refuse(reasons, ahead == 0, task, "{place} is that of the orbit already", ahead)
+    _refuse(reasons, ahead == 0, task, "{place} is already the value of the orbit", ahead)
     return Start(task.equations, task.z, direction, task.goal, reasons)
 
 
 def _fold_start(task: Task) -> Start:
-    """The branch that is stable next to a saddle-node; also the other one, if both are followed.
+    """Start the stable branch at a saddle-node.
 
-    Both are on the same side of the parameter.
+    If both directions are followed, the unstable branch is the second. Both branches are on the
+    same side of the parameter.
     """
     direction = tangents(task.equations, task.z)
     near = _beside(task.equations, task.z, direction, 1e-3)
@@ -92,7 +115,7 @@ def _fold_start(task: Task) -> Start:
     farthest = np.fmax(task.goal, task.other), np.fmin(task.goal, task.other)
     goal = np.where(away > 0, *farthest)
     reasons = np.full(len(task.z), "", object)
-    reasons[~near.found] = "no orbit is found beside the saddle-node"
+    reasons[~near.found] = "no orbit is found next to the saddle-node"
     on_side = away * (goal - task.z[:, -1]) > 0
     text = "the orbits of the saddle-node at {place} are {side} it"
     _refuse(reasons, ~on_side, task, text, away)
@@ -100,7 +123,7 @@ def _fold_start(task: Task) -> Start:
 
 
 def _grazing_start(task: Task) -> Start:
-    """The branch with one impact more, from orbits with a flight that touches the table."""
+    """Start branches with one more impact, from orbits with a flight that touches the table."""
     more = replace(task.equations, impacts=task.equations.impacts + 1)
     origin = np.zeros((len(task.z), more.length))
     direction = np.ones(origin.shape)
@@ -110,7 +133,7 @@ def _grazing_start(task: Task) -> Start:
             _, origin[i], direction[i] = one_impact_more(single(task.equations, i), z)
         except OrbitNotFound as error:
             reasons[i] = str(error)
-    # One step away from the touch, where the added impact has the speed 0.
+    # Start one step away from the grazing orbit, where the added impact has the speed 0.
     start = _beside(more, origin, direction, 1e-3)
     away = start.z[:, -1] - origin[:, -1]
     _refuse(reasons, ~start.found, task, "the orbits with one impact more are not found", away)
@@ -121,17 +144,21 @@ def _grazing_start(task: Task) -> Start:
 
 
 def _halved_start(task: Task) -> Start:
-    """The branch of half the period."""
+    """Start the branch of half the period, from a period halving."""
     equations, z = task.equations.halved(task.z)
     return _ordinary_start(task._replace(equations=equations, z=z))
 
 
 def _doubled_start(task: Task) -> Start:
-    """The branch of twice the period.
+    """Start the branch of twice the period, from a period doubling.
 
-    The parameter and tr/(1 + det), which is 1 at the doubling, change there with the square of the
-    distance. The first step is halved until both fall by about four from it to half of it, and
-    until the latter has hardly changed: then no bifurcation is between the doubling and the step.
+    Near the period doubling, the parameter and tr/(1 + det) change with the square of the distance.
+    tr/(1 + det) is 1 at the period doubling. The first step is halved until
+
+    1. half the step changes both by about a quarter of the change over the whole step;
+    2. tr/(1 + det) has changed by less than 0.3.
+
+    Then no bifurcation is between the period doubling and the end of the step.
     """
     twice, origin = task.equations.doubled(task.z)
     rows = len(origin)
@@ -150,7 +177,7 @@ def _doubled_start(task: Task) -> Start:
             away = change[..., -1]
             lost = 1 - pair.turn(solution.linear).reshape(2, rows)
             ratios = np.stack([away[0] / away[1], lost[0] / lost[1]])
-        # Orbits on the planes are farther away than the step is long, as the branch bends.
+        # Where the branch bends, orbits on the planes are farther away than the step.
         bend = np.linalg.norm(change[0] / units, axis=1) / step
         new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < np.hypot(1, 0.2))
         new &= ((ratios > 3) & (ratios < 5.5)).all(axis=0) & (np.abs(lost[0]) < 0.3)
@@ -173,7 +200,7 @@ def _doubled_start(task: Task) -> Start:
         share = (task.goal - here) / away
     short = (reasons == "") & (share < 1.5)
     if short.any():
-        # The whole branch is hardly longer than its start, or shorter.
+        # The goal is near the first point or before it: take a shorter step.
         step = np.where(short, 0.3 * step * np.sqrt(np.abs(share)), step)
         solution = _beside(twice, origin, direction, step[:, np.newaxis])
         start[short] = solution.z[short]

@@ -114,9 +114,9 @@ def test_answers_in_sentences():
 @pytest.mark.parametrize(
     ("acceleration", "duration", "verdict"),
     [
-        (1.2 * G, 1e-4, "has no answer: the orbit is unstable in both models, so that the he"),
+        (1.2 * G, 1e-4, "has no answer: the orbit is unstable in both models, so a ball does"),
         (0.8 * G, 3e-4, "is not good enough: the heights of both models differ by more than"),
-        (0.2 * G, 1e-4, "has no answer: the ball does not bounce, in both models, so that"),
+        (0.2 * G, 1e-4, "has no answer: the ball does not bounce, in both models, so there"),
         (0.254 * G, 1.4e-4, "is not good enough: the ball does not bounce, in the restitution"),
     ],
 )

@@ -86,10 +86,10 @@ def test_samples_give_the_table_and_those_of_an_acceleration_too():
 @pytest.mark.parametrize(
     ("harmonics", "text"),
     [
-        ([], "harmonics: one of a size other than 0"),
+        ([], "harmonics: at least one must have a size other than 0"),
         (3, "harmonics = 3: must be a list of"),
-        ([(1, 1.0, 0.0), (1, 0.5, 0.2)], "harmonics: the order 1 is there twice"),
-        ([(1, 0.0, 0.0)], "harmonics: one of a size other than 0"),
+        ([(1, 1.0, 0.0), (1, 0.5, 0.2)], "harmonics: the order 1 occurs twice"),
+        ([(1, 0.0, 0.0)], "harmonics: at least one must have a size other than 0"),
         ([(1.5, 1.0, 0.0)], "frequencies in a ratio of whole numbers have a common period"),
         ([(0, 1.0, 0.0)], "a whole number k from 1"),
         ([(1, np.nan, 0.0)], "a whole number k from 1"),
@@ -161,8 +161,8 @@ def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
         ({"frequency": "25 Hz"}, "frequency = '25 Hz': must be a positive number"),
         ({"frequency": 0.5}, "samples of 0.492 periods are too few for 3 harmonics"),
         ({"harmonics": 40}, "are too few for 40 harmonics"),
-        ({"frequency": 64.0}, "do not tell all of the harmonics apart"),
-        ({"harmonics": []}, "harmonics: one at least must be fitted"),
+        ({"frequency": 64.0}, "cannot distinguish all harmonics"),
+        ({"harmonics": []}, "harmonics: is empty: give at least one order"),
         ({"harmonics": [5]}, "is the frequency right"),
         ({"acceleration": np.ones(64)}, "acceleration: is constant"),
     ],
@@ -177,10 +177,10 @@ def test_what_is_no_record_is_one_line(changed, text):
 @pytest.mark.parametrize(
     ("changed", "text"),
     [
-        ({"phase_3": np.linspace(0, 6, 5)}, "its phase_3 is an array, and must be a number"),
+        ({"phase_3": np.linspace(0, 6, 5)}, "its phase_3 is an array, but must be a number"),
         ({"phase_3": np.nan}, "a whole number k from 1 and numbers a, p"),
         ({"harmonic_3": "x"}, "a whole number k from 1 and numbers a, p"),
-        ({"harmonic_1": 0.0, "harmonic_3": 0.0}, "one of a size other than 0"),
+        ({"harmonic_1": 0.0, "harmonic_3": 0.0}, "at least one must have a size other than 0"),
     ],
 )
 def test_a_changed_table_is_checked_where_it_is_used(changed, text):

@@ -1,6 +1,7 @@
-"""One question of an engineer: is a restitution coefficient good enough for this ball and shaker?
+"""Decide whether a restitution coefficient is good enough for a given ball and shaker.
 
-It is if the ball bounces as often as the restitution model says, on a stable orbit, and as high.
+It is good enough if both models agree: the ball bounces, its orbit is stable, and the heights
+differ by at most a tolerance.
 """
 
 from dataclasses import dataclass
@@ -21,7 +22,7 @@ from bouncing_ball_beyond.paths import Frequency
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
-"""In m/s²."""
+"""Standard acceleration of gravity in m/s²."""
 
 
 def _in_mm(value: float) -> str:
@@ -29,7 +30,7 @@ def _in_mm(value: float) -> str:
 
 
 def positive(name: str, value: Any, unit: str) -> float:
-    """A positive number; ValueError with the unit in which it must be given otherwise."""
+    """Return a number as float. Raises ValueError, with the required unit, unless it is > 0."""
     is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     if not (is_number and 0 < value < np.inf):
         raise ValueError(f"{name} = {value!r}: must be a positive number{unit and ' in '}{unit}")
@@ -37,7 +38,17 @@ def positive(name: str, value: Any, unit: str) -> float:
 
 
 class ByModel(NamedTuple):
-    """A quantity by the restitution model, on the contact exactly, and there by the error law."""
+    """One quantity by three methods.
+
+    Attributes
+    ----------
+    by_restitution : float
+        Restitution model.
+    exact : float
+        Contact model.
+    by_law : float
+        Contact model, estimated from the restitution model by the error law.
+    """
 
     by_restitution: float
     exact: float
@@ -46,41 +57,44 @@ class ByModel(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class ShakerAnswer:
-    """Whether a restitution coefficient is good enough, and how far away each limit is.
+    """Whether a restitution coefficient is good enough, and the limits of bouncing and stability.
 
-    It is shown as a short table and the answer in sentences. What does not exist is NaN.
+    It prints as a short table, followed by the answer in sentences. Values that do not exist are
+    NaN.
     """
 
     n: int
+    """Number of periods of the table in which the ball bounces once."""
     amplitude: float
-    """Λ, the scale of the table's waveform; of a sine, its acceleration over gravity."""
+    """Λ, the scale of the waveform. For a sine it is the acceleration divided by gravity."""
     ball: Ball
-    """The ball with its contact, dimensionless, for the other functions of the package."""
+    """Dimensionless ball with its contact, for the other functions of the package."""
     frequency: float
-    """Of the table, in Hz."""
+    """Frequency of the table in Hz."""
     stroke: float
-    """Of the table, in m: half of the distance between its lowest and its highest position."""
+    """Stroke of the table in m: half of the distance between its lowest and highest positions."""
     contact_duration: float
-    """Of a free impact with the speed of the orbit, in s."""
+    """Duration, in s, of a free impact at the closing speed of the orbit."""
     tolerance: float
+    """Largest relative error of the height that is allowed."""
     saddle_node: ByModel
-    """The Λ from which on the ball bounces."""
+    """Λ above which the ball bounces."""
     period_doubling: ByModel
-    """The Λ up to which the orbit is stable."""
+    """Λ up to which the orbit is stable."""
     max_height: ByModel
-    """The greatest height of the ball above the middle position of the table, in m."""
+    """Maximum height of the ball, in m, above the mean position of the table."""
     lowest_frequency: float
-    """In Hz: from here on the ball bounces on this contact, at the same stroke."""
+    """Frequency, in Hz, above which the ball bounces on this contact, at the same stroke."""
     highest_frequency: float
-    """In Hz: up to here the orbit on this contact is stable, at the same stroke."""
+    """Frequency, in Hz, up to which the orbit on this contact is stable, at the same stroke."""
     longest_contact: float
-    """In s: up to here the height is within the tolerance, at the same frequency."""
+    """Longest contact, in s, with a height within the tolerance, at the same frequency."""
     table: Table = SINE
-    """The waveform of the table."""
+    """Waveform of the table."""
 
     @property
     def bounces(self) -> bool:
-        """Whether there is an orbit, in the restitution model and on the contact."""
+        """Whether the orbit exists in the restitution model and on the contact."""
         return max(self.saddle_node[:2]) <= self.amplitude
 
     @property
@@ -90,12 +104,12 @@ class ShakerAnswer:
 
     @property
     def error(self) -> float:
-        """Relative error of the height, with the sign of the contact's height minus the other's."""
+        """Relative error of the height: height on the contact/height by restitution - 1."""
         return self.max_height.exact / self.max_height.by_restitution - 1
 
     @property
     def is_good_enough(self) -> bool:
-        """Whether the ball bounces, on a stable orbit, as high as the restitution model says."""
+        """Whether the orbits of both models exist, are stable, and agree in height."""
         return not self.reason
 
     @property
@@ -103,10 +117,10 @@ class ShakerAnswer:
         """Why a restitution coefficient is not good enough; empty if it is."""
         if not self.bounces:
             where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
-            return f"the ball does not bounce, {where}, so that there is no height to compare"
+            return f"the ball does not bounce, {where}, so there is no height to compare"
         if not self.stable:
             where = WHERE[tuple(value < self.amplitude for value in self.period_doubling[:2])]
-            return f"the orbit is unstable {where}, so that the height means nothing"
+            return f"the orbit is unstable {where}, so a ball does not stay on it"
         if not abs(self.error) <= self.tolerance:
             return "the heights of both models differ by more than the tolerance"
         return ""
@@ -124,7 +138,7 @@ class ShakerAnswer:
                 [f"{value:.4g}" for value in self.period_doubling],
                 f"up to {self.highest_frequency:.4g} Hz",
             ),
-            ("greatest height/mm", [_in_mm(value) for value in self.max_height], ""),
+            ("maximum height/mm", [_in_mm(value) for value in self.max_height], ""),
         ]
         lines = [
             f"{name:<18}{''.join(f'{value:>13}' for value in values)}   {limit}".rstrip()
@@ -133,7 +147,7 @@ class ShakerAnswer:
         return "\n".join([*lines, "", *self._sentences()])
 
     def _acceleration(self) -> str:
-        """The greatest acceleration over gravity, which is Λ if W″ reaches 1, and Λ if not."""
+        """Text with the maximum acceleration divided by gravity, and with Λ if it differs."""
         greatest = self.amplitude * self.table.acceleration
         if np.isclose(greatest, self.amplitude):
             return f"Λ = {greatest:.4g} times gravity"
@@ -154,7 +168,8 @@ class ShakerAnswer:
         ]
         if self.bounces and np.isnan(self.error):
             sentences.append(
-                "On the contact its orbit is not found at such an acceleration; strokes are in m."
+                "Its orbit on the contact is not found at this acceleration: check the units;"
+                " strokes are in m."
             )
         elif self.bounces:
             sentences.append(f"This motion is {STABLE[doubled]}.")
@@ -162,9 +177,9 @@ class ShakerAnswer:
             beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
             by_law = self.max_height.by_law / self.max_height.by_restitution - 1
             sentences.append(
-                f"Its greatest height is {100 * abs(self.error):.3g}% {lower} than with a"
+                f"Its maximum height is {100 * abs(self.error):.3g}% {lower} than with a"
                 f" restitution coefficient, {beyond} the tolerance of {100 * self.tolerance:.3g}%;"
-                f" the error law has {100 * by_law:+.3g}%."
+                f" the error law predicts {100 * by_law:+.3g}%."
             )
             if self.longest_contact > 0:
                 sentences.append(
@@ -187,11 +202,14 @@ WHERE: dict[tuple, str] = {
     (True, False): "in the restitution model only",
     (False, True): "on the contact only",
 }
-"""Where something fails, by whether it fails in the restitution model and on the contact."""
+"""Text on where a condition fails.
+
+The key is whether it fails in the restitution model, and whether it fails on the contact.
+"""
 BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
-"""By the number of models, restitution and contact, in which the ball bounces."""
+"""Text on bouncing. The index is the number of models in which the ball bounces."""
 STABLE = ("stable", "stable in one of the two models only", "unstable, its period has doubled")
-"""By the number of models in which the period has doubled."""
+"""Text on stability. The index is the number of models in which the period has doubled."""
 
 
 def on_shaker(
@@ -214,40 +232,48 @@ def on_shaker(
     tolerance: float = 0.01,
     table: Table = SINE,
 ) -> ShakerAnswer:
-    """Whether a restitution coefficient is good enough for a ball on a shaker, in SI units.
+    """Decide whether a restitution coefficient is good enough for a ball on a shaker, in SI units.
 
     Parameters
     ----------
-    frequency
+    frequency : float
         Frequency of the table in Hz.
-    restitution
+    restitution : float
         Restitution coefficient r of a free impact, between 0 and 1.
-    stroke, acceleration
-        One of both: the amplitude of the table's motion in m, half of the distance between its
-        lowest and its highest position, or its largest acceleration in m/s².
-    mass, radius, density
-        The mass of the ball in kg, or its radius in m and its density in kg/m³. A contact duration
-        needs none of them.
-    contact_duration, stiffness, youngs_modulus
-        One of them, in s, N/m or Pa. The first two are those of a contact with a spring and a
-        damper. With Young's modulus of the ball, the contact is that of Hertz with the damping of
-        Tsuji, whose r is the same at every speed, and the radius is needed.
-    poissons_ratio, table_youngs_modulus, table_poissons_ratio
-        For a contact of Hertz; without a modulus the table is rigid.
-    gravity
+    stroke, acceleration : float
+        Give exactly one of them: the stroke of the table in m, which is half of the distance
+        between its lowest and highest positions; or its maximum acceleration in m/s².
+    mass : float, optional
+        Mass of the ball in kg. Not needed with ``contact_duration``.
+    radius, density : float, optional
+        Radius of the ball in m and density in kg/m³. They can replace the mass.
+    contact_duration, stiffness, youngs_modulus : float
+        Give exactly one of them.
+
+        - Duration of the contact in s, or stiffness in N/m: the contact is a spring and a damper.
+        - Young's modulus of the ball in Pa: the contact is that of Hertz, with the damping of
+          Tsuji, whose r is the same at every speed. The radius is then required.
+    poissons_ratio, table_youngs_modulus, table_poissons_ratio : float
+        Poisson's ratio of the ball, Young's modulus of the table in Pa, and Poisson's ratio of the
+        table, for a contact of Hertz. If the table has no modulus, it is rigid.
+    gravity : float
         Acceleration of gravity in m/s².
-    n
-        The number of periods of the table in which the ball bounces once.
-    tolerance
-        Largest relative error of the greatest height.
-    table
-        The waveform of the table, by default a sine.
+    n : int
+        Number of periods of the table in which the ball bounces once.
+    tolerance : float
+        Largest relative error of the maximum height.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    ShakerAnswer
 
     Raises
     ------
     ValueError
-        With one line, if a quantity is missing or out of range, or if the contact is so compliant
-        that its saddle-node or its period doubling is not found.
+        If a quantity is missing or out of range. If the contact is so compliant that its
+        saddle-node or its period doubling is not found.
 
     Examples
     --------
@@ -270,15 +296,15 @@ def on_shaker(
     contact = _one_of(
         contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
     )
-    # The ball, dimensionless, on a contact that lasts 1/times as long as that in question.
+    # contacts(times) is the dimensionless ball on a contact whose duration is divided by `times`.
     if contact == "youngs_modulus":
         compliance = _compliance(youngs_modulus, poissons_ratio, "")
         if table_youngs_modulus is not None:
             compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
-        # The force of Hertz is 4/3 E* √R p^(3/2); lengths are in units of g/Ω², times in 1/Ω.
+        # Hertz: force 4/3 E* √R p^(3/2). Units are g/Ω² for lengths and 1/Ω for times.
         force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
         force *= np.sqrt(fall) / rate**3 / _mass(mass, radius, density)
-        # With any duration, because the damping depends on r alone.
+        # The duration and the speed are arbitrary, because the damping depends only on r.
         hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
 
         def contacts(times: Values) -> Any:
@@ -315,13 +341,13 @@ def _mass(mass: Any, radius: Any, density: Any) -> float:
     if mass is not None:
         return positive("mass", mass, "kg")
     if radius is None or density is None:
-        raise ValueError("the mass, or radius and density, must be given")
+        raise ValueError("the mass is missing: give mass, or radius and density")
     volume = 4 / 3 * np.pi * positive("radius", radius, "m") ** 3
     return volume * positive("density", density, "kg/m³")
 
 
 def _compliance(modulus: float | None, ratio: float, body: str) -> float:
-    """(1 - ν²)/E of a body in contact, with the beginning of the names of its quantities."""
+    """Return (1 - ν²)/E of a body. ``body`` is the prefix of its arguments: "" or "table_"."""
     if not -1 < ratio <= 0.5:
         raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")
     return (1 - ratio**2) / positive(f"{body}youngs_modulus", modulus, "Pa")
@@ -330,7 +356,10 @@ def _compliance(modulus: float | None, ratio: float, body: str) -> float:
 def _answer(
     contacts: Any, amplitude: Values, n: Values, tolerance: Any, rate: Any, fall: Any, table: Table
 ) -> ShakerAnswer:
-    """The answer for the ball contacts(1) at Λ, with Ω in rad/s and gravity in m/s²."""
+    """Return the answer for the ball contacts(1) at Λ.
+
+    ``rate`` is Ω in rad/s, and ``fall`` is gravity in m/s².
+    """
     ball = contacts(1.0)
     impact = free_impact(ball, n)
     duration = float(impact.duration)
@@ -340,11 +369,11 @@ def _answer(
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names, table=table)
     if np.isnan(exact["saddle_node"] + exact["period_doubling"]):
         raise ValueError(
-            f"no saddle-node and period doubling are found: a contact lasts"
-            f" {duration / (2 * np.pi):.2g} periods of the table"
+            f"the saddle-node or the period doubling is not found: a contact lasts"
+            f" {duration / (2 * np.pi):.2g} periods of the table; give a shorter contact"
         )
     longest = np.nan
-    # Of heights of unstable orbits and below a saddle-node nothing is said.
+    # Heights are only compared where both orbits exist and are stable.
     if all(
         values["saddle_node"] <= amplitude <= values["period_doubling"]
         for values in (simple, exact)
@@ -388,7 +417,10 @@ def _answer(
 
 
 def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
-    """By which factor of the frequency a bifurcation comes to the Λ of the table, at its stroke."""
+    """Factor on the frequency at which a bifurcation reaches the Λ of the table, at equal stroke.
+
+    Returns NaN if the iteration does not converge.
+    """
     path = Frequency()
     times = np.sqrt(exact[name] / amplitude)
     for _ in range(30):

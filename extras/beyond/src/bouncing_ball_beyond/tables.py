@@ -1,8 +1,8 @@
-"""The motion of the table: ΛW(τ) with a waveform W of period 2π, a sum of harmonics.
+"""The motion of the table: ΛW(τ), where the waveform W is a sum of harmonics of the period 2π.
 
-Everything that the other modules know of the waveform is here. The sine of the paper is
-:data:`SINE`. W is analytic in τ and in its parameters, the sizes and phases of the harmonics, so
-that complex steps give all derivatives.
+Other modules use waveforms only through this module. The sine of the paper is :data:`SINE`. W is
+analytic in τ and in its parameters, the sizes and phases of the harmonics. Complex steps therefore
+give all derivatives.
 """
 
 from collections.abc import Callable, Iterable
@@ -16,22 +16,24 @@ import numpy as np
 from bouncing_ball_beyond.one_ball import CHATTER, PERIOD
 
 SAMPLES = 64
-"""Samples in a period of the highest harmonic."""
+"""Number of samples of W in a period of its highest harmonic."""
 
 JUMP = 2.0
-"""The step from the last sample to the first, over all other steps, up to which a period is
-smooth.
+"""Largest step from the last sample to the first, divided by the largest other step.
+
+Larger steps mean that the samples do not cover exactly one period.
 """
 UPPER_SHARE = 0.1
-"""The share of the upper harmonics in the acceleration above which samples do not tell how many are
-meant.
+"""Largest share of the upper half of the harmonics in the acceleration of samples.
+
+If the share is larger, the caller must give the highest harmonic.
 """
 
 FUNDAMENTAL = {"harmonic_1": 1.0, "phase_1": 0.0}
-"""What is not said of a fundamental: Λ is its size, and the phase is counted from it."""
+"""Default size and phase of the first harmonic. Its amplitude is then Λ, and its phase is τ."""
 
 Values = Any
-"""Numbers or arrays, real or complex: complex steps go through all functions."""
+"""Numbers or arrays, real or complex. All functions accept complex steps."""
 
 REAL = np.dtype(float)
 
@@ -40,7 +42,7 @@ CYCLE = (np.sin, np.cos)
 
 
 def swing(x: Values) -> tuple[Values, Values]:
-    """sin x and 1 - cos x, which loses no digits for a small x."""
+    """Return sin x and 1 - cos x. Both keep all digits if x is small."""
     half = x / 2
     if getattr(x, "dtype", REAL).kind == "c" or isinstance(x, complex):
         sine = np.sin(half)
@@ -52,12 +54,13 @@ def swing(x: Values) -> tuple[Values, Values]:
 
 
 FRACTIONS = (
-    "; frequencies in a ratio of whole numbers have a common period, of which their k are multiples"
+    "; frequencies in a ratio of whole numbers have a common period: take it as the period of the"
+    " table, such as k = 2 and 3 instead of 1 and 1.5"
 )
 
 
 def checked_harmonic(each: Any) -> tuple[int, float, float]:
-    """(k, a, p) with a whole k and finite a, p; ValueError otherwise."""
+    """Return (k, a, p) as numbers. Raises ValueError unless k ≥ 1 is whole and a, p are finite."""
     fraction = False
     try:
         k, a, p = each
@@ -74,7 +77,7 @@ def checked_harmonic(each: Any) -> tuple[int, float, float]:
 
 
 def finite_row(name: str, values: Values) -> Values:
-    """Values as an array with one axis; ValueError otherwise."""
+    """Return values as an array. Raises ValueError unless it has one axis and is finite."""
     try:
         row = np.asarray(values, float)
     except (TypeError, ValueError):
@@ -85,7 +88,7 @@ def finite_row(name: str, values: Values) -> Values:
 
 
 def highest(value: Any) -> int:
-    """The number of a harmonic; ValueError otherwise."""
+    """Return the order of a harmonic as int. Raises ValueError unless it is a whole number ≥ 1."""
     number = isinstance(value, int | float | np.integer) and not isinstance(value, bool)
     if not number or value % 1 or value < 1:
         raise ValueError("harmonics: must be whole numbers from 1")
@@ -96,11 +99,20 @@ def highest(value: Any) -> int:
 class Table:
     """A periodic waveform W(τ) = Σ a sin(kτ + p).
 
-    ``harmonics`` are (k, a, p): the order k ≥ 1, the size a and the phase p of each. The amplitude
-    Λ of a call is the scale: the table is at ΛW(τ), in units of g/Ω². Its greatest acceleration
-    over gravity is Λ times ``acceleration``, which is 1 for the sine and for tables made of
-    samples. Sizes and phases are parameters along which orbits are followed, ``harmonic_k`` and
-    ``phase_k``.
+    The height of the table is ΛW(τ), in units of g/Ω². Functions take the amplitude Λ as an
+    argument. The maximum acceleration of the table divided by gravity is Λ times ``acceleration``.
+    This factor is 1 for the sine and for tables made of samples. Orbits can be followed along the
+    sizes and phases of harmonics, the parameters ``harmonic_k`` and ``phase_k``.
+
+    Parameters
+    ----------
+    harmonics : list of (k, a, p)
+        Order k ≥ 1, size a and phase p of each harmonic.
+
+    Raises
+    ------
+    ValueError
+        If an order occurs twice, if all sizes are 0, or if a number is not allowed.
 
     Examples
     --------
@@ -114,7 +126,7 @@ class Table:
     phases: tuple
 
     is_sine = False
-    """Whether the loops of :mod:`.one_ball` follow single balls."""
+    """Whether the table is a sine. The loops of :mod:`.one_ball` then follow single balls."""
 
     def __init__(self, harmonics: Any) -> None:
         if not isinstance(harmonics, Iterable):
@@ -122,10 +134,10 @@ class Table:
         harmonics = sorted(checked_harmonic(each) for each in harmonics)
         orders = tuple(k for k, _, _ in harmonics)
         if not any(a for _, a, _ in harmonics):
-            raise ValueError("harmonics: one of a size other than 0 is needed")
+            raise ValueError("harmonics: at least one must have a size other than 0")
         for k, after in pairwise(orders):
             if k == after:
-                raise ValueError(f"harmonics: the order {k} is there twice")
+                raise ValueError(f"harmonics: the order {k} occurs twice: give each order once")
         values = orders, *zip(*((a, p) for _, a, p in harmonics), strict=True)
         for name, value in zip(("orders", "sizes", "phases"), values, strict=True):
             object.__setattr__(self, name, value)
@@ -134,24 +146,30 @@ class Table:
     def of_samples(
         cls, values: Values, harmonics: Any = None, *, acceleration: bool = False
     ) -> "Table":
-        """The table through equally spaced samples of one period, without their mean, with a
-        greatest |W″| of 1, so that Λ is the greatest acceleration over gravity.
+        """Make a table from equally spaced samples of one period.
+
+        The mean of the samples is removed. W is scaled so that the maximum of |W″| is 1. Λ is then
+        the maximum acceleration of the table divided by gravity.
 
         Parameters
         ----------
         values : array_like, shape (samples,)
-            Heights, or accelerations, in any unit: what counts is their shape.
+            Heights or accelerations, in any unit.
         harmonics : int, optional
-            The highest harmonic that is kept, by default all that the samples tell apart. Noise
-            of heights counts k² times in the acceleration: give it for measured ones.
+            Highest harmonic to keep. By default all harmonics that the samples resolve are kept.
+            Give it for measured heights, because the acceleration amplifies noise by k².
         acceleration : bool
             Whether the values are accelerations.
+
+        Returns
+        -------
+        Table
 
         Raises
         ------
         ValueError
-            If the first and the last sample do not join, or, without ``harmonics``, if the upper
-            half of all harmonics has more than a tenth of the acceleration.
+            If the first and the last sample do not join. If ``harmonics`` is not given, also if the
+            upper half of all harmonics has more than a tenth of the acceleration.
 
         Examples
         --------
@@ -173,21 +191,21 @@ class Table:
         if jump > JUMP * steps.max():
             raise ValueError(
                 f"values: the first and the last sample do not join: the step between them is"
-                f" {jump:.3g}, and others are {steps.max():.3g} at most; they must be of exactly"
-                " one period, with its jumps inside (Table.of_record takes any length)"
+                f" {jump:.3g}, but all others are at most {steps.max():.3g}; give samples of"
+                " exactly one period, with any jumps inside, or use Table.of_record"
             )
         series = np.fft.rfft(values) / len(values)
         k = np.arange(1, last + 1)
         pulls = 2 * series[1 : last + 1] * (1.0 if acceleration else -(k**2))
         size = np.linalg.norm(pulls)
         if size <= 1e-12 * np.abs(values).max():
-            raise ValueError("values: are all the same: the table would be at rest")
+            raise ValueError("values: are all equal: the table would be at rest")
         upper = np.linalg.norm(pulls[k > max(last / 2, 2)]) / size
         if harmonics is None and upper > UPPER_SHARE:
             raise ValueError(
                 f"values: harmonics above {max(last // 2, 2)} have {upper:.0%} of the acceleration,"
-                " by noise, by a jump, or because the end of the period is there twice; give the"
-                " highest harmonic that is meant, such as 5"
+                " because of noise, a jump, or a sample at both ends of the period; give the"
+                " highest harmonic to keep, such as harmonics=5"
             )
         return cls._of_accelerations(k, pulls)[0]
 
@@ -201,21 +219,34 @@ class Table:
         harmonics: Any,
         gravity: float = 9.80665,
     ) -> tuple["Table", float]:
-        """The table of a measured acceleration by least squares, with a greatest |W″| of 1, and its
-        Λ.
+        """Fit a table to a measured acceleration by least squares.
 
         Parameters
         ----------
         time : array_like, shape (samples,)
             In seconds; the phase of the table is 0 at the time 0.
         acceleration : array_like, shape (samples,)
-            Upwards, in m/s²; a constant part, such as gravity, does not count.
+            Upward acceleration in m/s². A constant part, such as gravity, is ignored.
         frequency : float
-            That of the table in Hz; of two frequencies the greatest of which both are multiples.
+            Frequency of the table in Hz. If the table has two frequencies, give their greatest
+            common divisor.
         harmonics : int or list of int
-            The highest harmonic, or the orders of all that are fitted, such as [12, 17].
+            Highest harmonic, or the orders of all harmonics to fit, such as [12, 17].
         gravity : float
-            In m/s².
+            Acceleration of gravity in m/s².
+
+        Returns
+        -------
+        table : Table
+            Waveform W, scaled so that the maximum of |W″| is 1.
+        amplitude : float
+            Its amplitude Λ.
+
+        Raises
+        ------
+        ValueError
+            If the record is too short for the harmonics, or if more than half of the variance of
+            the acceleration is not fitted.
 
         Examples
         --------
@@ -236,10 +267,11 @@ class Table:
             orders = range(1, highest(harmonics) + 1)
         k = np.array(sorted({highest(each) for each in orders}), int)
         if not k.size:
-            raise ValueError("harmonics: one at least must be fitted")
+            raise ValueError("harmonics: is empty: give at least one order")
         if len(time) != len(acceleration):
             raise ValueError(
-                f"time, acceleration: have {len(time)} and {len(acceleration)} samples"
+                f"time, acceleration: have {len(time)} and {len(acceleration)} samples, but must"
+                " have equally many"
             )
         if len(time) < 2 * len(k) + 2 or np.ptp(time) * frequency < 1 - 1 / len(time):
             raise ValueError(
@@ -250,21 +282,24 @@ class Table:
         columns = np.hstack([np.ones((len(time), 1)), np.cos(angles), np.sin(angles)])
         fitted, _, rank, _ = np.linalg.lstsq(columns, acceleration, rcond=1e-6)
         if rank < columns.shape[1]:
-            raise ValueError("time: the samples do not tell all of the harmonics apart")
+            raise ValueError(
+                "time: the samples cannot distinguish all harmonics: give fewer harmonics or more"
+                " samples"
+            )
         cosines, sines = np.split(fitted[1:] / gravity, 2)
         if np.ptp(acceleration) <= 1e-12 * np.abs(acceleration).max():
             raise ValueError("acceleration: is constant: the table would be at rest")
         left = np.var(acceleration - columns @ fitted) / np.var(acceleration)
         if left > 0.5:
             raise ValueError(
-                f"frequency, harmonics: leave {left:.0%} of the variance of the acceleration over;"
-                " is the frequency right, and are all harmonics there?"
+                f"frequency, harmonics: {left:.0%} of the variance of the acceleration is not"
+                " fitted: is the frequency right, and are all harmonics given?"
             )
         return cls._of_accelerations(k, cosines - 1j * sines)
 
     @classmethod
     def _of_accelerations(cls, k: Values, pulls: Values) -> tuple["Table", float]:
-        """The table whose ΛW″ is the real part of Σ p e^{ikτ} and whose |W″| reaches 1, and Λ."""
+        """Return the table and Λ for ΛW″ = Re Σ p e^{ikτ}, scaled so that the maximum |W″| is 1."""
         kept = np.abs(pulls) > 1e-12 * np.abs(pulls).max()
         sizes = np.abs(pulls) / k**2
         # -Re p e^{ikτ} = |p| sin(kτ + φ) with φ = arg(-p) + π/2.
@@ -284,13 +319,15 @@ class Table:
         return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
 
     def at(self, **values: Values) -> Any:
-        """The same table with other sizes or phases, also arrays and complex ones, which are not
-        checked.
+        """Return the table with other sizes or phases.
+
+        The values may be arrays or complex, and are not checked. Raises ValueError if the table
+        does not have a parameter of this name.
         """
         new = self.parameters | values
         if len(new) > len(self.parameters):
             known = ", ".join(self.parameters) or "none"
-            raise ValueError(f"{', '.join(values)}: no parameter of the table, which has {known}")
+            raise ValueError(f"{', '.join(values)}: no parameter of the table: it has {known}")
         found = object.__new__(type(self))
         vars(found).update(
             orders=self.orders,
@@ -300,7 +337,7 @@ class Table:
         return found
 
     def rows(self, which: Any) -> Any:
-        """The same table with x[which] in place of each parameter x that is an array."""
+        """Return the table with x[which] instead of each parameter x that is an array."""
         arrays = {name: x[which] for name, x in self.parameters.items() if np.ndim(x)}
         return self.at(**arrays) if arrays else self
 
@@ -310,13 +347,13 @@ class Table:
         return zip(self.orders, self.sizes, self.phases, strict=True)
 
     def __call__(self, tau: Values, order: int = 0) -> Values:
-        """W or a derivative of it."""
+        """Return W, or its derivative of the given order, at the phase ``tau``."""
         sign = -1 if order % 4 > 1 else 1
         function = CYCLE[order % 2]
         return sum(sign * k**order * a * function(k * tau + p) for k, a, p in self.harmonics)
 
     def rise(self, start: Values, time: Values) -> tuple:
-        """W and W′ at a time after a start, less those there, without cancellation."""
+        """Return W(start + time) - W(start) and the same difference of W′, without cancellation."""
         height = rate = 0.0
         for k, a, p in self.harmonics:
             half = k * time / 2
@@ -326,10 +363,11 @@ class Table:
             rate = rate - k * part * np.sin(middle)
         return height, rate
 
-    # Motions from a start, as sums of x and y of each harmonic: Λa cos and Λa sin of kτ + p there.
+    # The methods below represent the table at the start of a motion by two numbers per harmonic:
+    # x = Λa cos(kτ + p) and y = Λa sin(kτ + p).
 
     def waves(self, phase: Values, amplitude: Values) -> list:
-        """x and y of each harmonic: [x₁, y₁, x₂, y₂, …]."""
+        """Return x and y of each harmonic: [x₁, y₁, x₂, y₂, …]."""
         found = []
         for k, a, p in self.harmonics:
             sine, versine = swing(k * phase + p)
@@ -338,11 +376,11 @@ class Table:
         return found
 
     def each_wave(self, waves: Values) -> Values:
-        """k, x and y of each harmonic."""
+        """Iterate over k, x and y of each harmonic."""
         return zip(self.orders, waves[::2], waves[1::2], strict=True)
 
     def pulls(self, waves: Values) -> Values:
-        """w′, -w″ and -w‴ at the start."""
+        """Return w′, -w″ and -w‴ at the start."""
         waves = list(self.each_wave(waves))
         return tuple(
             sum(part)
@@ -350,11 +388,14 @@ class Table:
         )
 
     def turned(self, waves: Values) -> Values:
-        """The waves of w′ in place of those of w."""
+        """Return x and y of the harmonics of w′."""
         return [each for k, x, y in self.each_wave(waves) for each in (-k * y, k * x)]
 
     def flights(self, t: Values, gap: Values, w: Values, waves: Values) -> tuple:
-        """δ, δ′ and δ″ a time t after a release; short flights lose no digits."""
+        """Return δ, δ′ and δ″ at the time t after a release. Short flights keep all digits.
+
+        ``gap`` and ``w`` are δ and δ′ at the release.
+        """
         position = gap + t * (w - t / 2)
         rate = w - t
         second = -1.0
@@ -369,7 +410,7 @@ class Table:
         return position, rate, second
 
     def third(self, t: Values, w: Values, rate: Values, waves: Values) -> Values:
-        """δ‴ a time t after a release, where the relative speed is the rate."""
+        """Return δ‴ at the time t after a release."""
         found = 0.0
         for k, x, y in self.each_wave(waves):
             sine, versine = swing(k * t)
@@ -380,60 +421,64 @@ class Table:
 
     @cached_property
     def grid(self) -> Values:
-        """Phases of a period, 64 in each of the highest harmonic."""
+        """Phases of one period: `SAMPLES` in each period of the highest harmonic."""
         return np.linspace(0, PERIOD, SAMPLES * self.orders[-1] + 1)
 
     @cached_property
     def bounds(self) -> Values:
-        """What |W| and its first five derivatives do not exceed."""
+        """Upper bounds of |W| and of its first five derivatives, six numbers."""
         remainder = (self.grid[1] / 2) ** 2 / 2
         sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
         largest = [np.abs(self(self.grid, m)).max() + remainder * sums[m + 2] for m in range(6)]
         return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
 
     def _top(self, order: int, sign: int = 1) -> float:
-        """The phase at which a derivative of W, or its negative, is largest."""
+        """Phase at which a derivative of W is largest (``sign`` 1) or smallest (-1)."""
         start = self.grid[np.argmax(sign * self(self.grid, order))]
         return float(self._zero(start, lambda tau: (self(tau, order + 1), self(tau, order + 2)), 6))
 
     def _zero(self, phase: Values, function: Callable, steps: int = 4) -> Values:
-        """The zero beside a sample of a function with a slope, by Newton's method."""
+        """Find a zero near a phase by Newton's method. ``function`` returns value and slope."""
         most = 0.1 / self.orders[-1]
         for _ in range(steps):
             value, slope = function(phase)
             step = np.divide(value, slope, where=slope != 0, out=np.zeros_like(value))
-            # Where the slope vanishes as well, samples are a better guess than Newton's first step.
+            # Limit the step: where the slope vanishes, Newton's first step leads far away.
             phase = phase - np.clip(step, -most, most)
         return phase
 
     @cached_property
     def lift(self) -> Values:
-        """The greatest -W″: above Λ = 1/lift the table falls faster than a ball."""
+        """Maximum of -W″. Above Λ = 1/lift the table falls faster than a ball."""
         return float(-self(self._top(2, -1), 2))
 
     @cached_property
     def acceleration(self) -> Values:
-        """The greatest |W″|."""
+        """Maximum of |W″|."""
         return max(self.lift, float(self(self._top(2), 2)))
 
     @cached_property
     def peaks(self) -> Values:
-        """The greatest and the least W."""
+        """Maximum and minimum of W."""
         return float(self(self._top(0))), float(self(self._top(0, -1)))
 
     @cached_property
     def steepest(self) -> Values:
-        """The phase at which W′ is largest."""
+        """Phase at which W′ is largest."""
         return self._top(1)
 
     @cached_property
     def slope(self) -> Values:
-        """The greatest W′."""
+        """Maximum of W′."""
         return float(self(self.steepest, 1))
 
     @cached_property
     def _sides(self) -> dict:
-        """Phases after the steepest one (1) and before it (-1), up to a minimum of W′, and W′."""
+        """Samples of W′ on both sides of the steepest phase, up to the next minimum of W′.
+
+        The key 1 is the side after the steepest phase, and -1 the side before it. The values are
+        phases and W′.
+        """
         found = {}
         for side in (1, -1):
             phase = self.steepest + side * np.linspace(0, PERIOD, 4 * len(self.grid) - 3)
@@ -445,27 +490,29 @@ class Table:
 
     @cached_property
     def _turns(self) -> tuple:
-        """Samples from the steepest phase to where W′ is zero, and angles of (W′, -W″)."""
+        """Sampled phases from the steepest phase to the zero of W′, and angles of (W′, -W″)."""
         phase = self.steepest + np.linspace(0, PERIOD, 4 * len(self.grid) - 3)
         phase = phase[: int(np.argmax(self(phase, 1) <= 0)) + 1]
         angles = np.arctan2(-self(phase, 2), self(phase, 1))
         return phase, np.maximum.accumulate(np.maximum(angles, 0))
 
     def phase_of_slope(self, slope: Values, side: int = 1) -> Values:
-        """The phase after the steepest one, or before it (-1), at which W′ is a slope, if there
-        is one.
+        """Find the phase at which W′ equals a slope.
+
+        The phase is after the steepest phase (``side`` 1) or before it (-1). If W′ does not reach
+        the slope, the phase is where W′ comes nearest to it.
         """
         phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
         # Next to the steepest phase W′ falls with the square of the distance.
         start = np.interp(np.sqrt(slopes[0] - slope), np.sqrt(slopes[0] - slopes), phase)
         found = self._zero(start, lambda tau: (self(tau, 1) - slope, self(tau, 2)))
-        # At the steepest phase itself W″ is nothing but rounding, and leads away.
+        # At the steepest phase W″ consists of rounding errors, and Newton's method leads away.
         nearer = np.abs(self(found, 1) - slope) <= np.abs(self(start, 1) - slope)
         return np.where(nearer, found, start)
 
     def phase_of_angle(self, angle: Values) -> Values:
-        """The phase after the steepest one at which (W′, -W″) has turned by an angle up to π/2."""
+        """Find the phase after the steepest phase at which (W′, -W″) has an angle, at most π/2."""
         phase, turned = self._turns
         x, y = np.cos(angle), np.sin(angle)
 
@@ -475,8 +522,10 @@ class Table:
         return self._zero(np.interp(angle, turned, phase), apart)
 
     def instant(self, speed: Values, amplitude: Values) -> tuple:
-        """Where w′ has fallen to a speed, which may be complex: the phase, w, -w″ and -w‴ there,
-        or NaN.
+        """Find the phase after the steepest phase at which w′ has fallen to a speed.
+
+        The speed may be complex. Returns the phase, w, -w″ and -w‴; NaN if w′ does not reach the
+        speed.
         """
         slope = speed / amplitude
         phase = self.phase_of_slope(np.real(slope))
@@ -487,14 +536,14 @@ class Table:
         return phase, amplitude * self(phase), *(-amplitude * self(phase, m) for m in (2, 3))
 
     def amplitude_at(self, speed: Values, push: Values) -> tuple:
-        """Λ and the phase at which w′ is a speed and -w″ a push."""
+        """Return Λ and the phase for which w′ = speed and -w″ = push."""
         phase = self.phase_of_angle(np.arctan2(push, speed))
         return np.hypot(speed, push) / np.hypot(self(phase, 1), self(phase, 2)), phase
 
     # Where the table falls as fast as a ball
 
     def levels(self, amplitude: Values) -> Values:
-        """Phases at which ΛW″ = -1, in an array beside Λ, NaN where there are fewer."""
+        """Phases at which ΛW″ = -1, shape (*amplitude.shape, phases). Missing phases are NaN."""
         amplitude = np.asarray(amplitude, float)[..., np.newaxis]
         table = self.rows(np.s_[..., np.newaxis])
         values = 1 + amplitude * table(self.grid, 2)
@@ -510,18 +559,23 @@ class Table:
         return np.where(np.take_along_axis(crossed, at, axis=-1), phase, np.nan)
 
     def lift_offs(self, amplitude: Values) -> Values:
-        """Phases in [0, 2π) at which a resting ball leaves, where 1 + ΛW″ falls to zero, in an
-        array beside Λ, NaN where there are fewer."""
+        """Phases in [0, 2π) at which a resting ball leaves, shape (*amplitude.shape, phases).
+
+        At these phases 1 + ΛW″ falls to zero. They are sorted, and missing phases are NaN.
+        """
         phases = self.levels(amplitude)
         falls = self(phases, 3) < 0
-        # The samples step over a short fall of the table.
+        # A fall of the table that is shorter than the distance of samples is missed by `levels`.
         short = ~falls.any(axis=-1) & (np.asarray(amplitude) * self.lift > 1)
         phases[short, 0] = self._top(2, -1)
         falls[short, 0] = True
         return np.sort(np.where(falls, phases % PERIOD, np.nan))
 
     def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
-        """How long balls that rest stay on the table, and the phases at which they leave."""
+        """Return how long resting balls stay on the table, and the phases at which they leave.
+
+        The time is infinite if a ball never leaves.
+        """
         phases = self.lift_offs(amplitude)
         wait = (phases - np.asarray(phase)[..., np.newaxis]) % PERIOD
         # Rounding must not postpone the lift-off by a turn.
@@ -533,7 +587,7 @@ class Table:
 
 
 class Sine(Table):
-    """W = sin τ, the table of the paper: the functions of a table by closed formulas."""
+    """The table of the paper, W = sin τ, with closed formulas."""
 
     is_sine = True
 
@@ -563,7 +617,7 @@ class Sine(Table):
         return part * np.cos(middle), -part * np.sin(middle)
 
     def waves(self, phase: Values, amplitude: Values) -> list:
-        """Λ cos τ and Λ sin τ."""
+        """Return [Λ cos τ, Λ sin τ]."""
         sine, versine = swing(phase)
         return [amplitude * (1 - versine), amplitude * sine]
 
@@ -596,7 +650,7 @@ class Sine(Table):
         return np.hypot(speed, push), np.arctan2(push, speed)
 
     def levels(self, amplitude: Values) -> Values:
-        """The two phases at which Λ sin τ = 1. If there are none, both are π/2."""
+        """The two phases at which Λ sin τ = 1. If Λ ≤ 1, both are π/2."""
         level = np.arcsin(np.minimum(1, 1 / np.asarray(amplitude, float)))
         return np.stack([level, np.pi - level], axis=-1)
 
@@ -606,17 +660,17 @@ class Sine(Table):
 
 
 SINE = Sine()
-"""The table of the paper, and the default everywhere."""
+"""The table of the paper, and the default of all functions."""
 
 
 def check_table(table: Table) -> None:
-    """Raise ValueError with one line for what is no table, or not one table."""
+    """Raise ValueError unless ``table`` is a Table whose parameters are single numbers."""
     if not isinstance(table, Table):
         raise ValueError(f"table = {table!r:.60}: must be a Table, such as Table([(1, 1.0, 0.0)])")
     for name, value in table.parameters.items():
         if np.ndim(value):
             raise ValueError(
-                f"table: its {name} is an array, and must be a number: give one table at a time"
+                f"table: its {name} is an array, but must be a number: give one table at a time"
             )
     if table is not SINE:
         Table(table.harmonics)

@@ -1,29 +1,32 @@
-"""Contacts of any force law, in a time in which their motion is analytic (docs/panels.md).
+"""Integrate contacts of any force law, in a time in which the motion is analytic (docs/panels.md).
 
-1. Root time. p″ = a - f(p, p′), with the load a = g + w″(τ + t). Forces such as p^{3/2} are
-   analytic functions of q = p^{1/m}. In the *root time* s, with dt = λ ds and λ = m q^{m-1},
+1. Root time. The penetration p satisfies p″ = a - f(p, p′), with the load a = g + w″(τ + t). Forces
+   such as p^{3/2} are analytic functions of q = p^{1/m}. In the *root time* s, with dt = λ ds and
+   λ = m q^{m-1},
 
        dq/ds = v,    dv/ds = F = λ (a - f),    dt/ds = λ,    with v = p′,
 
    and the motion is analytic up to both ends of a contact.
 2. A panel (:func:`solve_panel`). On a panel of the length h, F is a polynomial with the values F_j
-   at the Gauss nodes. Sweeps find them: integrals of F give v, those of v give q, and those of λ
-   give t. A sweep adds two orders in ωh, with the frequency ω of the oscillation in s.
-3. Is it resolved? (:func:`_resolved`) If the last Legendre coefficients of v are ε, the end of the
-   panel is right to the order of ε².
+   at the Gauss nodes. Sweeps find these values: v is the integral of F, q is the integral of v, and
+   t is the integral of λ. Each sweep adds two orders in ωh, where ω is the frequency of the
+   oscillation in s.
+3. Accuracy (:func:`_resolved`). If the last Legendre coefficients of v are ε, the error of the end
+   of the panel is of the order ε².
 4. Events (:func:`_next_panel`). A panel ends where the force has a kink, at the release, and at the
    end of a period of the table.
-5. Ends that are barely reached (:func:`_maxima`). It also ends at a maximum of the release function
+5. Barely reached ends (:func:`_maxima`). A panel also ends at a maximum of the release function
    that may be above zero.
-6. Balls that stay (:meth:`_Contacts.compare_periods`).
-7. Derivatives (:func:`carried`). They are those of the collocation.
-8. Contacts up to a known end (:func:`integrate_to`). They are one panel, if they are like a free
-   impact of their speed, whose linear equations then make each sweep nearly a step of Newton's
-   method.
-9. Which linear equations (:func:`by_newton`, :func:`are_solved_directly`). Chosen by their size.
+6. Permanent contacts (:meth:`_Contacts.compare_periods`).
+7. Derivatives (:func:`carried`). They solve the linearised equations of the collocation.
+8. Contacts up to a known end (:func:`integrate_to`). A contact that resembles a free impact of its
+   speed is one panel. The linear equations of the free impact then make each sweep nearly a Newton
+   step.
+9. Linear solvers (:func:`by_newton`, :func:`are_solved_directly`). The size of the equations
+   decides.
 
-An array of contacts has the shape (rows,), and one of values at nodes (nodes, rows). Derivatives
-are (directions, rows).
+Arrays of contacts have the shape (rows,), values at nodes the shape (nodes, rows), and derivatives
+the shape (directions, rows).
 """
 
 import math
@@ -39,25 +42,28 @@ from scipy.optimize import elementwise
 from bouncing_ball_beyond.balls import H
 from bouncing_ball_beyond.tables import Table, Values
 
-# "At half" and "at twice" say what changed with nine laws and 60 contacts each (docs/panels.md).
-# "No effect" means that ends, times and speeds agreed to 1e-11 and evaluations within 5 %.
+# Each constant was halved and doubled, with nine laws and 60 contacts each (docs/panels.md). "At
+# half" and "at twice" give the effect. "No effect" means that ends, times and speeds agreed within
+# 1e-11, and the numbers of evaluations within 5 %.
 
 RESOLVED = 1e-7
 """Largest last Legendre coefficients of v of an accepted panel, divided by its maximum speed.
-The error of the end is their square. At half: no effect. At twice: 5 % fewer evaluations."""
+The error at the end of the panel is their square. At half: no effect. At twice: 5 % fewer
+evaluations."""
 
 FALLING = 0.02
-"""Largest ratio of the last Legendre coefficients to the middle ones of an accepted panel. Beyond a
-kink the ratio is (1/2)² to (1/2)³, and the square of the last coefficients is not the error.
-At half and at twice: no effect. Without `FALLING`, the median error of ends behind a kink that a
-limited damper does not declare is 4e-9 instead of 5e-15."""
+"""Largest ratio of the last to the middle Legendre coefficients of an accepted panel.
+If a panel contains a kink, the ratio is (1/2)² to (1/2)³, and the error is larger than the square
+of the last coefficients. At half and at twice: no effect. `FALLING` matters for kinks that the law
+does not declare: without it, the median error of ends with a limited damper is 4e-9 instead of
+5e-15."""
 
 SMOOTH = 1e-13
-"""Last coefficients below which a panel is accepted even if its coefficients do not fall: all of
-them are rounding errors. At half and at twice: no effect."""
+"""Size of the last coefficients below which a panel is accepted even if its coefficients do not
+fall, because all of them are rounding errors. At half and at twice: no effect."""
 
 SWEEPS = 20
-"""Maximum number of sweeps of a panel. A panel that needs more is made shorter.
+"""Maximum number of sweeps of a panel. A panel that needs more sweeps is made shorter.
 At half: 14 % more evaluations. At twice: one slow contact with a barely reached end changes by
 2e-3."""
 
@@ -86,26 +92,26 @@ EVENT_STEP = 1e-13
 At half and at twice: no effect."""
 
 SAME = 1e-10
-"""Distance of a kink from the release, divided by the length of the panel, below which both are one
-event. At half and at twice: no effect. Without `SAME`, an impact on a limited
+"""Distance of a kink from the release, divided by the length of the panel, below which the kink
+counts as the release. At half and at twice: no effect. Without `SAME`, an impact on a limited
 damper with ζ = 0, whose kink is at the release, takes 2096 panels instead of 8."""
 
 MOST_PANELS = 4000
-"""Maximum number of panels of a contact. A contact that needs more has no end, NaN, and an
-impact needs about six. At half, contacts with 2000 to 4000 panels would have no end either."""
+"""Maximum number of panels of a contact. The end of a contact that needs more panels is NaN.
+An impact needs about six. At half: the ends of contacts with 2000 to 4000 panels would be NaN."""
 
 PATIENT = 40
-"""Number of panels after which a contact is solved by Newton's method: the ball lies on the table.
-At half and at twice: no effect. Without `PATIENT`, 100 contacts of a strongly damped law, of which
-54 stay, take 22 times as many evaluations."""
+"""Number of panels after which Newton's method solves a contact, because the ball lies on the
+table. At half and at twice: no effect. Without `PATIENT`, 100 contacts of a strongly damped law, 54
+of them permanent, take 22 times as many evaluations."""
 
 PERIODS = 30
 """Number of periods after which a contact counts as permanent, unless the caller gives another.
 At half and at twice: no effect."""
 
 SAFE = 8.0
-"""Factor on the sum of all further changes of a contact. If that multiple cannot lift the ball, the
-contact is permanent: see :meth:`_Contacts.compare_periods`.
+"""Safety factor on the sum of all further changes of a contact. If this multiple of the sum cannot
+lift the ball, the contact is permanent: see :meth:`_Contacts.compare_periods`.
 At half: 5 % fewer evaluations. At twice: 3 % more."""
 
 CONTACTS_AT_ONCE = 1000
@@ -114,7 +120,7 @@ At half and at twice: the same time within 25 %."""
 
 FEW_CONTACTS = 50
 """Number of contacts up to which linear equations are solved directly; above it, by sweeps.
-If m = 1, the panels of so few contacts are solved by Newton's method.
+Up to this number and if m = 1, Newton's method solves the panels.
 At half and at twice: the same time within 25 %."""
 
 FEW_ENTRIES = 2 * 80 * 80
@@ -126,14 +132,22 @@ TINY = 1e-300
 """Smallest divisor. It only prevents divisions by zero."""
 
 LISTED = ("tau", "u", "T")
-"""What is an array for each contact, also where it is the same number for all."""
+"""Quantities that are stored as arrays of the shape (rows,), even if they are equal in all rows."""
 
 
 class Gauss(NamedTuple):
-    """Gauss nodes on [0, 1] and their weights.
+    """Gauss quadrature on [0, 1].
 
-    ``integrals`` and ``coefficients`` are the matrices from values at the nodes to the integrals up
-    to the nodes and to the Legendre coefficients, and ``twice`` is the square of the former.
+    Attributes
+    ----------
+    nodes, weights : array, shape (n,)
+        Nodes and weights.
+    integrals : array, shape (n, n)
+        Matrix from values at the nodes to integrals up to the nodes.
+    twice : array, shape (n, n)
+        Square of ``integrals``, for double integrals.
+    coefficients : array, shape (n, n)
+        Matrix from values at the nodes to Legendre coefficients.
     """
 
     nodes: NDArray
@@ -153,13 +167,21 @@ class Gauss(NamedTuple):
 
 PANEL = Gauss.of_order(20)
 WHOLE = tuple(Gauss.of_order(n) for n in (32, 48, 64, 80))
-"""The nodes of a panel, and those of a whole contact in one panel."""
+"""Gauss nodes of a panel (`PANEL`), and of panels that cover a whole contact (`WHOLE`)."""
 
 
 class Guess(NamedTuple):
-    """Whole contacts as they would be without a load: F at their nodes, shape (nodes, rows).
+    """Guesses of whole contacts, from free impacts.
 
-    Row i has the matrix inverses[which[i]], the inverse of that of :meth:`LinearizedPanel.matrix`.
+    Attributes
+    ----------
+    gauss : Gauss
+    push : array, shape (nodes, rows)
+        F of the free impacts at their nodes.
+    which : array of int, shape (rows,)
+        Index of the matrix of each row in ``inverses``.
+    inverses : sequence of arrays, shape (nodes, nodes)
+        Inverses of the matrices of :meth:`LinearizedPanel.matrix`.
     """
 
     gauss: Gauss
@@ -168,11 +190,11 @@ class Guess(NamedTuple):
     inverses: Sequence[NDArray]
 
     def of(self, rows: NDArray) -> "Guess":
-        """Those of some rows."""
+        """Select rows."""
         return self._replace(push=self.push[:, rows], which=self.which[rows])
 
     def corrected(self, missing: NDArray) -> NDArray:
-        """About what is to be added to F that misses so much, shape (nodes, ..., rows)."""
+        """Estimate the correction of F from its residual ``missing``, shape (nodes, ..., rows)."""
         if len(self.inverses) == 1:
             flat = self.inverses[0] @ missing.reshape(len(missing), -1)
             return flat.reshape(missing.shape)
@@ -185,11 +207,22 @@ class Guess(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Numbers and arrays, real or complex, as rows of contacts and directions of steps.
+    """Numbers and arrays, real or complex, as rows of contacts and directions of complex steps.
 
-    ``given`` has real numbers, or arrays of the shape (rows,), and ``steps`` the imaginary parts
-    that are not zero, of the shape (directions, rows). The directions are along the first axis of
-    complex arrays, if the real parts are the same along it; those without a step are left out.
+    If the real parts of complex arrays are equal along the first axis, this axis counts directions.
+
+    Attributes
+    ----------
+    shape : tuple
+        Shape of the broadcast values.
+    given : dict of numbers or arrays, shape (rows,)
+        Real parts.
+    steps : dict of arrays, shape (directions, rows)
+        Imaginary parts, if they are not all zero. Directions without a step are left out.
+    size : int
+        Number of rows.
+    stepped : array of bool
+        Whether each direction has a step.
     """
 
     shape: tuple
@@ -200,11 +233,14 @@ class Rows(NamedTuple):
 
     @property
     def directions(self) -> int:
-        """The number of directions with a step."""
+        """Number of directions with a step."""
         return int(np.count_nonzero(self.stepped))
 
     def joined(self, real: NDArray, imaginary: NDArray) -> NDArray:
-        """Results (k, rows) and derivatives (k, directions, rows) in the shape of the values."""
+        """Join results and derivatives to complex arrays of the shape (k, *shape).
+
+        Results have the shape (k, rows), and derivatives the shape (k, directions, rows).
+        """
         if not self.stepped.size:
             return real.reshape(len(real), *self.shape)
         values = np.repeat(real[:, np.newaxis] + 0j, self.stepped.size, axis=1)
@@ -213,7 +249,7 @@ class Rows(NamedTuple):
 
 
 def values_by_row(values: Mapping) -> Rows:
-    """:class:`Rows` of numbers and arrays that broadcast."""
+    """Convert numbers and arrays that broadcast to :class:`Rows`."""
     arrays = {name: np.asarray(value) for name, value in values.items()}
     shape = np.broadcast_shapes(*(x.shape for x in arrays.values()))
     complexes = {name: x.imag for name, x in arrays.items() if x.dtype.kind == "c"}
@@ -236,12 +272,25 @@ def values_by_row(values: Mapping) -> Rows:
 
 
 class ContactMotion(NamedTuple):
-    """The equation of motion of contacts, and where panels end.
+    """The equation of motion of contacts, and the events at which panels end.
 
-    ``force`` is f(p, v, a, given). ``release`` is the release function of (q, v, t, given): it is
-    negative in a contact and zero at its end. Zeros of ``kinks`` are those of the force. ``given``
-    has numbers, or arrays of the shape (rows,): "tau", "amplitude", "gravity", the "table" with its
-    parameters, and what the force needs. ``steps`` are their imaginary parts, (directions, rows).
+    Attributes
+    ----------
+    root : int
+        m.
+    force : callable
+        Force f(p, v, a, given).
+    release : callable
+        Release function of (q, v, t, given). It is negative in a contact and zero at its end.
+    kinks : tuple of callables
+        Functions of (q, v, t, given). Their zeros are the kinks of the force.
+    given : mapping of numbers or arrays, shape (rows,)
+        "tau", "amplitude", "gravity", the "table" and its parameters, and the arguments of the
+        force.
+    steps : mapping of arrays, shape (directions, rows)
+        Imaginary parts of ``given``.
+    gauss : Gauss
+        Nodes of the panels.
     """
 
     root: int
@@ -253,18 +302,18 @@ class ContactMotion(NamedTuple):
     gauss: Gauss = PANEL
 
     def of(self, rows: NDArray) -> "ContactMotion":
-        """The motion of some of the contacts."""
+        """Select contacts."""
         given = {name: x[rows] if np.ndim(x) else x for name, x in self.given.items()}
         return self._replace(
             given=given, steps={name: x[:, rows] for name, x in self.steps.items()}
         )
 
     def stepped(self) -> dict:
-        """What is given, complex of the shape (directions, rows) where it has a step."""
+        """Return ``given`` with steps. Values with a step are complex, shape (directions, rows)."""
         return {**self.given} | {name: self.given[name] + 1j * x for name, x in self.steps.items()}
 
     def lever(self, q: NDArray) -> NDArray:
-        """λ = m q^{m-1}."""
+        """Return λ = m q^{m-1}."""
         if self.root == 1:
             return np.ones_like(q)
         power = q
@@ -274,18 +323,18 @@ class ContactMotion(NamedTuple):
 
 
 def load_of(t: NDArray, given: Mapping) -> Values:
-    """a = g + Λ W″(τ + t)."""
+    """Return the load a = g + Λ W″(τ + t)."""
     return given["gravity"] + given["amplitude"] * waveform(given)(given["tau"] + t, 2)
 
 
 def waveform(given: Mapping) -> Table:
-    """The table with the values of its parameters that are given."""
+    """Return the table with the parameters in ``given``."""
     table = given["table"]
     return table.at(**{name: given[name] for name in table.parameters})
 
 
 def rates(motion: ContactMotion, state: Sequence | NDArray) -> tuple:
-    """dq/ds, dv/ds and dt/ds."""
+    """Return dq/ds, dv/ds and dt/ds."""
     q, v, t = state
     lever = motion.lever(q)
     a = load_of(t, motion.given)
@@ -295,7 +344,7 @@ def rates(motion: ContactMotion, state: Sequence | NDArray) -> tuple:
 def event_rate(
     motion: ContactMotion, event: Callable, state: Sequence | NDArray
 ) -> tuple[NDArray, NDArray]:
-    """A function of an event and its derivative with respect to s along the motion."""
+    """Return an event function and its derivative with respect to s along the motion."""
     beside = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
     value = event(*beside, motion.given)
     return value.real, value.imag / H
@@ -304,8 +353,20 @@ def event_rate(
 class Panel(NamedTuple):
     """Solved panels.
 
-    ``nodes`` and ``end`` are (q, v, t) at the nodes and at the end, and ``push`` is F at the nodes.
-    ``early`` is the change of v in the sweep EARLY, and ``change`` about that of a further sweep.
+    Attributes
+    ----------
+    nodes : tuple of arrays, shape (nodes, rows)
+        q, v and t at the nodes.
+    end : tuple of arrays, shape (rows,)
+        q, v and t at the ends.
+    push : array, shape (nodes, rows)
+        F at the nodes.
+    length : array, shape (rows,)
+        Lengths in root time.
+    early : array, shape (rows,)
+        Change of v in the sweep `EARLY`.
+    change : array, shape (rows,)
+        Estimate of the change of v in a further sweep.
     """
 
     nodes: tuple
@@ -316,34 +377,41 @@ class Panel(NamedTuple):
     change: np.ndarray
 
     def of(self, rows: NDArray) -> "Panel":
-        """The panels of some rows."""
+        """Select rows."""
         nodes, end = (tuple(y[..., rows] for y in each) for each in self[:2])
         return Panel(nodes, end, *(x[..., rows] for x in self[2:]))
 
     def states(self, places: NDArray, gauss: Gauss) -> list[NDArray]:
-        """About q, v and t at places on [0, 1], each of the shape (places, rows)."""
+        """Interpolate q, v and t at positions on [0, 1], each of the shape (positions, rows)."""
         order = gauss.nodes.size
         values = legendre.legvander(2 * places - 1, order - 1) @ gauss.coefficients
         return [values @ y for y in self.nodes]
 
     def pushed(self, share: NDArray, gauss: Gauss) -> NDArray:
-        """Interpolate F to the Gauss nodes of the first part of each panel."""
+        """Interpolate F to the Gauss nodes of the first part of each panel, [0, ``share``]."""
         coefficients = gauss.coefficients @ self.push
         places = 2 * share * gauss.nodes[:, np.newaxis] - 1
         return legendre.legval(places, coefficients, tensor=False)
 
     def replace_some(self, at: NDArray, new: "Panel") -> None:
-        """Write other panels into these."""
+        """Overwrite the panels in the rows ``at``."""
         old = (*self.nodes, *self.end, *self[2:])
         for whole, part in zip(old, (*new.nodes, *new.end, *new[2:]), strict=True):
             whole[..., at] = part
 
 
 class LinearizedPanel(NamedTuple):
-    """The linearised collocation of panels: δF = F_q δq + F_v δv + F_t δt + what is known.
+    """The linearised equations of panels: δF = F_q δq + F_v δv + F_t δt + known terms.
 
-    ``by_q``, ``by_v``, ``by_t`` and ``bend``, which is dλ/dq, have the shape (nodes, 1, rows), and
-    h has the shape (rows,).
+    Attributes
+    ----------
+    by_q, by_v, by_t : array, shape (nodes, 1, rows)
+        F_q, F_v and F_t at the nodes.
+    bend : array, shape (nodes, 1, rows)
+        dλ/dq at the nodes.
+    h : array, shape (rows,)
+        Lengths of the panels.
+    gauss : Gauss
     """
 
     by_q: np.ndarray
@@ -354,20 +422,20 @@ class LinearizedPanel(NamedTuple):
     gauss: Gauss
 
     def integrated(self, values: NDArray) -> NDArray:
-        """Integrals up to the nodes, of values at the nodes, shape (nodes, directions, rows)."""
+        """Integrate values at the nodes up to each node, shape (nodes, directions, rows)."""
         flat = self.gauss.integrals @ values.reshape(len(values), -1)
         return self.h * flat.reshape(values.shape)
 
     def time(self, q: NDArray) -> NDArray:
-        """δt from δq at the nodes."""
+        """Return δt at the nodes, from δq."""
         return self.integrated(self.bend * q)
 
     def felt(self, q: NDArray, v: NDArray, t: NDArray) -> NDArray:
-        """What changes of the state change of F."""
+        """Return F_q δq + F_v δv + F_t δt at the nodes."""
         return self.by_q * q + self.by_v * v + self.by_t * t
 
     def matrix(self) -> NDArray:
-        """The matrix of the linear system for δF of each panel, shape (rows, nodes, nodes).
+        """Matrix of the linear system for δF of each panel, shape (rows, nodes, nodes).
 
         The matrix is dimensionless.
         """
@@ -379,11 +447,11 @@ class LinearizedPanel(NamedTuple):
         return np.eye(self.gauss.nodes.size) - by_v * once - by_q * twice - by_t * time
 
     def solved(self, known: NDArray) -> NDArray:
-        """δF at the nodes, shape (nodes, directions, rows), by a linear system for each panel."""
+        """Solve directly for δF at the nodes, shape (nodes, directions, rows)."""
         return np.linalg.solve(self.matrix(), np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
 
     def swept(self, known: NDArray, guess: Guess | None = None) -> NDArray:
-        """As :meth:`solved`, by sweeps; they converge as those of the motion have done."""
+        """Solve for δF as :meth:`solved`, by sweeps. They converge as the sweeps of the motion."""
         push = guess.corrected(known) if guess else known
         rate = self.integrated(push)
         change = np.zeros(rate.shape[1:])
@@ -402,7 +470,7 @@ class LinearizedPanel(NamedTuple):
 
 
 def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPanel:
-    """:class:`LinearizedPanel` about a motion, by complex steps of the force."""
+    """Linearise panels about a motion with complex steps of the force."""
     q, v, t = nodes
     given = motion.given
     m = motion.root
@@ -420,7 +488,10 @@ def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPane
 
 
 def _end_of(start: Sequence, h: NDArray, slopes: tuple, weights: NDArray) -> tuple:
-    """q, v and t at the ends of panels, from their derivatives with respect to s at the nodes."""
+    """Return q, v and t at the ends of panels.
+
+    ``slopes`` are their derivatives with respect to s at the nodes.
+    """
     return tuple(y + h * (weights @ slope) for y, slope in zip(start, slopes, strict=True))
 
 
@@ -435,14 +506,34 @@ def solve_panel(
     newton: bool = False,
     guess: Guess | None = None,
 ) -> Panel:
-    """The motion on panels from (q, v, t) at their starts, of the lengths h or up to an event.
+    """Solve for the motion on panels.
 
-    An event is found if the last step to it is at most ``within``. ``push`` is a guess of F.
+    By default the sweeps are Picard iterations. Steps of Newton's method allow longer panels for a
+    ball that lies on the table: a panel may then cover many oscillations that have died out. A
+    ``guess`` replaces the linear equations of the panel by those of free impacts.
 
-    The sweeps are Picard's, or steps of Newton's method. With these the panel of a ball that lies
-    on the table may be as long as many oscillations of its contact, which have died out. Those of
-    whole contacts have the linear equations of a guess in place of their own. In each sweep a step
-    of Newton's method also moves the end of a panel towards its event.
+    Parameters
+    ----------
+    motion : ContactMotion
+    start : sequence of arrays, shape (rows,)
+        q, v and t at the starts.
+    h : array, shape (rows,)
+        Lengths of the panels. If there is an event, they are guesses.
+    event : callable, optional
+        Event function, at whose zero the panels end. In each sweep a Newton step moves the end of
+        each panel towards the zero.
+    within : float or array, shape (rows,)
+        Largest last step to an event that is found.
+    push : float or array, shape (nodes, rows)
+        Guess of F.
+    newton : bool
+        Whether the sweeps are steps of Newton's method.
+    guess : Guess, optional
+        Linear equations of whole contacts.
+
+    Returns
+    -------
+    Panel
     """
     q0, v0, t0 = start
     _, weights, integrals, *_ = motion.gauss
@@ -476,8 +567,8 @@ def solve_panel(
             value, slope = event_rate(motion, event, end)
             moved = np.clip(-value / slope, -0.5 * h, 0.5 * h)
             near = np.abs(moved) <= within
-        # Each sweep changes v by a smaller part of the last change than the one before, and a step
-        # of Newton's method by the square of that part.
+        # The ratio of successive changes of v falls from sweep to sweep, and Newton's method
+        # squares it. This gives a bound of the next change.
         left = change * np.fmin(change / earlier, 1.0) ** (2 if newton else 1)
         done = near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)
         if guess and sweep:
@@ -505,14 +596,14 @@ def carried(
     newton: bool = False,
     guess: Guess | None = None,
 ) -> NDArray:
-    """Derivatives of (q, v, t) at the ends of panels, from those at the starts.
+    """Compute the derivatives of (q, v, t) at the ends of panels.
 
-    Both have the shape (3, directions, rows).
+    ``by`` contains the derivatives at the starts. Both have the shape (3, directions, rows).
     """
     linear = linearize(motion, nodes, h)
     q0, v0, t0 = by
     alone = q0 + h * motion.gauss.nodes[:, np.newaxis, np.newaxis] * v0
-    # Of what is given, τ alone is felt as the time is.
+    # A step of τ acts like a step of t. Steps of other given values act through the force.
     known = linear.felt(alone, v0, t0 + motion.steps.get("tau", 0.0) + linear.time(alone))
     if motion.steps.keys() - {"tau", "T"}:
         q, v, t = (x[:, np.newaxis] for x in nodes)
@@ -520,7 +611,7 @@ def carried(
         lever = motion.lever(q)
         a = load_of(t, given)
         known = known + (lever * (a - motion.force(q * lever / motion.root, v, a, given))).imag
-    # That in which only the end of a contact moves is still at rest.
+    # Directions that only move the end of a contact have δF = 0.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
     if are_solved_directly(linear, newton, guess):
@@ -534,9 +625,11 @@ def carried(
 
 
 def _resolved(motion: ContactMotion, panel: Panel, size: NDArray) -> tuple[NDArray, NDArray]:
-    """Whether v is right on panels, and factors for the next lengths; ``size`` is its scale.
+    """Test the accuracy of panels.
 
-    v has the rounding error of the speed that gravity alone would give the ball, if it is larger.
+    Returns whether each panel is accepted, and factors for the lengths of the next panels. ``size``
+    is the scale of v. If gravity alone would accelerate the ball to a larger speed than this scale,
+    the rounding errors of v are relative to that speed.
     """
     v = panel.nodes[1]
     order = len(v)
@@ -559,10 +652,12 @@ def _resolved(motion: ContactMotion, panel: Panel, size: NDArray) -> tuple[NDArr
 def _first_event(
     motion: ContactMotion, events: tuple, side: NDArray, start: Sequence, panel: Panel
 ) -> tuple[NDArray, NDArray]:
-    """The first event of each panel, -1 if there is none, and about its place on [0, 1].
+    """Find the first event of each panel.
 
-    ``side`` has the signs of the functions before their events. It is written where it is not known
-    yet, 0, and where a kink was crossed at the end of the last panel, together with another event.
+    Returns the index of the event, -1 if there is none, and an estimate of its position on [0, 1].
+    ``side`` contains the signs of the event functions before their events. This function updates
+    signs of kinks that are unknown (0), or that changed at the end of the last panel together with
+    another event.
     """
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     which = np.full(start[0].size, -1)
@@ -579,7 +674,7 @@ def _first_event(
         low = np.abs(values[after - 1, crossed])
         high = np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
-        # A contact that starts at the zero of a function does not end there.
+        # An event function may be zero at the start of a contact, which does not end there.
         here = np.maximum(here, x[1] / 2)
         earlier = here < place[crossed]
         place[crossed[earlier]] = here[earlier]
@@ -590,16 +685,18 @@ def _first_event(
 def _maxima(
     motion: ContactMotion, event: Callable, before: NDArray, states: list
 ) -> tuple[NDArray, NDArray]:
-    """Maxima between nodes at which a function may reach zero: contacts, and places on [0, 1].
+    """Find maxima between nodes at which an event function may reach zero.
 
-    ``before`` has the signs of the function before its event, and ``states`` are (q, v, t) at the
-    starts, nodes and ends of panels.
+    Returns the rows of the panels with a maximum, and its positions on [0, 1]. ``before`` contains
+    the signs of the function before its event. ``states`` are (q, v, t) at the starts, nodes and
+    ends of the panels.
     """
     below = -before * event(*states, motion.given)
     middle = below[1:-1]
     rises = middle - below[:-2]
     falls = middle - below[2:]
-    # Between three values a parabola rises less above the highest one than to it.
+    # The maximum of a parabola through three values exceeds the largest value by less than the
+    # difference of this value from the others.
     near = (rises >= 0) & (falls > 0) & (middle + np.maximum(rises, falls) > 0)
     node, row = np.nonzero(near)
     if not row.size:
@@ -613,7 +710,7 @@ def _maxima(
     x = np.concatenate([[0.0], motion.gauss.nodes, [1.0]])
     bracket = x[node], x[node + 1], x[node + 2]
     found = elementwise.find_minimum(depth, bracket, args=(np.arange(row.size),))
-    # Inside a panel the motion is only as right as the last coefficients are small.
+    # Inside a panel the error of the motion is of the size of the last coefficients.
     reached = found.f_x <= RESOLVED * np.abs(below[:, row]).max(0)
     return row[reached], found.x[reached]
 
@@ -621,7 +718,7 @@ def _maxima(
 def _first_maximum(
     motion: ContactMotion, events: tuple, side: NDArray, start: Sequence, panel: Panel
 ) -> NDArray:
-    """The place on [0, 1] of the first of the :func:`_maxima` of all events; infinity if none."""
+    """Position on [0, 1] of the first of the :func:`_maxima` of all events, or infinity."""
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     first = np.full(start[0].size, np.inf)
     for event, before in zip(events, side, strict=True):
@@ -633,14 +730,17 @@ def _first_maximum(
 def _shift(
     motion: ContactMotion, event: Callable, state: Sequence | NDArray, by: NDArray
 ) -> NDArray:
-    """Derivatives of s at an event, from those of (q, v, t), (3, directions, rows)."""
+    """Compute the derivatives of s at an event, shape (directions, rows).
+
+    ``by`` contains the derivatives of (q, v, t), shape (3, directions, rows).
+    """
     _, slope = event_rate(motion, event, state)
     beside = (y + 1j * each for y, each in zip(state, by, strict=True))
     return -event(*beside, motion.stepped()).imag / slope
 
 
 def _pace(motion: ContactMotion, state: Sequence | NDArray) -> NDArray:
-    """Derivatives of (s, q, v, t) with respect to s, beside directions."""
+    """Derivatives of (s, q, v, t) with respect to s, shape (4, 1, rows)."""
     return np.array([np.ones_like(state[0]), *rates(motion, state)])[:, np.newaxis]
 
 
@@ -652,7 +752,10 @@ def _next_panel(
     length: NDArray,
     newton: bool,
 ) -> tuple[Panel, NDArray]:
-    """The next panels, which end at their first events, and these, -1 if none. Writes ``side``."""
+    """Compute the next panels, which end at their first events.
+
+    Returns the panels and the index of the event at the end of each, or -1. Updates ``side``.
+    """
     panel = solve_panel(motion, start, length, newton=newton)
     which, place = _first_event(motion, events, side, start, panel)
     rows = np.arange(which.size)
@@ -674,7 +777,7 @@ def _next_panel(
         rows = rows[doubtful]
         if not rows.size:
             break
-        # Another event may turn out to be earlier than the one that seemed to be the first.
+        # The exact panel may contain an earlier event than the estimated first event.
         others = side[:, rows]
         others[which[rows], np.arange(rows.size)] = np.nan
         begin = [y[rows] for y in start]
@@ -682,7 +785,7 @@ def _next_panel(
         place = panel.length[rows] * place
     kink = np.flatnonzero((which >= 0) & (which < len(motion.kinks)))
     if kink.size and len(events) > len(motion.kinks):
-        # A kink at the release itself.
+        # A kink at the release counts as the release.
         end = [y[kink] for y in panel.end]
         value, slope = event_rate(motion.of(kink), motion.release, end)
         together = np.abs(value / slope) <= SAME * panel.length[kink]
@@ -691,23 +794,29 @@ def _next_panel(
 
 
 def _turn(q: NDArray, v: NDArray, t: NDArray, given: Mapping) -> Values:
-    """The event that ends each period of the table."""
+    """Event function that vanishes at the end of each period of the table."""
     return t - given["turn"]
 
 
 def by_newton(motion: ContactMotion, contacts: int, lies: bool) -> bool:
-    """Whether panels are solved by Newton's method and not by sweeps.
+    """Whether panels are solved by Newton's method instead of sweeps.
 
-    For balls that lie on the table a panel is as long as many oscillations, which have died out.
-    With m = 1 the equations are nearly linear, and a matrix for each of a few contacts costs less
-    than the sweeps.
+    Newton's method is used in two cases:
+
+    1. The ball lies on the table. Panels then cover many oscillations that have died out.
+    2. m = 1 and there are at most `FEW_CONTACTS`. The equations are then nearly linear, and one
+       matrix per contact costs less than the sweeps.
     """
     return lies or (motion.root == 1 and contacts <= FEW_CONTACTS)
 
 
 def are_solved_directly(linear: LinearizedPanel, newton: bool, guess: Guess | None) -> bool:
-    """Whether the equations of derivatives are solved by matrices and not by sweeps: those of few
-    panels, or of whole contacts whose matrices fit into a processor's cache."""
+    """Whether the equations of derivatives are solved directly instead of by sweeps.
+
+    They are if there are at most `FEW_CONTACTS` panels, or if Newton's method solved the panels.
+    The limit for whole contacts is `FEW_ENTRIES`, so that the matrices fit into a processor's
+    cache.
+    """
     if guess:
         return linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
     return newton or linear.h.size <= FEW_CONTACTS
@@ -715,7 +824,7 @@ def are_solved_directly(linear: LinearizedPanel, newton: bool, guess: Guess | No
 
 @dataclass
 class _Contacts:
-    """Contacts on their way; most arrays have a value for each of them."""
+    """State of the integration of contacts. Most arrays have one value per contact."""
 
     motion: ContactMotion
     events: tuple
@@ -735,7 +844,7 @@ class _Contacts:
     lost: NDArray
 
     def advance(self, here: NDArray, lies: bool) -> None:
-        """Move some contacts to the ends of their next panels, or make these shorter."""
+        """Move contacts to the ends of their next panels. Panels that fail are made shorter."""
         motion = self.motion.of(here)
         s, *start = self.now[:, here]
         length = self.length[here]
@@ -751,13 +860,13 @@ class _Contacts:
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         good, factor = _resolved(motion, panel, np.fmax(self.size[here], greatest))
-        # The end of a shorter panel shows whether there is an event.
+        # If a maximum may reach zero, end the panel there: its end shows whether there is an event.
         place = _first_maximum(motion, self.events, side, start, panel)
         doubtful = good & (place < 1)
         factor = np.where(doubtful, place * panel.length / length, factor)
         good &= ~doubtful
         if self.until is not None:
-            # So many equal panels as before are fewer than those of the best lengths.
+            # Do not shorten accepted panels, so that the number of equal pieces does not grow.
             factor = np.where(good, np.fmax(factor, 1.0), factor)
         self.length[here] = length * np.where(good & (which >= 0), 1.0, factor)
         self.ended[here] = good & last & (which < 0)
@@ -773,7 +882,7 @@ class _Contacts:
             self.end_events(kept[at_events], which[at_events])
 
     def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
-        """Move the derivatives to the ends of panels, some of which are at events."""
+        """Update the derivatives to the ends of panels. At events, the ends move as well."""
         given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
         self.by[1:, :, here] = carried(*given, newton=newton)
         for k in np.unique(which[which >= 0]):
@@ -783,7 +892,7 @@ class _Contacts:
             self.by[:, :, at] += _pace(motion, self.now[1:, at]) * shift
 
     def end_events(self, here: NDArray, which: NDArray) -> None:
-        """Change the sides of kinks, end contacts at their releases, and compare periods."""
+        """Handle events: flip the signs of kinks, end contacts at releases, compare periods."""
         release = len(self.motion.kinks)
         self.side[which, here] *= -1
         self.ended[here] |= which == release
@@ -794,12 +903,12 @@ class _Contacts:
         turn[turned] += self.period[turned]
 
     def compare_periods(self, turned: NDArray) -> None:
-        """Find out at the ends of periods which contacts are permanent.
+        """Decide at the ends of periods which contacts are permanent.
 
-        From one period to the next q, v over its frequency and the least q change, at last in a
-        geometric series. Its sum is the largest change that is still to come, and the contact is
-        permanent if q was larger than SAFE such changes in all of the last period. The ratio is the
-        larger one of the last two.
+        Three quantities are compared with the period before: q, v divided by its frequency, and the
+        minimum of q. The sum of their changes finally forms a geometric series. Its ratio is the
+        larger of the last two ratios, and its sum bounds all further changes. The contact is
+        permanent if the minimum of q in the last period is larger than `SAFE` times this bound.
         """
         q, v, t = self.now[1:, turned]
         stiffness = -rates(self.motion.of(turned), (q + 1j * H, v, t))[1].imag / H
@@ -823,7 +932,10 @@ class _Contacts:
 def whole_panel(
     motion: ContactMotion, start: NDArray, until: NDArray, guess: Guess
 ) -> tuple[Panel, NDArray]:
-    """Contacts up to root times in one panel each, and which of them are like their guess."""
+    """Solve contacts up to root times in one panel each.
+
+    Returns the panels, and whether each is accepted because the contact resembles its guess.
+    """
     panel = solve_panel(motion, (*start, 0 * until), until, push=guess.push, guess=guess)
     good, _ = _resolved(motion, panel, np.abs(panel.nodes[1]).max(0))
     return panel, good
@@ -840,9 +952,10 @@ def integrate_to(
     by_until: NDArray,
     guess: Guess | None,
 ) -> tuple[NDArray, NDArray]:
-    """As :func:`integrate_contacts`, contacts up to root times, with the derivatives of these.
+    """Integrate contacts up to the root times ``until``, whose derivatives are ``by_until``.
 
-    Contacts that end as free impacts do take one panel each.
+    A contact that resembles a free impact takes one panel. Other arguments and results are those of
+    :func:`integrate_contacts`.
     """
     left = np.arange(until.size)
     ends = np.empty((4, until.size))
@@ -874,27 +987,35 @@ def integrate_contacts(
     until: NDArray | None = None,
     after: NDArray | None = None,
 ) -> tuple[NDArray, NDArray]:
-    """Contacts from their starts to the first releases, to root times, or to times.
+    """Integrate contacts from their starts to the first releases, to root times, or to times.
 
-    A contact is permanent if its motion repeats after a period, or if it lasts too long.
+    A contact is permanent if its motion converges so that the ball never leaves
+    (:meth:`_Contacts.compare_periods`), or if it lasts for ``longest`` periods.
 
     Parameters
     ----------
-    start, by : array, shapes (2, rows) and (2, directions, rows)
-        q and v at the start, and their derivatives.
-    length, period : array, shape (rows,)
-        Those of the first panel, and of the table.
-    until : array, shape (rows,), optional
-        Root times at which contacts are left.
-    after : array, shape (rows,), optional
-        Times after the start at which contacts are left.
+    motion : ContactMotion
+    start : array, shape (2, rows)
+        q and v at the start.
+    by : array, shape (2, directions, rows)
+        Derivatives of q and v at the start.
+    length : array, shape (rows,)
+        Lengths of the first panels.
+    period : array, shape (rows,)
+        Periods of the table.
     longest : int or array, shape (rows,)
-        A contact that lasts for so many periods is taken for a permanent one.
+        Number of periods after which a contact counts as permanent.
+    until : array, shape (rows,), optional
+        Root times at which the integration stops.
+    after : array, shape (rows,), optional
+        Times after the start at which the integration stops.
 
     Returns
     -------
-    ends, derivatives : array, shapes (4, rows) and (4, directions, rows)
-        Root time, q, v and the time after the start; NaN for permanent contacts.
+    ends : array, shape (4, rows)
+        Root time, q, v, and time after the start. They are NaN for permanent contacts.
+    derivatives : array, shape (4, directions, rows)
+        Derivatives of ``ends``.
     """
     q, v = start
     rows = v.size
@@ -932,7 +1053,7 @@ def integrate_contacts(
         if not active.size:
             break
         for here in np.array_split(active, -(-active.size // CONTACTS_AT_ONCE)):
-            # Most balls have left the table after few panels, and the others lie on it.
+            # Most balls leave the table after few panels. The other balls lie on it.
             contacts.advance(here, lies=attempt >= PATIENT)
     now[:, ~contacts.ended] = np.nan
     return now, contacts.by

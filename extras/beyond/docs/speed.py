@@ -74,9 +74,9 @@ def main() -> None:
     PAGE.write_text(
         f"""# How long a call takes
 
-`make speed` renews this page. Times are times of the processor, medians of {ROUNDS} rounds in which
-all calls are measured in turn, with one thread and with numba ({platform.machine()}, Python
-{platform.python_version()}, numpy {np.__version__}). Where nothing else is said, the ball is
+`make speed` renews this page. Times are processor times: medians of {ROUNDS} rounds, each of which
+measures all calls, with one thread and with numba ({platform.machine()}, Python
+{platform.python_version()}, numpy {np.__version__}). Unless the table names another, the ball is
 `SpringDamper(20.0, restitution=0.65)`. Tsuji's law has the same restitution coefficient and
 duration; its contacts have no closed form and are integrated.
 
@@ -84,9 +84,9 @@ duration; its contacts have no closed form and are integrated.
 | --- | --- |
 {chr(10).join(rows)}
 
-Contact laws are integrated on arrays, which are made for many balls: one ball alone is slow. The
-first motion ever takes some seconds more, while
-numba compiles and keeps what it has compiled.
+Contact laws are integrated on arrays, which are efficient for many balls: one ball alone is slow.
+The first motion after the installation takes a few seconds longer, because numba compiles the
+functions and stores them.
 """,
         encoding="utf-8",
     )

@@ -514,7 +514,7 @@ TEXT = {"quantities": "max_height"}
         (lambda: bb.history(ONE, amplitude=1.0, periods=0), r"periods = 0: must be in \(0, ∞\)"),
         (
             lambda: bb.simulate(ONE, amplitude=1.0, velocity=-1.0, relative_velocity=-1.0),
-            "velocity, relative_velocity: at most one of them",
+            "velocity, relative_velocity: give at most one of them",
         ),
         (
             lambda: bb.Rigid("0.5"),

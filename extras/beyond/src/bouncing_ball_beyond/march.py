@@ -65,14 +65,14 @@ LARGEST_TURN = 0.3
 FADED = 1e-6
 """Impact speed, in g/Ω, below which an impact counts as vanished, and its branch ends.
 
-The step must also reduce the speed by less than half. This ends branches on which contacts become
-longer and longer.
+The last step must have reduced the speed by less than half. This ends branches on which contacts
+become longer and longer.
 """
 
 BEFORE_END = 1e-3
-"""Relative distance of the extra point before the end of a branch from this end.
+"""Distance between the end of a branch and the extra point before it.
 
-It is a fraction of the part of the step before the end.
+It is divided by the distance between the start of the step and the end of the branch.
 """
 
 

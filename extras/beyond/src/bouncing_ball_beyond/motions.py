@@ -105,7 +105,7 @@ TRANSIENT = "it looks chaotic, but a neighbour comes to rest or repeats: it may 
 
 
 def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
-    """Derivatives of the next impact (τ, u) with respect to the present one.
+    """Derivatives of the next impact (τ, u) with respect to the present impact (τ, u).
 
     Returns an array of the shape (2, 2, impacts, balls). It is zero at a lift-off, where the next
     impact does not depend on the present impact.
@@ -269,7 +269,7 @@ def grow_deviations(
 ) -> NDArray:
     """Propagate the deviation of each ball over the recorded impacts, and update ``track``.
 
-    Returns the maximum climb between the last two lift-offs, shape (balls,).
+    Returns the maximum climb (see `_follow_to_end`) between the last two lift-offs, shape (balls,).
     """
     # A lift-off erases the deviation. Restart it in an arbitrary direction.
     smooth = np.where(lifts | ~np.isfinite(maps).all(axis=(0, 1)), RESTART, maps)
@@ -496,11 +496,11 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
 def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, float, float]:
     """Estimate a growth rate from the sections of a motion.
 
-    Nearly elastic balls change their energy slowly. The first quarter of the sections and the first
-    `SETTLING_LENGTHS` relaxation lengths are therefore ignored, whichever is longer. Neighbouring
-    sections are correlated, so the error is the maximum over blocks of 1, 2, 4, ... sections
-    (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). It is multiplied by the ratio of the
-    quantiles of Student's t and normal distributions.
+    Nearly elastic balls change their energy slowly. The start of the motion is therefore ignored:
+    the first quarter of the sections, or the first `SETTLING_LENGTHS` relaxation lengths if these
+    are longer. Neighbouring sections are correlated, so the error is the maximum over blocks of 1,
+    2, 4, ... sections (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). It is multiplied by
+    the ratio of the quantiles of Student's t and normal distributions.
 
     Parameters
     ----------
@@ -663,19 +663,19 @@ def lyapunov(
     ball, amplitude, phase, velocity, relative_velocity, impacts, table
         As in :func:`motion_of`.
     neighbours : int
-        Number of neighbours that test each motion that looks chaotic. They start next to its last
-        state, and each is followed for up to ``impacts`` impacts. If a neighbour comes to rest on
-        the table or repeats its motion, the chaos may be a transient: the kind is then "undecided",
-        and the exponent is NaN. With 0 neighbours, transients are not detected, and a contact law
-        takes a third of the time.
+        Number of neighbours of each motion that looks chaotic. They start next to its last state,
+        and each is followed for up to ``impacts`` impacts. If a neighbour comes to rest on the
+        table or repeats its motion, the chaos may be a transient. The kind is then "undecided", and
+        the exponent is NaN. With 0 neighbours, transients are not detected, and a contact law takes
+        a third of the time.
 
     Returns
     -------
     xarray.Dataset
-        Variables as of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m, where μ is
-        the multiplier of the larger modulus. It is -∞ if the later motion does not depend on
-        earlier impacts. The error is NaN if a ball was followed for too few relaxation lengths; one
-        such length is about 1/(1 - r²) impacts.
+        Variables of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m, where μ is the
+        multiplier with the larger modulus. It is -∞ if the later motion does not depend on earlier
+        impacts. The error is NaN if a ball was followed for too few relaxation lengths; one such
+        length is about 1/(1 - r²) impacts.
 
     Warnings
     --------
@@ -716,10 +716,10 @@ def lyapunov(
 def fastest(ball: Ball, amplitude: Values, table: Table = SINE) -> Values:
     """Return a speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r).
 
-    V is the maximum speed of the table: Λ for a sine. An impact at the absolute speed v results in
-    a speed of at most r v + (1 + r) V, which is less than v above this speed. r is the restitution
-    coefficient of a free impact at the speed 2π, or 0 if that impact never ends. A divisor 1 - r
-    below 0.05 is replaced by 0.05.
+    V is the maximum speed of the table: Λ for a sine. After an impact at the absolute speed v, the
+    speed is at most r v + (1 + r) V. This is less than v if v is above the returned speed. r is the
+    restitution coefficient of a free impact at the speed 2π, or 0 if that impact never ends. A
+    divisor 1 - r below 0.05 is replaced by 0.05.
 
     Examples
     --------
@@ -740,7 +740,7 @@ def basins(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motions on which balls end that start from a grid of first impacts.
+    """Start balls from a grid of first impacts, and find the motions on which they end.
 
     Parameters
     ----------
@@ -774,9 +774,8 @@ def basins(
           error.
         - ``end_phase``, ``end_velocity``: fastest impact of the motion.
 
-        Motions that repeat are distinguished by their impacts, even if they have equal numbers of
-        impacts and periods. Motions of unknown period cannot be distinguished: all those of one
-        kind count as one motion, and its fastest impact is NaN. The attribute ``impacts`` is the
+        Two motions that repeat count as one only if their impacts agree. Motions of unknown period
+        count as one motion per kind, whose fastest impact is NaN. The attribute ``impacts`` is the
         argument of the same name.
 
     Raises
@@ -882,8 +881,8 @@ def orbit_diagram(
         Λ. Either Λ or one parameter of the ball must be an array.
     starts : int
         Number of balls at each value, spread evenly over phases and speeds. An equal number starts
-        from the final states at the next larger value, and another from those at the next smaller
-        value. Motions are thus followed in both directions.
+        from the final states at the next larger value, and a third set from the final states at the
+        next smaller value. Motions are thus followed in both directions.
     samples : int
         Number of recorded impacts of each motion.
     impacts, table

@@ -110,8 +110,8 @@ def closed_motion(
 ) -> Motion:
     """Return the state of a contact at the time s after its start, in closed form (Eqs. 12, 13).
 
-    The contact starts with δ = gap and δ′ = -u. ``waves`` is the phase of the table at the start
-    (:meth:`.Table.waves`). If ``loads`` is false, the lists of pushes and shoves stay empty.
+    The contact starts with δ = gap and δ′ = -u. ``waves`` represents the motion of the table from
+    the start (:meth:`.Table.waves`). If ``loads`` is false, the pushes and shoves stay empty.
     """
     g, slope, lost = free_responses(s, ratio, zeta)
     loss = 2 * zeta * ratio
@@ -215,9 +215,9 @@ def doubled_motion(
 
 
 def _series(derivatives: Values, *integrals: int) -> list:
-    """Return n-fold integrals of a function, divided by the nth power of the time, for several n.
+    """Return n-fold integrals of a function, divided by timeⁿ, for several n.
 
-    ``derivatives`` are derivatives j at 0, times the time to the power j, shape (TERMS, ...).
+    ``derivatives`` contains its derivatives of the orders j at 0, times timeʲ, shape (TERMS, ...).
     """
     flat = derivatives.reshape(TERMS, -1)
     return [(FACTORS[n] @ flat).reshape(derivatives.shape[1:]) for n in integrals]
@@ -275,8 +275,8 @@ def forcing(
     3. The contribution of the table to J: the largest third derivative of this response.
     4. The largest growth of the energy e of F: 0 away from resonances.
 
-    Near a resonance the steady response is not split off. The first bound is then 0, and the second
-    and the third follow from the forces.
+    Near a resonance F includes the steady response. The first bound is then 0, and the second and
+    the third bound follow from the forces.
     """
     loss = 2 * zeta * ratio
     held = bend = jerk = pushed = jerked = 0.0
@@ -307,9 +307,9 @@ def bounds(
     """Return f, f′, δ″, δ‴, K, J and whether the contact is permanent.
 
     f = -δ - κδ′ is the release function; K and J are bounds of its derivatives (:mod:`.one_ball`).
-    They follow from an energy that never grows (docs/impacts.md). ``motion`` is a :class:`Motion`,
-    and ``forced`` is the result of :func:`forcing`. ``resonant`` is 1 near a resonance and 0
-    elsewhere.
+    These bounds follow from an energy that never grows (docs/impacts.md). ``motion`` is a
+    :class:`Motion`, and ``forced`` is the result of :func:`forcing`. ``resonant`` is 1 near a
+    resonance, and otherwise 0.
     """
     position, rate, pushes, shoves = motion
     held, bend_forced, jerk_forced, gained = forced

@@ -99,7 +99,7 @@ def usual_range(path: Path, value: float, least: float, greatest: float) -> tupl
     """Return the default range of a parameter, cut off at its limits ``least`` and ``greatest``.
 
     A phase covers one turn: value ± π. For other parameters the upper end is the larger of 10 and
-    10 |value|. The lower end is value/10 if value > 0, or otherwise minus the upper end.
+    10 |value|. The lower end is value/10 if value > 0. Otherwise it is minus the upper end.
     """
     if path.name.startswith("phase_"):
         return value - np.pi, value + np.pi

@@ -1,4 +1,7 @@
-"""Find periodic orbits of a ball at one amplitude: the n-T orbit, all orbits, or near a guess."""
+"""Find periodic orbits of a ball at one amplitude.
+
+These are the n-T orbit, all orbits with k impacts in m periods, or the orbit near a guess.
+"""
 
 from typing import Any
 

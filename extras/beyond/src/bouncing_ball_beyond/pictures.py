@@ -152,7 +152,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 
 
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
-    """For each orbit, return the index of the next ordinary orbit, or of the last one.
+    """For each orbit, return the index of the next ordinary orbit, or of the last ordinary orbit.
 
     Orbits at the ends of the branch are left out, because they may be special. An end is ordinary
     if its only neighbour is special and its multipliers are away from the unit circle.

@@ -40,7 +40,7 @@ MOST = 2000
 """Maximum number of impacts between a lift-off and the next rest."""
 
 CYCLES = 20
-"""Maximum number of rests before the ball leaves at the same phase as after the rest before."""
+"""Maximum number of rests that are followed until two successive lift-offs have the same phase."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class RestEquations(OrbitEquations):
     def linearized(self, z: NDArray) -> LinearizedLegs:
         """Evaluate the equations, shape (rows, N - p, 1), their derivatives and times of flight.
 
-        Flights to the last slow bounces count as long (`FAR`).
+        The times of flight to the last slow bounces are replaced by `FAR`.
         """
         y = z + 1j * H * np.eye(z.shape[1])[:, np.newaxis]
         x, _, amplitude, _ = self.split(y)
@@ -141,7 +141,7 @@ class RestEquations(OrbitEquations):
         return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
 
     def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
-        """Minimum height above the table at the turning points of flights, shape (rows,).
+        """Minimum height above the table where flights turn back from it, shape (rows,).
 
         The last slow bounces are left out.
         """
@@ -193,9 +193,9 @@ class _Lifted(Flights):
 class RestOrbit(PeriodicOrbit):
     """A periodic motion of a ball that rests on the table once in a period.
 
-    It has the attributes of a :class:`PeriodicOrbit`. Its impacts end where the bounces are summed
-    up. Times of flight are the flights *before* the impacts; the first flight starts at the
-    lift-off.
+    It has the attributes of a :class:`PeriodicOrbit`. Bounces that are summed up do not count as
+    impacts. Times of flight are those of the flights *before* the impacts; the first flight starts
+    at the lift-off.
     """
 
     equations: RestEquations

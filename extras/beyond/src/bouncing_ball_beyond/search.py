@@ -16,7 +16,7 @@ from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 AT_FOLD = 1e-6
-"""|1 - tr/(1 + det)| below which an orbit is the saddle-node and counts on both of its sides.
+"""|1 - tr/(1 + det)| below which an orbit counts as the saddle-node, on both of its sides.
 
 1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
 cause a value of 3e-7.
@@ -62,7 +62,7 @@ def guess_of_instants(
     at: Any = np.inf
     with np.errstate(all="ignore"):
         for _ in range(30):
-            # The signature of a speed within 5 % is exact enough for a guess.
+            # A signature computed at a speed within 5 % of u is exact enough for a guess.
             if np.any(np.abs(u - at) > 0.05 * u):
                 at = u
                 r, _, centroid, loss = ball.signature(u)

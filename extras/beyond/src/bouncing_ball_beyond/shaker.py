@@ -104,7 +104,7 @@ class ShakerAnswer:
 
     @property
     def error(self) -> float:
-        """Relative error of the height: height on the contact/height by restitution - 1."""
+        """Relative error: height on the contact divided by height of the restitution model, - 1."""
         return self.max_height.exact / self.max_height.by_restitution - 1
 
     @property
@@ -251,8 +251,8 @@ def on_shaker(
         Give exactly one of them.
 
         - Duration of the contact in s, or stiffness in N/m: the contact is a spring and a damper.
-        - Young's modulus of the ball in Pa: the contact is that of Hertz, with the damping of
-          Tsuji, whose r is the same at every speed. The radius is then required.
+        - Young's modulus of the ball in Pa: the contact is a Hertz contact with the damping of
+          Tsuji. Its r is the same at every speed, and the radius is required.
     poissons_ratio, table_youngs_modulus, table_poissons_ratio : float
         Poisson's ratio of the ball, Young's modulus of the table in Pa, and Poisson's ratio of the
         table, for a contact of Hertz. If the table has no modulus, it is rigid.

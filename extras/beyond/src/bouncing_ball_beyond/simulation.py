@@ -73,7 +73,7 @@ def first_impacts(
     check_table(table)
     absolute = relative_velocity is None
     if not absolute and velocity is not None:
-        raise ValueError("velocity, relative_velocity: at most one of them may be given")
+        raise ValueError("velocity, relative_velocity: give at most one of them")
     velocity = -np.pi if velocity is None else velocity
     name = "velocity" if absolute else "relative_velocity"
     given = {name: velocity if absolute else relative_velocity}
@@ -81,8 +81,8 @@ def first_impacts(
     speed = amplitude * table(phase, 1) * absolute - value
     if (speed < 0).any():
         raise ValueError(
-            f"{name} = {value[np.argmin(speed)]:g}: the ball rises from the table, by a relative"
-            f" velocity of {-speed.min():g}"
+            f"{name} = {value[np.argmin(speed)]:g}: the ball rises from the table at a relative"
+            f" velocity of {-speed.min():g}, but must approach it"
         )
     return grid, Balls(ball, amplitude, *reduced(phase), speed, table)
 

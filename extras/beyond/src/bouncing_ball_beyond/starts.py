@@ -15,8 +15,8 @@ from bouncing_ball_beyond.search import single
 NEAREST = 1e-9
 """Relative distance of the parameter from a period doubling below which rounding hides the branch.
 
-The distance of the parameter is proportional to ξ², where ξ is the distance of the doubled orbits.
-Their rounding errors are eps/ξ².
+The distance of the parameter is proportional to ξ², where ξ is the distance of the doubled orbits
+from the period doubling. Rounding errors of the doubled orbits are eps/ξ².
 """
 
 

@@ -38,7 +38,7 @@ Values = Any
 REAL = np.dtype(float)
 
 CYCLE = (np.sin, np.cos)
-"""sin and its derivatives, which repeat with the opposite sign."""
+"""sin and its first derivative. The next two derivatives have the opposite sign."""
 
 
 def swing(x: Values) -> tuple[Values, Values]:
@@ -245,8 +245,8 @@ class Table:
         Raises
         ------
         ValueError
-            If the record is too short for the harmonics, or if more than half of the variance of
-            the acceleration is not fitted.
+            If an argument is out of range, if the record is too short for the harmonics, or if more
+            than half of the variance of the acceleration is not fitted.
 
         Examples
         --------
@@ -512,7 +512,7 @@ class Table:
         return np.where(nearer, found, start)
 
     def phase_of_angle(self, angle: Values) -> Values:
-        """Find the phase after the steepest phase at which (W′, -W″) has an angle, at most π/2."""
+        """Find the phase after the steepest phase at which (W′, -W″) has a given angle ≤ π/2."""
         phase, turned = self._turns
         x, y = np.cos(angle), np.sin(angle)
 

@@ -134,7 +134,7 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
 
 
 def are_rests(T: NDArray, duration: NDArray) -> NDArray:
-    """Whether impacts are rests on the table: they last, but T of an instant is 0."""
+    """Whether impacts are rests on the table: T is 0, as for instants, but D is positive."""
     return (T == 0) & (duration > 0)
 
 
@@ -401,7 +401,7 @@ def _store_periodic(
     """
     (some,) = again["repeats"].nonzero()
     again = _take(again, some)
-    # T of a free impact is NaN, and the comparison false, if a ball never leaves it.
+    # If a free impact never ends, its T is NaN, and the comparison is false.
     free = after.ball.rows(some).free(np.abs(record[:, 2, some]))
     sticks = record[:, 3, some] > 2 * free
     of_lap = np.arange(len(record))[:, np.newaxis] >= len(record) - again["impacts"]
@@ -962,10 +962,9 @@ def orbit_of_motion(
     Raises
     ------
     OrbitNotFound
-        If the motion does not repeat, if the ball rests several times before it repeats, or if the
-        ball is a :class:`.Corrected` that rests on the table.
+        If the motion does not repeat, or if the ball rests several times before it repeats.
     ValueError
-        As :func:`.simulate`.
+        As :func:`.simulate`, or if the ball is a :class:`.Corrected` that rests on the table.
 
     Examples
     --------

@@ -238,7 +238,7 @@ def orbit_with_rest(
     Parameters
     ----------
     ball : Ball
-        A single ball with instantaneous impacts, such as ``Rigid(0.3)``.
+        A single ball with instantaneous impacts at the level of the table, such as ``Rigid(0.3)``.
     amplitude : float
         Λ > 0.
     impacts : int, optional
@@ -257,7 +257,8 @@ def orbit_with_rest(
         If the ball never leaves the table, does not come to rest again, or rests several times
         before its motion repeats.
     ValueError
-        If the impacts have a duration, or if an argument is out of range.
+        If the impacts have a duration or are below the table (:class:`.Corrected`), or if an
+        argument is out of range.
 
     Examples
     --------

@@ -38,7 +38,7 @@ def test_derivatives_differences_and_bounds(name):
         np.testing.assert_allclose(table(tau, order + 1), by_step, atol=1e-13)
         assert np.abs(table(tau, order)).max() <= table.bounds[order]
     for time in (1e-9, 1e-3, 2.0):
-        height, rate = table.rise(tau, time)
+        height, rate = table.displacement(tau, time)
         # Short differences are those of the Taylor series.
         expected = time * table(tau, 1) + time**2 / 2 * table(tau, 2)
         if time < 1:
@@ -236,7 +236,7 @@ def test_no_touch_is_missed():
         good = np.isfinite(flight) & (w > 1e-3)
         start, flight, w = (each[good, np.newaxis] for each in (start, flight, w))
         t = flight * np.linspace(1e-3, 1 - 1e-3, 400)
-        height, _ = table.rise(start, t)
+        height, _ = table.displacement(start, t)
         gap = (w + 3.0 * table(start, 1) - t / 2) * t - 3.0 * height
         assert len(gap) > 100
         assert gap.min() > -1e-12

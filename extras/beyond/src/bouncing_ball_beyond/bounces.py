@@ -154,7 +154,7 @@ def emergences(
 def resumptions(
     table: Table, kappa: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> tuple:
-    """Times as in :func:`.one_ball.rise`, for arrays, and whether contacts resume at them."""
+    """Times as in :func:`.one_ball.resumption`, for arrays, and whether contacts resume at them."""
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, kappa: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state

@@ -564,7 +564,7 @@ def flight(
 
     The release is at the time `leaves` with δ = gap and δ′ = speed.
     """
-    height, gained = table.rise(leaves, s)
+    height, gained = table.displacement(leaves, s)
     bounce = speed + amplitude * table(leaves, 1)
     return gap + (bounce - s / 2) * s - amplitude * height, speed - s - amplitude * gained
 

@@ -962,9 +962,10 @@ def orbit_of_motion(
     Raises
     ------
     OrbitNotFound
-        If the motion does not repeat, or if the ball rests several times before it repeats.
+        If the motion does not repeat, if the ball rests several times before it repeats, or if a
+        :class:`.Corrected` rests on the table.
     ValueError
-        As :func:`.simulate`, or if the ball is a :class:`.Corrected` that rests on the table.
+        As :func:`.simulate`.
 
     Examples
     --------

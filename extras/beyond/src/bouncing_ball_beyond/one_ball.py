@@ -100,7 +100,7 @@ def flight(t: float, gap: float, w: float, x: float, y: float) -> tuple:
     return position, rate, (y - 1) + (x * sine - y * versine)
 
 
-def rise(
+def resumption(
     gap: float, w: float, x: float, y: float, amplitude: float, kappa: float
 ) -> tuple[bool, float]:
     """Follow a ball that was released below the level of the table until it rises above the level.
@@ -309,7 +309,7 @@ def fly(gap: float, w: float, x: float, y: float, amplitude: float, kappa: float
     """
     if gap == 0:
         return landing(earliest(w, x, y, amplitude), gap, w, x, y, amplitude)
-    resumes, start = rise(gap, w, x, y, amplitude, kappa)
+    resumes, start = resumption(gap, w, x, y, amplitude, kappa)
     if resumes:
         return start, -flight(start, gap, w, x, y)[1]
     return landing(start, gap, w, x, y, amplitude)
@@ -373,7 +373,7 @@ LOOPS = (
     root_of_parabola,
     safe_step,
     flight,
-    rise,
+    resumption,
     earliest,
     landing,
     contact,

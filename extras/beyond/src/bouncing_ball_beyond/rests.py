@@ -254,11 +254,11 @@ def orbit_with_rest(
     Raises
     ------
     OrbitNotFound
-        If the ball never leaves the table, does not come to rest again, or rests several times
-        before its motion repeats.
+        If the impacts have a duration or are below the table (:class:`.Corrected`), or if the ball
+        never leaves the table, does not come to rest again, or rests several times before its
+        motion repeats.
     ValueError
-        If the impacts have a duration or are below the table (:class:`.Corrected`), or if an
-        argument is out of range.
+        If an argument is out of range.
 
     Examples
     --------
@@ -271,7 +271,7 @@ def orbit_with_rest(
     check_table(table)
     amplitude = one_amplitude(amplitude)
     if ball.has_duration or ball.below_table:
-        raise ValueError(
+        raise OrbitNotFound(
             f"ball = {ball!r}: must have impacts at the level of the table, such as Rigid(0.3)"
         )
     impacts = None if impacts is None else whole_number("impacts", impacts)

@@ -463,8 +463,8 @@ class LinearizedPanel(NamedTuple):
             rate = self.integrated(push)
             earlier = change
             change = np.abs(rate - before).max(0)
-            left = change * np.fmin(change / earlier, 1.0)
-            if not np.any(left > CONVERGED * np.abs(rate).max(0)):
+            to_come = change * np.fmin(change / earlier, 1.0)
+            if not np.any(to_come > CONVERGED * np.abs(rate).max(0)):
                 return push
         return self.solved(known)
 
@@ -569,8 +569,8 @@ def solve_panel(
             near = np.abs(moved) <= within
         # The ratio of successive changes of v falls from sweep to sweep, and Newton's method
         # squares it. This gives a bound of the next change.
-        left = change * np.fmin(change / earlier, 1.0) ** (2 if newton else 1)
-        done = near & (left <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)
+        to_come = change * np.fmin(change / earlier, 1.0) ** (2 if newton else 1)
+        done = near & (to_come <= CONVERGED * np.abs(v).max(0)) | ~np.isfinite(change)
         if guess and sweep:
             done |= change > earlier
         if np.all(done):
@@ -584,7 +584,7 @@ def solve_panel(
     end = _end_of(start, h, (v, push, lever), weights)
     if event:
         end = tuple(y + moved * rate for y, rate in zip(end, rates(motion, end), strict=True))
-    return Panel((q, v, t), end, push, h + moved, early, np.where(near, left, np.inf))
+    return Panel((q, v, t), end, push, h + moved, early, np.where(near, to_come, np.inf))
 
 
 def carried(
@@ -850,9 +850,9 @@ class _Contacts:
         length = self.length[here]
         last = np.zeros(here.size, bool)
         if self.until is not None:
-            left = self.until[here] - s
-            pieces = np.fmax(np.ceil(left / length - 1e-9), 1)
-            length = left / pieces
+            remaining = self.until[here] - s
+            pieces = np.fmax(np.ceil(remaining / length - 1e-9), 1)
+            length = remaining / pieces
             last = pieces == 1
         side = self.side[:, here]
         newton = by_newton(motion, here.size, lies)
@@ -920,8 +920,9 @@ class _Contacts:
         larger = np.maximum(ratio, self.ratio[turned])
         to_come = moved * larger / (1 - larger)
         stays = (larger < 1) & (SAFE * to_come < least)
-        left = self.longest[turned] * self.period[turned] - self.motion.given["turn"][turned]
-        self.lost[turned] = stays | (left < 0.5 * self.period[turned])
+        longest = self.longest[turned] * self.period[turned]
+        remaining = longest - self.motion.given["turn"][turned]
+        self.lost[turned] = stays | (remaining < 0.5 * self.period[turned])
         self.before[:, turned] = now
         self.least[turned] = np.inf
         self.moved[turned] = moved
@@ -957,7 +958,7 @@ def integrate_to(
     A contact that resembles a free impact takes one panel. Other arguments and results are those of
     :func:`integrate_contacts`.
     """
-    left = np.arange(until.size)
+    todo = np.arange(until.size)
     ends = np.empty((4, until.size))
     slopes = np.zeros((4, *by.shape[1:]))
     if guess:
@@ -965,14 +966,14 @@ def integrate_to(
         panel, good = whole_panel(whole, start, until, guess)
         ends = np.array([until, *panel.end])
         at = np.flatnonzero(good)
-        left = np.flatnonzero(~good)
+        todo = np.flatnonzero(~good)
         if by.shape[1] and at.size:
             begin = np.array([*by, 0 * by[0]])[..., at]
             given = whole.of(at), panel.of(at).nodes, begin, until[at]
             slopes[1:, :, at] = carried(*given, guess=guess.of(at))
-    if left.size:
-        some = motion.of(left), start[:, left], by[..., left], length[left], period[left]
-        ends[:, left], slopes[..., left] = integrate_contacts(*some, until=until[left])
+    if todo.size:
+        some = motion.of(todo), start[:, todo], by[..., todo], length[todo], period[todo]
+        ends[:, todo], slopes[..., todo] = integrate_contacts(*some, until=until[todo])
     return ends, slopes + _pace(motion, ends[1:]) * (by_until - slopes[0])
 
 

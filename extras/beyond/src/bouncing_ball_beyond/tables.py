@@ -289,11 +289,11 @@ class Table:
         cosines, sines = np.split(fitted[1:] / gravity, 2)
         if np.ptp(acceleration) <= 1e-12 * np.abs(acceleration).max():
             raise ValueError("acceleration: is constant: the table would be at rest")
-        left = np.var(acceleration - columns @ fitted) / np.var(acceleration)
-        if left > 0.5:
+        unexplained = np.var(acceleration - columns @ fitted) / np.var(acceleration)
+        if unexplained > 0.5:
             raise ValueError(
-                f"frequency, harmonics: {left:.0%} of the variance of the acceleration is not"
-                " fitted: is the frequency right, and are all harmonics given?"
+                f"frequency, harmonics: {unexplained:.0%} of the variance of the acceleration is"
+                " not fitted: is the frequency right, and are all harmonics given?"
             )
         return cls._of_accelerations(k, cosines - 1j * sines)
 
@@ -352,7 +352,7 @@ class Table:
         function = CYCLE[order % 2]
         return sum(sign * k**order * a * function(k * tau + p) for k, a, p in self.harmonics)
 
-    def rise(self, start: Values, time: Values) -> tuple:
+    def displacement(self, start: Values, time: Values) -> tuple:
         """Return W(start + time) - W(start) and the same difference of W′, without cancellation."""
         height = rate = 0.0
         for k, a, p in self.harmonics:
@@ -610,7 +610,7 @@ class Sine(Table):
         value = CYCLE[order % 2](tau)
         return -value if order % 4 > 1 else value
 
-    def rise(self, start: Values, time: Values) -> tuple:
+    def displacement(self, start: Values, time: Values) -> tuple:
         half = time / 2
         middle = start + half
         part = 2 * np.sin(half)

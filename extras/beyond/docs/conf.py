@@ -67,6 +67,7 @@ PARTS = {
         "extras/beyond/phase",
         "extras/beyond/figures/*",
         "extras/beyond/docs/first-hour",
+        "extras/beyond/docs/answers",
         "extras/beyond/docs/orbits",
         "extras/beyond/docs/laws",
         "extras/beyond/docs/thesis",

@@ -322,6 +322,13 @@ class TestClosedForms:
         r = law.signature(1.0).restitution
         assert abs(factor * (1 + r) - np.log((1 + factor) / (1 - r * factor))) < CLOSE
 
+    def test_fast_impacts_with_strong_damping_end(self):
+        """A ball leaves such a contact with nearly the constant speed 1/C, without a force."""
+        u, damping = np.geomspace(10.0, 2000.0, 60), 0.5
+        w = hunt_crossley(1e3, damping).first_impact(0.0, u, 0.0, 0.0)[1].speed
+        energy = np.log1p(damping * u) - damping * (u + w)
+        np.testing.assert_allclose(1 - damping * w, np.exp(energy), rtol=0, atol=CLOSE)
+
     def test_same_restitution_at_all_speeds(self):
         for law in (flores(2000.0, 0.5), limited_damper(20.0, 0.2), linear(20.0, 0.2)):
             r = law.computed_signature(np.array([1e-3, 1.0, 50.0])).restitution

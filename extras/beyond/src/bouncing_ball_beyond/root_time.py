@@ -912,6 +912,8 @@ class _Contacts:
         """
         q, v, t = self.now[1:, turned]
         stiffness = -rates(self.motion.of(turned), (q + 1j * H, v, t))[1].imag / H
+        # A ball without a restoring force does not stay: then moved is infinite.
+        stiffness = np.where(stiffness > 0, stiffness, 0.0)
         least = self.least[turned]
         now = np.array([q, v, least])
         change = np.abs(now - self.before[:, turned])

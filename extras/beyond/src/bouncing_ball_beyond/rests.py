@@ -6,11 +6,12 @@ do not contain the return to rest. The length of the rest is a test function (do
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, H, check_ball, whole_number
+from bouncing_ball_beyond.balls import Ball, H, check_ball
 from bouncing_ball_beyond.bounces import Balls, bounce, reduced
 from bouncing_ball_beyond.chains import solved_or_nan
 from bouncing_ball_beyond.equations import (
@@ -25,10 +26,17 @@ from bouncing_ball_beyond.equations import (
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.periodic import one_amplitude
+from bouncing_ball_beyond.search import single
 from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 SLOW_BOUNCE = 1e-2
-"""Speed below which the last bounces are left out of the tests for grazing flights and impacts."""
+"""Speed of the last impact of an orbit.
+
+Slower bounces are simulated, and are left out of the tests for grazing flights and impacts.
+"""
+
+BOUNCES_AT_ONCE = 32
+"""Number of bounces that are simulated before it is checked whether the ball is at rest."""
 
 SOON = 1e-6
 """Time after a lift-off before which zeros of δ′ are ignored, because δ grows as slowly as t³.
@@ -48,7 +56,7 @@ class RestEquations(OrbitEquations):
     """Equations of orbits with a rest.
 
     An orbit is a row z = (τ₁, u₁, …, τ_k, u_k, τ₀, parameters), where τ₀ is the time of the
-    lift-off. The bounces after the last of the k impacts are summed up. Methods are those of
+    lift-off. The bounces after the last of the k impacts are simulated. Methods are those of
     :class:`OrbitEquations`.
     """
 
@@ -97,7 +105,8 @@ class RestEquations(OrbitEquations):
         leaves, gap, speed, time, _, table = self.ends(y)
         gap, rate = flight(time, leaves, gap, speed, amplitude, table)
         lifts = 1 + amplitude * table(leaves[..., :1], 2)
-        values = np.concatenate([lifts, gap, rate + x[..., 1]], axis=-1)
+        # A flight of no length ends on the table, too. The quotient excludes it.
+        values = np.concatenate([lifts, gap / time, rate + x[..., 1]], axis=-1)
         derivatives = np.moveaxis(values.imag, 0, -1) / H
         lasting = np.where(self._tail(speed[0].real), FAR, time[0].real)
         return _Superstable(values[0].real[..., np.newaxis], derivatives, lasting)
@@ -117,18 +126,9 @@ class RestEquations(OrbitEquations):
         return linear.legs[..., 0], linear.derivatives
 
     def rest(self, z: NDArray) -> NDArray:
-        """Duration of the rest, shape (rows,).
-
-        The time of the last bounces is the sum of :func:`.one_ball.settling`.
-        """
-        x, ball, amplitude, table = self.split(z)
-        tau, u = (x[..., -1:, i] for i in (0, 1))
-        w = ball.contact(tau, u, None, amplitude, table=table).speed
-        gravity = 1 + amplitude * table(tau, 2)
-        whole = 2 * w / (gravity * (1 - w / u))
-        bounces = whole * (1 - amplitude * table(tau, 3) * whole / (3 * gravity))
-        period = 2 * np.pi * np.asarray(self.periods)
-        return z[:, self.size - 1] + period - (tau + bounces)[..., 0]
+        """Durations of the rests, shape (rows,); see :attr:`RestOrbit.rest`."""
+        equations: list[Any] = [single(self, i) for i in range(len(z))]
+        return np.array([each.orbit(row).rest for each, row in zip(equations, z, strict=True)])
 
     def fall(self, z: NDArray) -> NDArray:
         """Rate -w‴ at which the table falls away at the lift-off, shape (rows,)."""
@@ -193,7 +193,7 @@ class _Lifted(Flights):
 class RestOrbit(PeriodicOrbit):
     """A periodic motion of a ball that rests on the table once in a period.
 
-    It has the attributes of a :class:`PeriodicOrbit`. Bounces that are summed up do not count as
+    It has the attributes of a :class:`PeriodicOrbit`. Bounces that are simulated do not count as
     impacts. Times of flight are those of the flights *before* the impacts; the first flight starts
     at the lift-off.
     """
@@ -209,10 +209,38 @@ class RestOrbit(PeriodicOrbit):
         """Phase of the table at which the ball leaves it, in (-π, π]."""
         return float(np.pi - (np.pi - self.z[self.equations.size - 1]) % (2 * np.pi))
 
-    @property
+    @cached_property
     def rest(self) -> float:
-        """Duration of the rest on the table."""
-        return float(self.equations.rest(self.z[np.newaxis])[0])
+        """Duration of the rest on the table.
+
+        The bounces after the last impact are simulated, and summed up by
+        :func:`.one_ball.settling`. If the ball does not come to rest, the duration is negative:
+        minus the time between its last impact and the lift-off.
+        """
+        lift_off = self.z[self.equations.size - 1] + PERIOD * self.periods
+        last = float(self.times[-1])
+        turns, phase = reduced(self.times[-1:])
+        amplitude = np.array([self.amplitude])
+        one = Balls(self.ball, amplitude, turns, phase, self.speeds[-1:], self.table)
+        if self.speeds[-1] <= 0:
+            one = one.take([])
+        while one.phase.size and PERIOD * one.turns[0] + one.phase[0] < lift_off:
+            record, _, one = bounce(one, BOUNCES_AT_ONCE)
+            for turns, phase, u, _, duration, *_ in record[:, :, 0]:
+                tau = PERIOD * turns + phase
+                if not tau < lift_off:
+                    break
+                last = tau
+                if duration > 0:
+                    return float(lift_off - tau - self._bounces(tau, u))
+        return -abs(float(lift_off) - last)
+
+    def _bounces(self, tau: float, u: float) -> float:
+        """Total time of the bounces after an impact at τ with the closing speed u."""
+        w = float(self.ball.contact(tau, u, None, self.amplitude, table=self.table).speed)
+        gravity = 1 + self.amplitude * float(self.table(tau, 2))
+        whole = 2 * w / (gravity * (1 - w / u))
+        return whole * (1 - self.amplitude * float(self.table(tau, 3)) * whole / (3 * gravity))
 
     @cached_property
     def _release(self) -> tuple[NDArray, NDArray]:
@@ -230,9 +258,7 @@ class RestOrbit(PeriodicOrbit):
         return np.zeros(2, complex)
 
 
-def orbit_with_rest(
-    ball: Ball, *, amplitude: float, impacts: int | None = None, table: Table = SINE
-) -> RestOrbit:
+def orbit_with_rest(ball: Ball, *, amplitude: float, table: Table = SINE) -> RestOrbit:
     """Find the periodic motion, with one rest, of a ball with instantaneous impacts.
 
     Parameters
@@ -241,9 +267,6 @@ def orbit_with_rest(
         A single ball with instantaneous impacts at the level of the table, such as ``Rigid(0.3)``.
     amplitude : float
         Λ > 0.
-    impacts : int, optional
-        Number of impacts after which the bounces are summed up. The default is the number in the
-        simulation, with an error of 1e-15.
     table : Table
         Waveform of the table, by default a sine.
 
@@ -274,7 +297,6 @@ def orbit_with_rest(
         raise OrbitNotFound(
             f"ball = {ball!r}: must have impacts at the level of the table, such as Rigid(0.3)"
         )
-    impacts = None if impacts is None else whole_number("impacts", impacts)
     starts = table.lift_offs(amplitude)
     if np.isnan(starts[0]):
         raise OrbitNotFound(
@@ -305,15 +327,10 @@ def orbit_with_rest(
             f"the lift-offs of {CYCLES} successive rests differ: the motion does not repeat, or has"
             " several rests; only motions with one rest are found"
         )
-    hops = list(zip(times[: at + 1], u[: at + 1], strict=True))
-    # Guesses of bounces that the simulation sums up. Newton's method corrects them.
-    while impacts is not None and len(hops) < impacts:
-        tau, fast = hops[-1]
-        slow = float(ball.contact(tau, fast, None, amplitude, table=table).speed)
-        hops.append((tau + 2 * slow / (1 + amplitude * float(table(tau, 2))), slow))
-    hops = hops[:impacts]
-    equations = RestEquations(ball, len(hops), round(length / PERIOD), table=table)
-    columns = np.array(hops).ravel()
+    # Newton's method confuses slower bounces with each other. They are no unknowns.
+    k = 1 + int(np.argmax(u[: at + 1] < SLOW_BOUNCE))
+    equations = RestEquations(ball, k, round(length / PERIOD), table=table)
+    columns = np.stack([times[:k], u[:k]], axis=-1).ravel()
     z = np.concatenate([columns, [start, amplitude]])
     solution = newton(equations, z[np.newaxis], iterations=40)
     if not solution.found[0]:

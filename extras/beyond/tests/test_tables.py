@@ -483,3 +483,19 @@ def test_an_orbit_says_of_a_table_what_is_not_said_by_its_amplitude():
     assert "harmonic_1" not in shown and "phase_1" not in shown
     twice = Table([(1, 2.0, 0.0), (3, 0.1, 0.7)])
     assert "harmonic_1" in repr(bb.orbit(bb.Rigid(0.7), amplitude=0.4, table=twice))
+
+
+@pytest.mark.parametrize(
+    ("r", "harmonic", "doubling"),
+    [(0.95, (5, 0.05, -1.8), 0.6966056985), (0.98, (4, 0.12, 0.8), 0.3609427741)],
+)
+def test_limits_begin_next_to_the_steepest_phase(r, harmonic, doubling):
+    """The branch turns back at two other saddle-nodes between its first one and the doubling."""
+    table = Table([(1, 1.0, 0.0), harmonic])
+    found = bb.limits(bb.Rigid(r), table=table)
+    line = np.pi * (1 - r) / (1 + r)
+    assert found.saddle_node.amplitude == pytest.approx(line / table.slope, rel=1e-10)
+    assert found.period_doubling.amplitude == pytest.approx(doubling, abs=1e-9)
+    branch = bb.follow(found.saddle_node, to=1.0)
+    folds = [each.amplitude for each in branch.special if each.kind == "saddle-node"]
+    assert any(np.isclose(folds, line / table.next_low_slope, rtol=1e-3))

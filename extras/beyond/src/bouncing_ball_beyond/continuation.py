@@ -270,8 +270,10 @@ class Limits(NamedTuple):
 def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     """Find the saddle-node and the period doubling of the n-T orbits of a ball.
 
-    n-T orbits have one impact in n periods of the table. One of them is followed towards smaller
-    and larger Λ, around the phase at which the table rises fastest.
+    n-T orbits have one impact in n periods of the table. One of them, next to the phase at which
+    the table rises fastest, is followed towards smaller and larger Λ. On tables that rise several
+    times in a period, the branch may turn back at two other saddle-nodes before its period
+    doubling.
 
     Parameters
     ----------
@@ -341,7 +343,11 @@ def _between_limits(equations: OrbitEquations) -> list:
     around = [times * np.pi * n / table.slope for times in AROUND]
     found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
     done = np.zeros(len(n), bool)
-    ways = [(near_instants, amplitude) for amplitude in amplitudes]
+    # Where W′ has several maxima, a larger Λ may belong to orbits next to another one.
+    nearest = 2 * fold / (table.slope + max(table.next_low_slope, 0.0))
+    nearest = np.where(fold > 0, np.fmin(amplitudes[0], nearest), amplitudes[0])
+    ways = [(near_instants, nearest)]
+    ways += [(near_instants, amplitude) for amplitude in amplitudes]
     ways += [(shortest_contacts, amplitude) for amplitude in [*amplitudes, *around]]
     for search, amplitude in ways:
         todo = np.flatnonzero(~done)

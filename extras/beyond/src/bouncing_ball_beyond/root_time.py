@@ -1032,7 +1032,10 @@ def integrate_contacts(
     side = np.zeros((len(events), rows))
     side[len(motion.kinks) :] = -1.0
     now = np.array([0 * v, q, v, 0 * v])
-    known = now.sum(0) + load_of(0 * v, motion.given) + (0 if until is None else until)
+    known = now.sum(0) + load_of(0 * v, motion.given)
+    if until is not None:
+        # There is no contact before its start, where q = p^{1/m} would be negative.
+        known = known + np.where(until < 0, np.nan, until)
     contacts = _Contacts(
         motion=motion,
         events=events,

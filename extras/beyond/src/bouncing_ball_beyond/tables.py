@@ -489,6 +489,11 @@ class Table:
         return found
 
     @cached_property
+    def next_low_slope(self) -> float:
+        """W′ at its first minimum after the steepest phase."""
+        return float(self._sides[1][1][-1])
+
+    @cached_property
     def _turns(self) -> tuple:
         """Sampled phases from the steepest phase to the zero of W′, and angles of (W′, -W″)."""
         phase = self.steepest + np.linspace(0, PERIOD, 4 * len(self.grid) - 3)

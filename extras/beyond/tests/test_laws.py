@@ -547,7 +547,7 @@ class TestLastingContacts:
     def test_strong_damping(self):
         assert np.isnan(tsuji(1000.0, 2.3).free(3.0))
         assert np.isnan(linear(20.0, 1.1).signature(3.0).restitution)
-        with pytest.raises(ValueError, match="free impacts that end") as error:
+        with pytest.raises(ValueError, match="must end even without gravity") as error:
             Corrected(tsuji(1000.0, 2.3))
         one_line(error)
 

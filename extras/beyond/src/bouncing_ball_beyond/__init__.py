@@ -2,7 +2,7 @@
 
 All quantities are dimensionless. The height of the table is ΛW(τ), by default Λ sin τ. Gravity is
 1, and velocities are in units of g/Ω. A ball is an instance of a class of :mod:`.balls` or
-:mod:`.laws`. Functions such as `orbit` and `simulate` take it as their first argument.
+:mod:`.laws`. Functions such as `orbit` and `simulate` take a ball as their first argument.
 """
 
 from importlib import import_module as _import_module

@@ -1,14 +1,19 @@
-"""Balls and their impacts: restitution coefficient, spring and damper, or corrected restitution.
+"""Balls with a restitution coefficient, a spring and a damper, or a corrected restitution.
 
-The table is at ΛW(τ), and δ is the gap between ball and table. Times are in units of 1/Ω and
-lengths in units of g/Ω². An impact starts at the time τ with the closing speed u = -δ′. After the
-duration D the ball leaves at the gap δ with the relative speed w = δ′.
+Times are in units of 1/Ω and lengths in units of g/Ω². These terms are used:
 
-T is the duration in a time scale of the ball: ϖD for a spring and a damper, the root time of
-:mod:`.root_time` for a force law.
+- *Gap* δ: height of the ball above the table, which is at ΛW(τ).
+- *Impact*: starts at the time τ with the closing speed u = -δ′, and has the duration D. At its end
+  the ball leaves at the gap δ with the relative speed w = δ′.
+- *Contact*: impact with a duration. It ends at its *release*, which is the first zero of the release
+  function.
+- T: duration in a time scale of the ball. It is ϖD for a spring and a damper, and the root time of
+  :mod:`.root_time` for a force law.
+- *Load*: acceleration g + ΛW″ that presses the ball onto the table.
+- *Free impact*: impact without gravity on a table at rest, and therefore without a load.
 
-All functions are analytic in all arguments and parameters. Complex steps therefore give derivatives
-with all digits.
+All functions are analytic in all arguments and parameters. Derivatives by complex steps therefore
+keep all digits.
 """
 
 from collections.abc import Callable
@@ -26,14 +31,14 @@ H = 1e-30
 """Imaginary part of a complex step: the imaginary part of f(x + iH) is H f′(x)."""
 
 FEW_BALLS = 40
-"""Number of balls below which scalar loops are faster.
+"""Number of balls below which a scalar loop is faster than arrays.
 
-A step on arrays costs as much as the steps of this many balls in a loop.
+One step on arrays takes as long as one step of this many balls in a loop.
 """
 
 
 class Impact(NamedTuple):
-    """State at the end of an impact, as arrays of one shape.
+    """State at the end of an impact, as arrays of the same shape.
 
     Attributes
     ----------
@@ -44,8 +49,8 @@ class Impact(NamedTuple):
     speed : array
         δ′ at the end.
     release : array
-        Release function: negative during a contact, zero at its end. Zero for an instantaneous
-        impact.
+        Release function. It is negative during a contact and zero at the end of the contact. It is
+        zero for an instantaneous impact.
     """
 
     duration: np.ndarray
@@ -55,7 +60,7 @@ class Impact(NamedTuple):
 
 
 class Signature(NamedTuple):
-    """Quantities of a free impact: without gravity, on a table at rest.
+    """Quantities of a free impact, which takes place without gravity on a table at rest.
 
     docs/impact-as-an-instant.md explains them.
 
@@ -68,7 +73,8 @@ class Signature(NamedTuple):
     centroid : array
         Time t_c from the start of the impact to the centroid of its force.
     loss : array
-        σ, the derivative of the impulse with respect to a load, at a fixed speed at the centroid.
+        σ: derivative of the impulse with respect to a constant load. The closing speed at the
+        centroid is fixed.
     """
 
     restitution: np.ndarray
@@ -84,11 +90,11 @@ class Ball:
     """Whether contacts have a duration."""
 
     below_table: ClassVar[bool] = False
-    """Whether instantaneous impacts below the level of the table replace contacts."""
+    """Whether contacts are replaced by instantaneous impacts below the level of the table."""
 
     @property
     def ends_analytically(self) -> bool:
-        """Whether contacts are integrated, and their ends are analytic functions of τ and u."""
+        """Whether contacts need integration, and their ends are analytic functions of τ and u."""
         return False
 
     @property
@@ -101,9 +107,10 @@ class Ball:
         }
 
     def at(self, **values: Values) -> Any:
-        """Return the ball with other values of parameters: numbers or arrays, real or complex.
+        """Return the ball with other values of parameters.
 
-        The values are not checked. Raises ValueError for an unknown name.
+        The values may be numbers or arrays, real or complex. They are not checked. Raises
+        ValueError for an unknown name.
         """
         unknown = values.keys() - vars(self).keys()
         if unknown:
@@ -127,11 +134,14 @@ class Ball:
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Exponents s by name: for a given contact, the parameter is proportional to Ω^s."""
+        """Exponent s of each parameter that is proportional to Ω^s for a given contact."""
         return {}
 
     def start(self, u: Values) -> Values:
-        """Gap at the start: 0 after a flight (u > 0), κu if a contact resumes (u < 0)."""
+        """Gap at the start of an impact.
+
+        It is 0 after a flight (u > 0), and κu if a contact resumes (u < 0).
+        """
         kappa = self.kappa
         if isinstance(kappa, float) and kappa == 0:
             return np.zeros(np.shape(u))
@@ -142,15 +152,15 @@ class Ball:
         return 0.0 * np.asarray(u)
 
     def elapsed_contact(self, u: Values) -> Values:
-        """Duration of a contact before the instant that replaces it; 0 for other balls."""
+        """Time from the start of a contact to the impact that replaces it; 0 for other balls."""
         return 0.0 * u
 
     def remaining_contact(self, u: Values) -> Values:
-        """Duration of a contact after the instant that replaces it; 0 for other balls."""
+        """Time from the impact that replaces a contact to the contact's end; 0 for other balls."""
         return 0.0 * u
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """Arguments (r, ϖ, ζ) for :func:`.one_ball.impacts`; None if it cannot follow the ball."""
+        """Arguments (r, ϖ, ζ) of :func:`.one_ball.impacts`; None if loops cannot be used."""
         return None
 
     def first_release(
@@ -164,7 +174,7 @@ class Ball:
     ) -> Values:
         """T of the first release; 0 for instantaneous impacts.
 
-        It may be NaN for contacts that last longer than ``periods`` periods of the table.
+        T may be NaN for contacts that last longer than ``periods`` periods of the table.
         """
         return 0.0 * (tau + u + amplitude)
 
@@ -177,15 +187,15 @@ class Ball:
         gravity: Values = 1.0,
         table: Table = SINE,
     ) -> Impact:
-        """State at T of an impact that starts at the time τ with the closing speed u."""
+        """State of an impact at T. The impact starts at the time τ with the closing speed u."""
         raise NotImplementedError
 
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ when ``time`` has passed since the start of a contact.
+        """δ and δ′ at the given time after the start of a contact.
 
-        If impacts are instantaneous, the contact is a rest on the table, and both are zero.
+        Both are zero for instantaneous impacts, because the ball then rests on the table.
         """
         nothing = 0.0 * (tau + u + time + amplitude)
         return nothing, nothing
@@ -193,7 +203,7 @@ class Ball:
     def end_slopes(
         self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
     ) -> NDArray:
-        """Derivatives of D, δ and δ′ at the end of an impact with respect to τ and u.
+        """Derivatives with respect to τ and u of D, δ and δ′ at the end of an impact.
 
         ``w`` is δ′ at the end. Returns an array of the shape (3, 2, *tau.shape).
         """
@@ -212,8 +222,8 @@ class Ball:
     ) -> NDArray | None:
         """Approximate derivatives of the release function at the times T * places.
 
-        ``places`` are fractions of T. The result has the shape (..., places). It is None unless it
-        costs less than computing the contacts up to all these times.
+        ``places`` are fractions of T. Returns an array of the shape (..., places), or None if the
+        derivatives take longer than the contacts up to all these times.
         """
         return None
 
@@ -224,7 +234,7 @@ class Ball:
     def first_impact(
         self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
     ) -> tuple:
-        """T of the first release, and the end of the impact there."""
+        """T of the first release, and the state of the impact at this release."""
         T = self.first_release(tau, u, amplitude, gravity, table=table)
         return T, self.contact(tau, u, T, amplitude, gravity, table)
 
@@ -232,15 +242,16 @@ class Ball:
         """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
         T, (duration, gap, speed, _) = self.first_impact(tau, u, amplitude, table=table)
         if np.any(self.kappa):
-            # δ + κδ′ = 0 at the release; this removes rounding errors.
+            # The condition δ + κδ′ = 0 of the release gives δ without rounding errors.
             gap = -self.kappa * speed
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """Return a function that maps ϖ to the ball with this stiffness.
+        """Return a function that maps a frequency ratio ϖ to the ball with this ϖ.
 
-        A ball without ϖ uses π r/((1 + r) t_c) instead, with r and t_c of its free impact. Raises
-        ValueError if the impacts of the ball have no duration.
+        For a ball without ϖ, the number π r/((1 + r) t_c) replaces ϖ. ``restitution`` and
+        ``centroid`` are r and t_c of its free impact. Raises ValueError if the impacts of the ball
+        have no duration.
         """
         raise ValueError(
             f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw, or a function that"
@@ -249,7 +260,7 @@ class Ball:
 
 
 def brief(value: Values) -> str:
-    """Text of a wrong argument for an error message: its repr, or only its type if that is long."""
+    """Text of a wrong argument in an error message: its repr, or its type if the repr is long."""
     text = repr(value)
     return f"{type(value).__name__}(…)" if "\n" in text or len(text) > 60 else text
 
@@ -261,7 +272,7 @@ def check_ball(ball: Any) -> None:
 
 
 def whole_number(name: str, value: Values, least: int = 1) -> int:
-    """Convert a whole number, an int or a float, to int.
+    """Convert a whole number to int. The number may be an int or a float.
 
     Raises ValueError if it is not a whole number, or if it is less than ``least``.
     """
@@ -279,9 +290,9 @@ def check_whole_numbers(name: str, value: Values) -> None:
 
 
 def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
-    """Broadcast the arrays of (name, array) pairs against each other.
+    """Broadcast the arrays of pairs (name, array).
 
-    Raises ValueError, with all names and shapes, if the shapes do not broadcast.
+    Raises ValueError if the shapes do not broadcast. The message has all names and shapes.
     """
     named = list(named)
     try:
@@ -294,8 +305,8 @@ def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
 def checked(name: str, value: Values, low: float, high: float, *, low_allowed: bool) -> Values:
     """Return ``value`` as a float or an array of floats.
 
-    Raises ValueError unless all entries are finite, from ``low`` to ``high``. ``low`` itself is
-    allowed only if ``low_allowed``.
+    Raises ValueError unless all entries are finite and from ``low`` to ``high``. The bound ``low``
+    itself is allowed only if ``low_allowed`` is true.
     """
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
@@ -315,7 +326,7 @@ def checked(name: str, value: Values, low: float, high: float, *, low_allowed: b
 def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
     """Return the values of a function at the points ``at``.
 
-    Raises ValueError unless complex steps give its derivative.
+    Raises ValueError unless complex steps give the derivative of the function.
     """
     reach = np.ptp(at)
     step = 1e-6 * reach
@@ -326,7 +337,8 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(f"{what} must accept arrays, also complex ones ({reason})") from None
-    # The difference errs by eps/step (rounding) and by step² times the third derivative.
+    # The difference has a rounding error of eps/step, and an error of step² times the third
+    # derivative.
     size = np.abs(along) + np.abs(across)
     if np.any(np.abs(along - across) > 1e-4 * size.max() + 1e-9 * np.abs(values).max() / reach):
         raise ValueError(f"{what} must be analytic: write it without abs, real, sign and the like")
@@ -335,7 +347,7 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
 
 @dataclass(frozen=True)
 class Rigid(Ball):
-    """Ball with instantaneous impacts and a restitution coefficient r: w = r u (Eq. 5).
+    """Ball with instantaneous impacts. Its restitution coefficient r gives w = r u (Eq. 5).
 
     Parameters
     ----------
@@ -373,7 +385,7 @@ class Rigid(Ball):
         return {}
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """(r, 0, 0) if r is a number and the table is a sine; otherwise None."""
+        """Return (r, 0, 0) if r is a number and the table is a sine; otherwise None."""
         is_looped = table.is_sine and not callable(self.restitution)
         return (self.restitution, 0.0, 0.0) if is_looped else None
 
@@ -400,18 +412,18 @@ class Rigid(Ball):
 
 
 def damping_of(restitution: Values) -> Values:
-    """ζ = -ln r/√(π² + ln² r) (Eq. 16).
+    """Damping ratio ζ = -ln r/√(π² + ln² r) (Eq. 16).
 
-    Free contacts that end at δ = 0 then have the restitution coefficient r.
+    With this ζ, free impacts that end at δ = 0 have the restitution coefficient r.
     """
     log = np.log(restitution)
     return -log / np.sqrt(np.pi**2 + log * log)
 
 
 def _arc_over_root(zeta: Values) -> Values:
-    """2 arccos ζ/√(1 - ζ²), in a form that is analytic at ζ = 1.
+    """Return 2 arccos ζ/√(1 - ζ²), in a form that is analytic at ζ = 1.
 
-    It is 4A/(1 + ζ) with A = arctan(√t)/√t and t = (1 - ζ)/(1 + ζ).
+    The form is 4A/(1 + ζ) with A = arctan(√t)/√t and t = (1 - ζ)/(1 + ζ).
     """
     t = (1 - zeta) / (1 + zeta)
     near = np.abs(t) < 0.1
@@ -431,15 +443,16 @@ class SpringDamper(Ball):
     frequency_ratio : array_like
         ϖ > 0, large for a stiff contact. T is ϖD.
     restitution : array_like, optional
-        r in (0, 1], from which Eq. 16 gives ζ. The restitution of the contact differs from r under
-        a load or with the force release.
+        r in (0, 1]. Eq. 16 gives ζ. The restitution of the contact differs from r under a load, or
+        if the release is "force".
     damping_ratio : array_like, optional
-        ζ ≥ 0, instead of ``restitution``. Give exactly one of them. With the displacement release
-        and ζ ≥ 1 free impacts do not end: `free` and `signature` are NaN.
+        ζ ≥ 0. Give either ``restitution`` or ``damping_ratio``. If ζ ≥ 1 and the release is
+        "displacement", free impacts do not end, and `free` and `signature` are NaN.
     release : {"displacement", "force"}
-        Contacts end where δ = 0 (Eq. 23), or where the force vanishes: δ + κδ′ = 0 with κ = 2ζ/ϖ.
-        The force vanishes below the level of the table. If δ + κδ′ vanishes again before the ball
-        reaches this level, the contact resumes: an impact starts at the gap κu with u = -δ′ < 0.
+        If "displacement", contacts end where δ = 0 (Eq. 23). If "force", contacts end where the
+        force vanishes: δ + κδ′ = 0 with κ = 2ζ/ϖ. The ball is then below the level of the table. If
+        δ + κδ′ vanishes again before the ball reaches this level, the contact resumes. It resumes
+        as an impact that starts at the gap κu with u = -δ′ < 0.
 
     Examples
     --------
@@ -483,12 +496,12 @@ class SpringDamper(Ball):
 
     @property
     def kappa(self) -> Values:
-        """κ of the release condition δ + κδ′ = 0: 2ζ/ϖ, or 0 for the displacement release."""
+        """κ of the release condition δ + κδ′ = 0: 2ζ/ϖ for the release "force", otherwise 0."""
         return 2 * self.zeta / self.frequency_ratio if self.release == "force" else 0.0
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """ϖ is proportional to 1/Ω."""
+        """Exponent -1 of ϖ, because ϖ is proportional to 1/Ω."""
         return {"frequency_ratio": -1.0}
 
     def contact(
@@ -511,7 +524,7 @@ class SpringDamper(Ball):
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ when ``time`` has passed since the start of a contact."""
+        """δ and δ′ at the given time after the start of a contact."""
         return self.contact(tau, u, time * self.frequency_ratio, amplitude, table=table)[1:3]
 
     def end_slopes(
@@ -544,7 +557,7 @@ class SpringDamper(Ball):
         return np.array([later, gap + w * later, rate + second * later])
 
     def free(self, u: Values) -> Values:
-        """T of a free impact: π/√(1 - ζ²), or 2 arccos ζ/√(1 - ζ²) with the force release."""
+        """T of a free impact: 2 arccos ζ/√(1 - ζ²) for the release "force", else π/√(1 - ζ²)."""
         zeta = self.zeta
         if self.release == "force":
             return _arc_over_root(zeta) + 0 * u
@@ -566,7 +579,7 @@ class SpringDamper(Ball):
         return bool(np.all((self.zeta <= oscillator.UNDERDAMPED) & ~near))
 
     def loop_parameters(self, table: Table) -> tuple | None:
-        """(0, ϖ, ζ) if there is a closed form and the table is a sine; otherwise None."""
+        """Return (0, ϖ, ζ) if there is a closed form and the table is a sine; otherwise None."""
         if table.is_sine and self.has_closed_form():
             return 0.0, self.frequency_ratio, self.zeta
         return None
@@ -590,7 +603,7 @@ class SpringDamper(Ball):
         periods: Values = None,
         table: Table = SINE,
     ) -> Values:
-        """T of the first release; NaN if the ball stays for ever, or longer than `PATIENCE`.
+        """T of the first release; NaN if the contact lasts for ever, or longer than `PATIENCE`.
 
         Examples
         --------
@@ -608,7 +621,7 @@ class SpringDamper(Ball):
 def slopes_at_release(
     ball: Ball, tau: Values, u: Values, T: Values, amplitude: Values, table: Table
 ) -> NDArray:
-    """Derivatives as in :meth:`Ball.end_slopes` for a contact, by complex steps."""
+    """Compute the derivatives of :meth:`Ball.end_slopes` for a contact by complex steps."""
     steps = 1j * H * np.eye(3).reshape(3, 3, *np.ones(np.ndim(tau), int))
     impact = ball.contact(tau + steps[0], u + steps[1], T + steps[2], amplitude, table=table)
     slopes = np.array([impact.duration.imag, impact.gap.imag, impact.speed.imag]) / H
@@ -618,7 +631,7 @@ def slopes_at_release(
 
 
 def root_of_parabola(f: Values, slope: Values, bend: Values) -> Values:
-    """:func:`.one_ball.root_of_parabola` for arrays; NaN or infinity if there is no root."""
+    """:func:`.one_ball.root_of_parabola` for arrays. If there is no root, NaN or infinity."""
     root = np.sqrt(slope * slope + 2 * bend * f)
     falls = slope < 0
     # This quotient avoids a difference of nearly equal numbers.
@@ -640,9 +653,9 @@ def safe_steps(
     return step, near | (step <= EPS * t)
 
 
-@np.errstate(all="ignore")  # a contact without a load may vanish in time
+@np.errstate(all="ignore")  # steps may be infinite, and motions may decay to 0
 def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
-    """Durations of contacts with a spring and a damper, and δ′ at their releases.
+    """Durations of contacts with a spring and a damper, and δ′ at the releases.
 
     The duration is infinite if the ball stays on the table. This is :func:`.one_ball.release` for
     arrays of the shape (n,), and for all ϖ, ζ and tables.
@@ -696,7 +709,7 @@ def releases(ball: Any, phase: Values, u: Values, amplitude: Values, table: Tabl
 
 @dataclass(frozen=True)
 class Corrected(Ball):
-    """Corrected restitution model: instantaneous impacts replace the contacts of the ball `of`.
+    """Corrected restitution model. Instantaneous impacts replace the contacts of the ball `of`.
 
     An impact with the closing speed v takes place at the gap -v t_c(v). The ball leaves at the same
     gap with the relative speed w = r(v) v + σ(v) a, where a = g + ΛW″ is the load
@@ -717,7 +730,7 @@ class Corrected(Ball):
         if not isinstance(self.of, Ball):
             raise ValueError(f"of = {self.of!r}: must be a ball")
         if not all(np.isfinite(each).all() for each in self.of.signature(1.0)):
-            raise ValueError(f"of = {self.of!r}: must have free impacts that end")
+            raise ValueError(f"of = {self.of!r}: its contacts must end even without gravity")
 
     @property
     def parameters(self) -> dict[str, Values]:
@@ -740,11 +753,11 @@ class Corrected(Ball):
         return -u * self.of.signature(u).centroid
 
     def elapsed_contact(self, u: Values) -> Values:
-        """t_c, the duration of the contact before the impact."""
+        """Time t_c from the start of the contact to the impact that replaces it."""
         return self.of.signature(u).centroid
 
     def remaining_contact(self, u: Values) -> Values:
-        """D - t_c, the duration of the contact after the impact."""
+        """Time D - t_c from the impact that replaces the contact to the end of the contact."""
         signature = self.of.signature(u)
         return signature.duration - signature.centroid
 

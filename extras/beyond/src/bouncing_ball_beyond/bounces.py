@@ -1,8 +1,8 @@
-"""Follow many balls from impact to impact, side by side, as arrays.
+"""Use arrays to follow many balls at once from impact to impact.
 
-For a single ball arrays are 40 to 200 times slower than scalar loops (docs/impacts.md). The loops
-of :mod:`.one_ball` take the same steps. They need a sine, and a ball with a constant restitution
-coefficient or with a spring and a damper.
+For a single ball, arrays are 40 to 200 times slower than the scalar loops of :mod:`.one_ball`
+(docs/impacts.md). These loops take the same steps as the arrays. The table must be a sine, and the
+ball must have a constant restitution coefficient, or a spring and a damper.
 """
 
 from collections.abc import Callable
@@ -35,7 +35,8 @@ class Leaving(NamedTuple):
     gap, speed : array
         δ and δ′ at the end of the impact.
     emerges : array
-        Time at which a ball rises through the level of the table, if the impact ends below it.
+        Time from the end of the impact until the ball rises through the level of the table. It is 0
+        if no search was needed.
     """
 
     scaled_duration: np.ndarray
@@ -58,13 +59,13 @@ class Balls:
     amplitude : array
         Excitation amplitude Λ.
     turns, phase : array
-        Whole turns of the table and its phase. They are separate to keep all digits of late phases.
+        Whole turns of the table and its phase. They are separate, so late phases keep all digits.
     speed : array
         Closing speed u.
     table : Table
         The waveform.
     map : ImpactMap, optional
-        Contacts of one ball that is followed over many impacts.
+        Map that replaces the integration of contacts, if one ball is followed over many impacts.
     """
 
     ball: Ball
@@ -83,7 +84,7 @@ class Balls:
 
 @np.errstate(divide="ignore", invalid="ignore")
 def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) -> NDArray:
-    """Find the first zero of a function f ≥ 0 for each ball, by :func:`.safe_steps`.
+    """Use :func:`.safe_steps` to find the first zero of a function f ≥ 0 for each ball.
 
     No zero may be before ``start``. ``look(t, *given)`` returns (t₁, f, f′, f″, K, J). No zero may
     be between t and t₁. f and its derivatives are taken at t₁. K and J are the bounds that
@@ -110,7 +111,7 @@ def first_zeros(look: Callable, start: NDArray, given: list, fewest: int = 1) ->
 def landings(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """Times of landings, as :func:`.one_ball.landing`, for arrays of one shape."""
+    """Times of landings. This is :func:`.one_ball.landing` for arrays of the same shape."""
     _, _, bend, jerk, *_ = table.bounds
     absolute = w + table.pulls(waves)[0]
     below = gap + (sum(waves[1::2]) - amplitude * table.peaks[0])
@@ -133,9 +134,9 @@ def landings(
 def emergences(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """Find when balls are first at or above the level of the table, not before ``start``.
+    """Find the first time from ``start`` at which each ball is not below the level of the table.
 
-    The time is infinite for balls that fall back before.
+    The time is infinite if a ball falls back before it reaches this level.
     """
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
@@ -154,7 +155,7 @@ def emergences(
 def resumptions(
     table: Table, kappa: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> tuple:
-    """Times as in :func:`.one_ball.resumption`, for arrays, and whether contacts resume at them."""
+    """Times of :func:`.one_ball.resumption` for arrays, and whether contacts resume then."""
 
     def look(t: NDArray, bend: NDArray, jerk: NDArray, kappa: NDArray, *state: NDArray) -> tuple:
         gap, w, *waves = state
@@ -180,9 +181,10 @@ def instants(
     waves: list,
     amplitude: Values,
 ) -> tuple[NDArray, NDArray]:
-    r"""Find the starts of impacts whose gap depends on the closing speed, after given landings.
+    r"""Find the first impacts after landings, if the gap of an impact depends on its closing speed.
 
-    Returns the times at which δ = ``ball.start(u)``, and the closing speeds u.
+    ``landed`` contains the times of the landings. Returns the times at which δ = ``ball.start(u)``,
+    and the closing speeds u.
     """
     t = landed.copy()
     speed = np.empty_like(t)
@@ -229,7 +231,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
     phase = balls.phase
     remaining = balls.ball.remaining_contact(balls.speed)
     restitution = w / np.maximum(balls.speed, 1e-300)
-    # This limit exceeds the limit of :func:`.one_ball.settling`, which decides.
+    # This limit is larger than the limit in :func:`.one_ball.settling`, which makes the decision.
     gravity = 1 + amplitude * table(phase, 2)
     limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
     fourth = amplitude * table.bounds[4]
@@ -261,7 +263,7 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
 
 
 def may_sink(gap: Values, w: Values, strongest: NDArray, time: NDArray) -> NDArray:
-    """Whether balls below the level of the table may fall within ``time`` or never reach it."""
+    """Whether balls below the level of the table may fall within ``time``, or never reach it."""
     return (gap < 0) & ((w <= strongest * time) | (w * w + 2 * strongest * gap <= 0))
 
 
@@ -293,8 +295,8 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     states = amplitude, gap, w, *waves
     if np.any(ball.kappa):
         kappa = np.broadcast_to(ball.kappa, w.shape)
-        # Even under the strongest gravity g, a ball with w ≥ (1 + √2) κ g reaches the level with
-        # the speed κ g. δ + κδ′ rises until then, so no contact resumes.
+        # Let g be the strongest gravity. A ball with w ≥ (1 + √2) κ g reaches the level of the
+        # table with a speed of at least κ g. Until then δ + κδ′ rises, so no contact resumes.
         (low,) = may_sink(gap, w, strongest, (1 + np.sqrt(2)) * kappa).nonzero()
         given = (each[low] for each in (kappa, *states))
         start[low], resumes[low] = resumptions(table, *given)
@@ -375,8 +377,8 @@ def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
 
     Returns
 
-    1. a record of the shape (impacts, 8, balls), with the columns of :data:`.one_ball.COLUMNS`, NaN
-       after the last impact of a ball;
+    1. a record of the shape (impacts, 8, balls), with the columns of :data:`.one_ball.COLUMNS`; it
+       is NaN after the last impact of a ball;
     2. the indices of the balls that still bounce;
     3. these balls before their next impacts.
     """

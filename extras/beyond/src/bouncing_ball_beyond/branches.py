@@ -1,4 +1,4 @@
-"""Branches of orbits along one parameter, and curves of special orbits along two."""
+"""Branches of orbits along one parameter, and curves of special orbits along two parameters."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ from bouncing_ball_beyond.special_orbits import (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FollowedBranch:
-    """Branch: periodic orbits along a parameter, in the order in which they were followed.
+    """Branch of periodic orbits along a parameter, in the order in which they were followed.
 
     Parameters
     ----------
@@ -87,14 +87,14 @@ class FollowedBranch:
 
     @property
     def along(self) -> str:
-        """Name of the parameter that changes; for a curve, both names."""
+        """Name of the parameter that changes; for a curve, the names of both parameters."""
         return " and ".join(path.name for path in self.equations.along)
 
     @property
     def values(self) -> NDArray:
         """Values of the parameter that changes, shape (points,).
 
-        For a curve they are the values of its second parameter.
+        For a curve these are the values of its second parameter.
         """
         return self.z[:, -1]
 
@@ -114,14 +114,14 @@ class FollowedBranch:
         return self.equations.admissible(self.z)
 
     def refined(self, spacing: float = 0.04) -> "FollowedBranch":
-        """Return the branch with additional orbits, so that lines through them look smooth.
+        """Return the branch with additional orbits. Lines through all orbits then look smooth.
 
         Parameters
         ----------
         spacing : float
-            Largest distance between neighbours. The distance combines the root mean square change
-            of the times and speeds of the impacts and the relative change of the parameter. A step
-            gets at most 50 orbits.
+            Maximum distance between neighbouring orbits. It combines two changes: the root mean
+            square change of the times and speeds of the impacts, and the relative change of the
+            parameter. At most 50 orbits are added in a step of the branch.
         """
         if len(self) < 2:
             return self
@@ -150,7 +150,7 @@ class FollowedBranch:
     def with_special(self) -> list[PeriodicOrbit]:
         """All orbits and special orbits in order.
 
-        Each special orbit is inserted into the step where it lengthens the path least.
+        Each special orbit is inserted into the step whose length increases least.
         """
         orbits = list(self.orbits)
         units = self.equations.scales(self.z)[0]
@@ -164,7 +164,7 @@ class FollowedBranch:
 
 
 class SpecialCurve(FollowedBranch):
-    """Curve: special orbits of one kind along two parameters."""
+    """Curve of special orbits of one kind along two parameters."""
 
     _where = "this curve; other special orbits on it are"
 
@@ -175,7 +175,10 @@ class SpecialCurve(FollowedBranch):
 
 
 def joined(back: Any, forth: Any) -> Any:
-    """Join two branches from one orbit in opposite directions, in the direction of ``forth``."""
+    """Join two branches that leave one orbit in opposite directions.
+
+    The joined branch has the direction of ``forth``.
+    """
     if forth.end == CLOSED:
         return replace(forth, start=CLOSED)
     return replace(
@@ -193,7 +196,7 @@ def both_ways(
     window: NDArray,
     points: int,
 ) -> Any:
-    """Follow the curve through a point z, shape (1, N), along a direction and against it."""
+    """Follow the curve through a point z, shape (1, N), in a direction and in its opposite."""
     both = np.concatenate([-direction, direction])
     nothing = np.full(2, np.nan), np.full(2, "")
     start = Start(equations, np.tile(z, (2, 1)), both, *nothing)
@@ -208,7 +211,7 @@ class _Passed(NamedTuple):
     number : int
         Number of the step that contains it.
     place : float
-        Its distance from the start of this step, along the tangent.
+        Distance of the orbit from the start of this step, along the tangent.
     orbit : PeriodicOrbit
     """
 
@@ -220,8 +223,8 @@ class _Passed(NamedTuple):
     def order(self) -> tuple:
         """Sort key along the branch.
 
-        If a flight vanishes, an impact grazes and a release is lost at the same point, they
-        come in the order of `OrbitEquations.kinds`.
+        Special orbits at the same point have the order of `OrbitEquations.kinds`. For example, a
+        flight may vanish where an impact grazes and a release is lost.
         """
         kinds = [*self.orbit.equations.kinds, self.orbit.kind]
         return self.number, round(self.place, 6), kinds.index(self.orbit.kind)
@@ -230,9 +233,10 @@ class _Passed(NamedTuple):
 def followed(
     start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
 ) -> list[Any]:
-    """Follow branches and locate their special orbits.
+    """Follow branches, and locate the special orbits on them.
 
-    A special orbit of the kind ``own`` in the first step is the start itself, and is left out.
+    A special orbit of the kind ``own`` in the first step is the start of the branch, and is left
+    out.
     """
     steps = march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
@@ -265,7 +269,8 @@ def followed(
             why = KINDS[last.kind].end if last.kind in KINDS else ""
             end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
         elif end in KINDS:
-            # Newton's method misses the special orbit, which is between the last two points.
+            # The special orbit is between the last two points, but Newton's method does not find
+            # it.
             end = f"{end} near {_place(equations, orbits[-1], 4)}: {KINDS[end].end}"
             orbits = orbits[:-1]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
@@ -292,7 +297,7 @@ def _in_words(
     goal: float,
     passed: list[_Passed],
 ) -> str:
-    """Text: why a branch ends at an orbit that is not special."""
+    """Text with the reason why a branch ends at an ordinary orbit."""
     if end == CLOSED:
         return end
     if end != AT_GOAL:
@@ -309,7 +314,10 @@ def _in_words(
 
 
 def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
-    """Text: where a multiplier passes 1 without a turning point of the parameter, or ""."""
+    """Text about points at which a multiplier passes 1, but the parameter does not turn back.
+
+    The text is "" if there are no such points.
+    """
     rising = crossings.slopes[..., -1]
     symmetric = (crossings.row == row) & (crossings.kind == "saddle-node")
     symmetric &= rising[0] * rising[1] > 0

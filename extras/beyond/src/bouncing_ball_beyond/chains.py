@@ -52,23 +52,23 @@ def solved_or_nan(matrix: NDArray, values: NDArray) -> NDArray:
 def solve_bordered(
     derivatives: NDArray, right: NDArray, border: NDArray, border_right: NDArray
 ) -> NDArray:
-    """Solve the linear equations of the legs together with p further equations, the border.
+    """Solve the linear equations of the legs and p further equations, which are called the border.
 
     Parameters
     ----------
     derivatives : array, shape (rows, k, q, q + 2 + p)
         Derivatives of the legs.
     right : array, shape (rows, k, q, m)
-        Right sides of the equations of the legs.
+        Right-hand sides of the equations of the legs.
     border : array, shape (rows, p, N)
         Coefficients of the border.
     border_right : array, shape (rows, p, m)
-        Right sides of the border.
+        Right-hand sides of the border.
 
     Returns
     -------
     array, shape (rows, N, m)
-        Solutions, NaN if the matrix is singular.
+        Solutions. They are NaN if the matrix is singular.
     """
     rows, k, q, _ = derivatives.shape
     matrix = np.concatenate([dense(derivatives).reshape(rows, k * q, -1), border], axis=1)

@@ -19,17 +19,20 @@ from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 SHARES = (0.5, 0.9, 0.2, 2.0, 4.0)
 AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
-"""Where `limits` looks for an orbit.
+"""Tables on which `limits` looks for an orbit.
 
-1. `SHARES` are fractions of the -w″ at which orbits of instantaneous impacts double their period.
-2. `AROUND` are multiples of nπ, the Λ of the saddle-node of these orbits for r = 0 on a sine.
+1. `SHARES` are values of -w″. They are divided by the -w″ at which orbits of instantaneous impacts
+   double their period.
+2. `AROUND` are values of Λ divided by nπ. For r = 0 and a sine, these orbits have their saddle-node
+   at Λ = nπ.
 """
 
 
 def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
-    """Follow a periodic orbit along a parameter, or many orbits side by side.
+    """Follow a periodic orbit, or many orbits at once, along a parameter.
 
-    The branch goes through an ordinary orbit. At a special orbit it depends on the kind:
+    The branch of an ordinary orbit goes through this orbit. The branch of a special orbit depends
+    on its kind:
 
     - saddle-node: the stable branch;
     - period doubling: orbits of twice the period;
@@ -46,24 +49,24 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
         a fixed stroke a; its values are Ω/√(g/a) = √Λ. The default is the parameter of the branch
         that contains the orbit.
     to : float, array_like or tuple (low, high), optional
-        Value at which the branch ends, or one value for each orbit. With a tuple the orbit is
-        followed both ways. If the parameter turns back at a saddle-node, the branch ends at the
-        latest as far from its start as `to`, on the other side. The default is the end of the range
-        of the parameter, but at most ten times its value or 10, whichever is larger. For a phase
-        the default is one turn ahead.
+        Value at which the branch ends, or one value for each orbit. With a tuple, the orbit is
+        followed in both directions. If the parameter turns back at a saddle-node and passes its
+        start, the branch ends at the mirror image of `to` on the other side of the start. The
+        default is the upper end of the range of the parameter, but at most the larger of 10 and ten
+        times the value. For a phase the default is one turn ahead.
     points : int
         Maximum number of orbits on a branch in each direction.
 
     Returns
     -------
     FollowedBranch, or a list of FollowedBranch and OrbitNotFound
-        A list for a sequence of orbits. An OrbitNotFound is the reason why a branch is missing.
+        A list for a sequence of orbits. An OrbitNotFound gives the reason why a branch is missing.
 
     Raises
     ------
     OrbitNotFound
-        If a single orbit has no branch. For example, the doubled orbits may not be on the side of
-        the period doubling on which `to` is.
+        If a single orbit has no branch. For example, doubled orbits exist only on one side of a
+        period doubling, and `to` may be on the other side.
 
     Examples
     --------
@@ -86,7 +89,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
         First period doubling, or several, from which to start.
     to : float or array_like
-        Value of the parameter beyond which no branch is followed, or one value for each doubling.
+        Value of the parameter at which branches end, or one value for each doubling.
     impacts : int
         Maximum number of impacts of the orbits.
 
@@ -94,7 +97,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     -------
     list of FollowedBranch, or a list of such lists and OrbitNotFound
         Branches of the cascade. A sequence of doublings gives a list of cascades. An OrbitNotFound
-        is the reason why a cascade is missing.
+        gives the reason why a cascade is missing.
 
     Raises
     ------
@@ -144,9 +147,9 @@ def _listed(given: Any, name: str, wanted: str) -> list:
 
 
 def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: list) -> list:
-    """Follow orbits, and return branches, or the reasons why there are none, in order.
+    """Follow orbits. For each orbit, return its branch, or the reason why there is none.
 
-    Consecutive orbits with the same equations are followed side by side.
+    Consecutive orbits with the same equations are followed at once.
     """
     several = 2 if isinstance(to, tuple) else len(orbits)
     if to is not None and np.shape(to) not in ((), (several,)):
@@ -180,7 +183,7 @@ def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
 
 
 def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list[Task]:
-    """Return the tasks of following one orbit, one for each direction."""
+    """Return tasks, one for each direction in which the orbit is followed."""
     equations, z = orbit.on(path)
     value = float(z[-1])
     low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
@@ -225,7 +228,7 @@ def _in_rows(several: list) -> Any:
 
 
 def _from_special(task: Task, kind: str, points: int) -> list:
-    """Return the branches from orbits of one kind, or the reasons why there are none."""
+    """Return branches that start at orbits of one kind, or the reasons why there are none."""
     if kind not in STARTS:
         return [OrbitNotFound(f"{kind}: branches end at orbits of this kind")] * len(task.z)
     start = STARTS[kind](task)
@@ -287,8 +290,8 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
     Returns
     -------
     Limits or list of Limits
-        A list if n or a parameter of the ball is an array. If a branch ends before a limit, such as
-        at the grazing of an impact, the limit is an OrbitNotFound with this reason.
+        A list if n or a parameter of the ball is an array. If a branch ends before a limit, for
+        example because an impact grazes, the limit is an OrbitNotFound with this reason.
 
     Notes
     -----
@@ -320,23 +323,24 @@ def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
-    """First special orbit of a kind, or an OrbitNotFound: why the branch ends before."""
+    """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
     of_kind = (each for each in special if each.kind == kind)
     return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
 
 
 def _between_limits(equations: OrbitEquations) -> list:
-    """Find one orbit with one impact for each row, or an OrbitNotFound.
+    """For each row, return an orbit with one impact, or an OrbitNotFound.
 
-    Orbits between the limits of instantaneous impacts are tried first. An orbit that a ball follows
-    takes precedence over other orbits.
+    The search starts between the limits of instantaneous impacts. It prefers orbits that a ball
+    follows.
     """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution
     r = np.where(np.isfinite(r), r, 0.5)
     table = equations.table
     fold = np.pi * n * (1 - r) / (1 + r)
-    # Orbits of instantaneous impacts have ΛW′ = fold. -ΛW″ is a share of its value at the doubling.
+    # Orbits of instantaneous impacts have ΛW′ = fold. `push` is -ΛW″, a multiple of its value at
+    # the period doubling.
     push = np.multiply.outer(SHARES, 2 * (1 + r * r) / (1 + r) ** 2)
     phase = table.phase_of_angle(np.arctan2(push, fold))
     amplitudes = [*(np.hypot(fold, push) / np.hypot(table(phase, 1), table(phase, 2)))]

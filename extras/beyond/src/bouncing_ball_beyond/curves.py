@@ -1,7 +1,7 @@
 """Curves of special orbits in two parameters.
 
-A curve solves the equations of an orbit and one more equation: the test function of its kind is
-zero (docs/orbits.md).
+A curve solves the equations of an orbit and one more equation, which sets the test function of the
+kind to zero (docs/orbits.md).
 
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
@@ -27,9 +27,9 @@ from bouncing_ball_beyond.march import newton, unit
 from bouncing_ball_beyond.paths import path_of, usual_range
 
 OTHER = 1e-3
-"""Largest change of a start by Newton's method, relative to 1 + max |z|.
+"""Largest change that Newton's method may make to a start, relative to 1 + max |z|.
 
-If the change is larger, the start was not a special orbit of its kind.
+A larger change means that the start was not a special orbit of the kind.
 """
 
 
@@ -40,7 +40,7 @@ def special_curve(
     ranges: Mapping[str, tuple[float, float]] | None = None,
     points: int = 400,
 ) -> SpecialCurve:
-    """Follow a special orbit in two parameters, both ways.
+    """Follow a special orbit along two parameters, in both directions.
 
     Parameters
     ----------
@@ -51,9 +51,9 @@ def special_curve(
     along : tuple of two names
         Two parameters as in `follow`.
     ranges : mapping of names to (low, high), optional
-        Values of the parameters at which the curve ends. By default a curve ends at a tenth of the
-        value, and at ten times the value or at 10 if that is more. A phase changes by half a turn
-        in each direction.
+        Values of the parameters at which the curve ends. The default values of ``low`` and ``high``
+        are a tenth of the value at the start, and the larger of 10 and ten times this value. The
+        default range of a phase is half a turn in each direction.
     points : int
         Maximum number of orbits in each direction.
 
@@ -89,7 +89,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
     if not isinstance(along, tuple | list) or len(along) != 2 or along[0] == along[1]:
         raise ValueError(
-            f"along = {brief(along)}: must be two different parameters, by their names, such as"
+            f"along = {brief(along)}: must be the names of two different parameters, such as"
             " ('amplitude', 'restitution')"
         )
     allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
@@ -110,7 +110,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
 
 
 def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, ranges: Any) -> NDArray:
-    """Minimum and maximum values of both parameters, shape (2, 2): minima in the first row."""
+    """Minima and maxima of both parameters, shape (2, 2). The first row has the minima."""
     wanted = {} if ranges is None else ranges
     if not isinstance(wanted, Mapping) or any(np.size(each) != 2 for each in wanted.values()):
         raise ValueError(

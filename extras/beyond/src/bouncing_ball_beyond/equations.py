@@ -4,7 +4,9 @@ An impact has q unknowns: its time τ, its closing speed u and, if it has a dura
 is a row z with N = kq + p entries: the unknowns of its k impacts one after the other, then the
 values of the p parameters that may change. Functions take many orbits at once, shape (rows, N).
 
-A *leg* is a contact and the flight after it. The mathematics is in docs/orbits.md.
+A *leg* is a contact and the flight after it. The q equations of a leg require that the contact ends
+at a release (:mod:`.balls`), and the flight at the next impact. ``legs`` are their residuals. The
+mathematics is in docs/orbits.md.
 """
 
 from collections.abc import Callable
@@ -21,27 +23,27 @@ from bouncing_ball_beyond.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables import FUNDAMENTAL, SINE, Table
 
 FAR = 10.0
-"""Maximum clearance, and the clearance of a flight whose gap has no local minimum."""
+"""Maximum clearance. It is also the clearance of a flight whose gap has no local minimum."""
 
 
 POINT = (1.0,), (1.0,), 1e-7
 CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
 """Nodes, weights and step of the differences that give gradients of test functions.
 
-`POINT` has errors of 1e-7 and serves Newton's method for isolated points. `CURVE` has errors of
-1e-12 and serves tangents of curves.
+`POINT` has errors of 1e-7, which are small enough for Newton's method at isolated points. `CURVE`
+has errors of 1e-12, which are small enough for tangents of curves.
 """
 
 LASTING = 4 * np.pi
-"""T above which steps measure relative changes of T: two free oscillations."""
+"""T of two free oscillations. Above this T, step lengths count relative changes of T."""
 
 VANISHED = 1e-12
-"""Duration up to which a flight counts as vanished: a few thousand rounding errors of its times."""
+"""Duration up to which a flight counts as vanished: a few thousand rounding errors of a time."""
 
 
 @dataclass(frozen=True, eq=False)
 class LinearizedLegs:
-    """Legs of orbits and their derivatives.
+    """Residuals of the legs of orbits, and their derivatives.
 
     Attributes
     ----------
@@ -111,7 +113,10 @@ class Flights(NamedTuple):
         return flight(t, leaves, gap, speed, amplitude, table)
 
     def bends(self) -> NDArray:
-        """Times of extrema of δ′, where -w″ = 1, or ends of flights; shape (rows, k, times)."""
+        """Times at which -w″ = 1 and δ′ has an extremum, shape (rows, k, times).
+
+        Times after the end of a flight are replaced by the time of this end.
+        """
         phases = self.table.levels(self.amplitude)
         turns = int(np.fmin(_longest(self.flight) / (2 * np.pi), 1000)) + 1
         first = (phases - self.leaves[..., np.newaxis]) % (2 * np.pi)
@@ -238,7 +243,7 @@ class OrbitEquations:
         return units
 
     def following(self, x: NDArray) -> NDArray:
-        """Next impacts. After the last impact, it is the first impact m periods later."""
+        """The next impact of each impact. After the last one comes the first, m periods later."""
         following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
         following[:, -1, 0] += 2 * np.pi * np.asarray(self.periods)
         return following
@@ -251,10 +256,10 @@ class OrbitEquations:
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
     def linearized(self, z: NDArray) -> LinearizedLegs:
-        """Legs and their derivatives.
+        """Residuals of the legs, and their derivatives.
 
-        The equations of a leg require that the release function vanishes when the contact ends. The
-        flight must end with the gap and the speed of the next impact.
+        The equations of a leg require that the release function vanishes when the contact ends, and
+        that the flight ends with the gap and the speed of the next impact.
         """
         q = self.unknowns
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
@@ -265,7 +270,7 @@ class OrbitEquations:
         return LinearizedLegs(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
     def legs(self, z: NDArray) -> NDArray:
-        """Legs without derivatives, shape (rows, k, q)."""
+        """Residuals of the legs without derivatives, shape (rows, k, q)."""
         x, ball, amplitude, table = self.split(z)
         y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
         return self._legs(y, ball, amplitude, table)[0]
@@ -273,7 +278,10 @@ class OrbitEquations:
     def _legs(
         self, y: NDArray, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[NDArray, NDArray]:
-        """Legs and durations of flights. y: q unknowns of an impact, then τ and u of the next."""
+        """Residuals of the legs, and durations of the flights.
+
+        The last axis of y has the q unknowns of an impact, and then τ and u of the next impact.
+        """
         q = self.unknowns
         impact = ball.contact(y[..., 0], y[..., 1], y[..., q - 1], amplitude, table=table)
         leaves = y[..., 0] + impact.duration
@@ -288,11 +296,11 @@ class OrbitEquations:
     def bordered(
         self, z: NDArray, linear: LinearizedLegs, normal: NDArray, condition: tuple | None = None
     ) -> NDArray:
-        """Step of Newton's method in a plane, and tangent, shape (rows, N, 2).
+        """Step of Newton's method in a plane, and tangent of the branch, shape (rows, N, 2).
 
         The plane contains z and is perpendicular to ``normal``. The tangent is scaled to normal ·
-        tangent = 1. Both are NaN if the equations are singular. Special orbits with one free
-        parameter are isolated points and need no plane.
+        tangent = 1. Step and tangent are NaN if the equations are singular. Special orbits with one
+        free parameter are isolated points and need no plane.
         """
         border = normal[:, np.newaxis]
         right = np.zeros((len(z), 1, 2))
@@ -306,27 +314,28 @@ class OrbitEquations:
         return self.solve(linear, border, right)
 
     def solve(self, linear: LinearizedLegs, border: NDArray, right: NDArray) -> NDArray:
-        """Solve the linear equations with a border for two right sides, shape (rows, N, 2).
+        """Solve the linear equations for two right-hand sides, shape (rows, N, 2).
 
-        The right sides of the legs are -legs and 0.
+        In the equations of the legs, the first right-hand side is minus the residual, and the
+        second is 0. ``right`` contains the right-hand sides of the other equations, the border.
         """
         legs = np.zeros((*linear.legs.shape, 2))
         legs[..., 0] = -linear.legs
         return solve_bordered(linear.derivatives, legs, border, right)
 
     def excess(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
-        """Function that vanishes at special orbits of the kind, shape (rows,): see `condition`."""
+        """Function that vanishes at special orbits of the kind, shape (rows,); see `condition`."""
         if self.kind not in MULTIPLIERS:
             return KINDS[self.kind].test(self, z, linear)
         trace, determinant = linear.trace_and_determinant
         return 1 - MULTIPLIERS[self.kind] * trace + determinant
 
     def condition(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        """Equation of special orbits, shape (rows,), and its gradient, shape (rows, N).
+        """Residual of the equation of special orbits, shape (rows,), and gradient, shape (rows, N).
 
         For a multiplier μ the equation is χ = 1 - μ tr + det = 0. Its gradient is computed from
-        differences of χ ∏ρ and ∏ρ, with the rates ρ of the release functions. Unlike χ, these
-        products have no poles (docs/orbits.md).
+        differences of the products χ ∏ρ and ∏ρ, where ρ is the rate of the release function of a
+        contact. These products have no poles, but χ has poles (docs/orbits.md).
         """
         rows, length = z.shape
         nodes, weights, step = CURVE if len(self.along) > 1 else POINT
@@ -355,12 +364,12 @@ class OrbitEquations:
         "lost release",
         "period halving",
     )
-    """Kinds of special orbits that a march watches: their tests are cheap, or they end a curve."""
+    """Kinds of special orbits that a march watches. Their tests are cheap, or curves end there."""
 
     def tests(self, z: NDArray, linear: LinearizedLegs) -> NDArray:
         """Test functions, shape (rows, tests). They vanish at special orbits of `kinds`.
 
-        The test of the kind of the equations is 1, because it vanishes everywhere on a curve.
+        On a curve, the test function of its kind vanishes everywhere, and is replaced by 1.
         """
         columns = [
             np.ones(len(z)) if name == self.kind else KINDS[name].test(self, z, linear)
@@ -375,7 +384,7 @@ class OrbitEquations:
         return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
 
     def turn(self, linear: LinearizedLegs) -> NDArray:
-        """tr/(1 + det): 1 if a multiplier is 1, -1 if a multiplier is -1, in between if stable."""
+        """tr/(1 + det). It is ±1 if a multiplier is ±1, and in between if orbits are stable."""
         trace, determinant = linear.trace_and_determinant
         return trace / (1 + determinant)
 
@@ -413,7 +422,7 @@ class OrbitEquations:
     def contact_clearance(self, z: NDArray) -> NDArray:
         """Minus the largest local maximum of the release function in all contacts, shape (rows,).
 
-        It is at most `FAR`, and `FAR` for instantaneous impacts.
+        It is at most `FAR`. For instantaneous impacts it is `FAR`.
         """
         if not self.ball.has_duration:
             return np.full(len(z), FAR)
@@ -433,7 +442,7 @@ class OrbitEquations:
     def max_height(self, z: NDArray) -> NDArray:
         """Maximum height of the ball in flights and contacts, shape (rows,).
 
-        On a compliant contact the table may lift the ball higher than it flies.
+        During a compliant contact, the table may lift the ball above the height of all flights.
         """
         leaves, gap, speed, time, amplitude, table = self.ends(z)
         bounce = speed + amplitude * table(leaves, 1)
@@ -479,11 +488,13 @@ class OrbitEquations:
     def least_release(
         self, linear: LinearizedLegs | None, z: NDArray, flights: Flights | None = None
     ) -> NDArray:
-        """Test function of a lost release, shape (rows,): the minimum over all impacts.
+        """Test function of a lost release, shape (rows,).
 
-        1. For contacts it is the rate of the release function.
-        2. For instantaneous impacts on the table it is δ′, which needs no derivatives.
-        3. For instantaneous impacts below the table it is the first maximum of the gap.
+        It is the minimum over all impacts of one of these quantities:
+
+        1. for contacts, the rate of the release function;
+        2. for instantaneous impacts on the table, δ′, which needs no derivatives;
+        3. for instantaneous impacts below the table, the first maximum of the gap.
         """
         if self.ball.has_duration:
             linear = self.linearized(z) if linear is None else linear
@@ -497,9 +508,9 @@ class OrbitEquations:
         return -depth.max(axis=-1)
 
     def halves(self, z: NDArray) -> NDArray:
-        """Differences between both halves of an orbit, shape (rows, kq/2); zero if they are equal.
+        """First half of each orbit minus its second half, shape (rows, kq/2).
 
-        The result is 1 if k or m is odd; for odd k it has the shape (rows, 1).
+        The differences are 1 if k or m is odd. If k is odd, their shape is (rows, 1).
         """
         if self.impacts % 2:
             return np.ones((len(z), 1))
@@ -511,13 +522,13 @@ class OrbitEquations:
         return np.where(periods % 2 == 0, apart.reshape(len(z), -1), 1.0)
 
     def halved(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
-        """Return equations of half the period, and the means of both halves of orbits."""
+        """Return equations of half the period, and the mean of the two halves of each orbit."""
         half = replace(self, impacts=self.impacts // 2, periods=np.asarray(self.periods) // 2)
         mean = z[:, : half.size] - self.halves(z) / 2
         return half, np.concatenate([mean, z[:, self.size :]], axis=1)
 
     def doubled(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
-        """Return equations of twice the period, and the orbits repeated twice."""
+        """Return equations of twice the period, and orbits that consist of each orbit twice."""
         twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
         return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
 
@@ -530,7 +541,8 @@ class OrbitEquations:
     def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
         """Whether a ball follows each orbit, shape (rows,).
 
-        It does if each contact ends at its first release, and each flight at its first impact.
+        A ball follows an orbit if each contact ends at its first release, and each flight at its
+        first impact.
         """
         x, ball, *_ = self.split(z)
         ends = self.ends(z)
@@ -547,7 +559,7 @@ class OrbitEquations:
 def _derivative(function: Callable, t: NDArray) -> NDArray:
     """Derivative of an analytic function.
 
-    If t has a complex step, the derivative of the result with respect to t is right, too.
+    If t has a complex step, the imaginary part of the result is the step times its derivative.
     """
     if not np.iscomplexobj(t):
         return function(t + 1j * H).imag / H
@@ -560,7 +572,7 @@ def _derivative(function: Callable, t: NDArray) -> NDArray:
 def flight(
     s: Any, leaves: Any, gap: Any, speed: Any, amplitude: Any, table: Table = SINE
 ) -> tuple[Any, Any]:
-    """δ and δ′ in a flight, a time s after the release; δ″ = -1 - w″.
+    """δ and δ′ in a flight with δ″ = -1 - w″, at the time s after the release.
 
     The release is at the time `leaves` with δ = gap and δ′ = speed.
     """
@@ -570,7 +582,7 @@ def flight(
 
 
 def _longest(times: NDArray) -> float:
-    """Maximum of times and 0. NaN, of balls that stay on the table, is ignored."""
+    """Maximum of times and 0. The NaN of a ball that stays on the table is ignored."""
     return np.fmax.reduce(times, axis=None, initial=0.0)
 
 
@@ -589,9 +601,9 @@ def turns_back(
     waves: int = 1,
     slopes: NDArray | None = None,
 ) -> NDArray:
-    """Return the smallest local minimum of functions of the time in (0, ends), at most `FAR`.
+    """Return the smallest local minimum of functions of time in (0, ends), but at most `FAR`.
 
-    It is `FAR` if there is no local minimum.
+    The result is `FAR` if there is no local minimum.
 
     Parameters
     ----------
@@ -732,7 +744,7 @@ class PeriodicOrbit:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Λ, the parameters of ball and table, and those that may change, such as Ω/√(g/a)."""
+        """Λ, all parameters of ball and table, and those that may change, such as Ω/√(g/a)."""
         values = {"amplitude": self.amplitude, **self.ball.parameters, **self.table.parameters}
         names = [path.name for path in self.equations.along]
         values |= dict(zip(names, self.z[self.equations.size :], strict=True))
@@ -805,7 +817,7 @@ class PeriodicOrbit:
 
     @property
     def relative_impact_velocity(self) -> float | NDArray:
-        """δ′ at the start of the impact: negative, or positive if a contact resumes."""
+        """δ′ at the start of the impact. It is negative, or positive if a contact resumes."""
         return self._each(-self.speeds)
 
     @property
@@ -859,7 +871,7 @@ class PeriodicOrbit:
 
     @property
     def turn(self) -> float:
-        """tr/(1 + det): 1 at a saddle-node, -1 at a doubling. It may be infinite at a grazing."""
+        """tr/(1 + det). It is 1 at a saddle-node, -1 at a doubling, maybe infinite at a grazing."""
         with np.errstate(divide="ignore", invalid="ignore"):
             return float(self.equations.turn(self._linear)[0])
 
@@ -867,7 +879,7 @@ class PeriodicOrbit:
     def stable(self) -> bool:
         """Whether neighbouring motions stay near the orbit.
 
-        They converge to the orbit, except if the ball is elastic.
+        Neighbouring motions converge to the orbit, except if the ball is elastic.
         """
         return bool(self.equations.stable(self._linear)[0])
 
@@ -875,7 +887,8 @@ class PeriodicOrbit:
     def admissible(self) -> bool:
         """Whether a ball follows the orbit.
 
-        It does if each contact ends at its first release, and each flight at its first impact.
+        A ball follows the orbit if each contact ends at its first release, and each flight at its
+        first impact.
         """
         return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
 
@@ -886,10 +899,11 @@ class PeriodicOrbit:
 
     @cached_property
     def digits_left(self) -> float:
-        """Number of decimal places of the times and speeds of the impacts that are certain.
+        """Number of certain decimal places of the times and speeds of the impacts.
 
-        Rounding errors of z and of the terms of the equations are eps |J| |z|, with the Jacobian J.
-        They move the solution by at most |J⁻¹| times as much (R. D. Skeel, J. ACM 26, 494, 1979).
+        Let J be the Jacobian. Rounding errors of z and of the terms of the equations are eps |J|
+        |z|. They move the solution by at most |J⁻¹| times these errors (R. D. Skeel, J. ACM 26,
+        494, 1979).
         """
         _, jacobian = self.equations.residuals(self.z[np.newaxis])
         size = self.equations.size
@@ -900,10 +914,10 @@ class PeriodicOrbit:
         return float(-np.log10(error.max()))
 
     def distance(self, other: "PeriodicOrbit") -> float:
-        """Largest difference of the phases, speeds and T of two orbits.
+        """Largest difference between the phases, speeds or T of two orbits.
 
-        It is the minimum over all choices of the first impact. It is infinite if the numbers of
-        impacts or periods differ.
+        The first impact is chosen such that this difference is smallest. The difference is infinite
+        if the numbers of impacts or periods differ.
         """
         if (self.impacts, self.periods) != (other.impacts, other.periods):
             return np.inf
@@ -914,7 +928,7 @@ class PeriodicOrbit:
 
 
 def _short(value: Any) -> str:
-    """Text of a value with six digits; at most four entries of an array."""
+    """Text of a value with six digits. At most four entries of an array are shown."""
     if isinstance(value, np.ndarray):
         text = " ".join(f"{each:.6g}" for each in value[:4])
         return f"[{text}{' …' if len(value) > 4 else ''}]"
@@ -974,9 +988,9 @@ OF_RESTS = ("end of a rest", "lost lift-off")
 
 
 SINGULAR = slice(2, 5)
-"""Indices into `OrbitEquations.kinds` of the kinds at which multipliers jump or have poles.
+"""Part of `OrbitEquations.kinds`: the kinds at which multipliers jump or have poles.
 
-There are no orbits beyond them.
+There are no orbits beyond special orbits of these kinds.
 """
 
 MULTIPLIERS = {"saddle-node": 1, "period doubling": -1}

@@ -24,7 +24,7 @@ class Crossings(NamedTuple):
     ends, slopes : array, shape (2, steps, N)
         Orbits and tangents at the start and at the end of each step.
     values : array, shape (2, steps)
-        Test functions at the start and at the end.
+        Test functions at the start and at the end of each step.
     """
 
     row: NDArray
@@ -61,8 +61,8 @@ def crossings_of(
 def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
     """Interpolate between the ends of steps with Hermite cubics.
 
-    ``part`` is the position in each step, from 0 to 1; ``slopes`` are derivatives with respect to
-    it.
+    ``part`` is the position in each step, from 0 to 1. ``slopes`` are derivatives with respect to
+    ``part``.
     """
     x = part[:, np.newaxis]
     chord = ends[1] - ends[0]
@@ -71,7 +71,7 @@ def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
 
 
 def _tests_of(kinds: NDArray, equations: OrbitEquations, solution: Solution) -> NDArray:
-    """Evaluate the test function of the kind of each orbit, shape (rows,)."""
+    """For each orbit, evaluate the test function of its kind, shape (rows,)."""
     values = np.empty(len(kinds))
     for name in np.unique(kinds):
         these = kinds == name
@@ -84,8 +84,8 @@ def _tests_of(kinds: NDArray, equations: OrbitEquations, solution: Solution) -> 
 def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, NDArray]:
     """Find the orbits at which the test functions are zero.
 
-    The zero is bracketed along the chord of each step by the rule of Anderson and Björck (BIT 13,
-    253, 1973). Newton's method corrects each orbit on the plane perpendicular to the chord.
+    The rule of Anderson and Björck (BIT 13, 253, 1973) brackets the zero along the chord of each
+    step. Newton's method corrects each orbit on the plane perpendicular to the chord.
 
     Returns the orbits, shape (steps, N), and whether each was found.
     """
@@ -138,7 +138,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
             break
     # At the ends of curves the equations are singular, and rounding errors may move later iterates
-    # away. Use the iterate with the smallest test.
+    # away. Use the iterate with the smallest test function.
     z[singular] = nearest[singular]
     value[singular] = least[singular]
     largest = np.abs(crossings.values).max(axis=0)
@@ -157,9 +157,10 @@ def special_near(
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
-    """Find the period halving in a step, at which orbits merge with orbits of half their period.
+    """Find the period halving in a step. There the orbits merge with orbits of half the period.
 
-    It is a period doubling of the orbits of half the period, passed twice. Returns None if Newton's
+    The orbits of half the period double their period at the same point. Newton's method finds this
+    period doubling. Its orbit, repeated twice, is the period halving. Returns None if Newton's
     method fails, or if the period doubling is far from the step.
     """
     half, near = equations.halved(ends)

@@ -1,4 +1,4 @@
-"""Errors of the restitution model: by the error law in closed form, and exactly.
+"""Compute errors of the restitution model exactly, or by the error law in closed form.
 
 The error of a quantity q is (q_contact - q)/q, where q is its value in the restitution model
 (Eqs. 37, 38). docs/error-law.md has the law, its symbols and its accuracy; appendix.md has the
@@ -29,20 +29,20 @@ QUANTITIES = (
     "saddle_node",
     "period_doubling",
 )
-"""Quantities of the n-T orbit at an amplitude, and the amplitudes of its bifurcations."""
+"""Quantities of the n-T orbit at an amplitude, and the amplitudes of its two bifurcations."""
 
 POINTS = chebyshev.chebpts2(13)
 ROUNDS = 12
-"""Samples of the logarithm of an error in a bracket, and maximum number of its subdivisions."""
+"""Positions of samples in a bracket, and maximum number of times a bracket gets smaller."""
 SMALL = 1e-11
-"""Last coefficients below which a polynomial is exact within rounding.
+"""Size of the last coefficients below which a polynomial is exact within rounding.
 
-The rounding errors of an error of 1e-2 are 1e-14.
+An error of 1e-2 has rounding errors of 1e-14.
 """
 
 
 class FreeImpact(NamedTuple):
-    """Free impact with the closing speed v₀ of n-T orbits: its signature and derivatives.
+    """Signature of a free impact with the closing speed v₀ of n-T orbits, and derivatives.
 
     Attributes
     ----------
@@ -74,39 +74,40 @@ class FreeImpact(NamedTuple):
     load_slope: NDArray
 
     def stretched(self, factor: ArrayLike) -> "FreeImpact":
-        """Return the impact on the contact stretched by γ, with the force f(p/γ, p′)/γ.
+        """Return the free impact on a contact that is stretched by the factor γ.
 
-        It lasts γ times as long and has the same r. For a spring and a damper ϖ becomes ϖ/γ.
+        The stretched contact has the force f(p/γ, p′)/γ. It lasts γ times as long and has the
+        same r. For a spring and a damper ϖ becomes ϖ/γ.
         """
         names = ("duration", "centroid", "centroid_slope", "load", "load_slope")
         return self._replace(**{name: factor * getattr(self, name) for name in names})
 
     @property
     def half(self) -> NDArray:
-        """nπ, the modulus of the velocity of the ball just before and after the instant."""
+        """nπ, the modulus of the velocity of the ball just before and just after an impact."""
         return self.n * np.pi
 
     @property
     def line(self) -> NDArray:
         """C = v₀ - nπ, the velocity w′ of the table at the impacts of the restitution model.
 
-        On a sine it is also the Λ of the saddle-node of this model.
+        On a sine, C is also the Λ of the saddle-node of this model.
         """
         return self.speed - self.half
 
     @property
     def shift(self) -> NDArray:
-        """s = σ/(1 + b). On the contact C - s replaces C."""
+        """s = σ/(1 + b). On a contact, C - s replaces the C of the restitution model."""
         return self.load / (1 + self.slope)
 
     @property
     def doubling(self) -> NDArray:
-        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the -w″ at which the restitution model doubles."""
+        """-w″ of the period doubling of the restitution model: 2(1 + rb)/[(1 + r)(1 + b)] = Y_D."""
         return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 
 def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
-    """Compute the free impact of a ball with the closing speed v₀, where (1 + r(v)) v = 2nπ."""
+    """Compute the free impact of a ball at the speed v₀, the root of (1 + r(v)) v = 2nπ."""
     if np.any(np.asarray(n) < 1):
         raise ValueError(f"n = {n!r}: must be a whole number from 1")
     half = np.pi * np.asarray(n)
@@ -140,13 +141,14 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 
 
 def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
-    """Return Λ, raised to the saddle-node C/max W′ if it is less only by rounding errors.
+    """Return Λ, or the saddle-node C/max W′ if Λ is smaller only by rounding errors.
 
-    The saddle-node of the restitution model itself then satisfies C ≤ Λ max W′.
+    The Λ of the saddle-node of the restitution model then satisfies C ≤ Λ max W′.
     """
     amplitude = np.asarray(amplitude, float)
     node = impact.line / table.slope
-    # C is a difference of numbers as large as the speed: its error is a few eps times the speed.
+    # C is a difference of numbers as large as the speed, so the error of C is a few eps times the
+    # speed.
     rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
     below = (amplitude < node) & (node - amplitude <= rounding)
     return np.where(below, node, amplitude)
@@ -170,10 +172,10 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 def law_errors(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """Compute the signed relative errors of the restitution model by the error law.
+    """Use the error law to compute the signed relative errors of the restitution model.
 
-    The law is right to the second order in the duration, and to the order 3/2 next to the
-    saddle-node.
+    The law is right to the second order in the duration of contacts. Next to the saddle-node it is
+    right to the order 3/2.
 
     Parameters
     ----------
@@ -184,14 +186,15 @@ def law_errors(
     n : int
         Number of periods of the table in one period of the orbit.
     table : Table
-        The waveform. The impacts of the orbits follow the phase at which it rises fastest.
+        The waveform. The impacts of the orbits come after the phase at which the table rises
+        fastest.
 
     Returns
     -------
     dict
-        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. The error
-        of the phase is infinite at the saddle-node of the restitution model, because the phase is
-        0 there. Above the period doubling they are the errors of unstable orbits;
+        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. At the
+        saddle-node of the restitution model the phase is 0, so its error is infinite. Above the
+        period doubling the errors are those of unstable orbits. The function
         ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
 
     Examples
@@ -228,7 +231,7 @@ def law_errors(
 
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
-    """Shifts of the period doubling to first order: of w′, -w″, Λ (relative) and the phase."""
+    """First-order shifts of w′, -w″, Λ (relative) and the phase of the period doubling."""
     amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
     jolt = -amplitude * table(phase, 3)
     b = impact.slope
@@ -251,10 +254,11 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
 def law_coefficients(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """Coefficients K of the errors Kγ of a contact stretched by γ, far above the saddle-node.
+    """Compute coefficients K of errors. A contact that is stretched by γ has the errors Kγ.
 
-    A ball with ϖ = 1 gives the coefficients of K/ϖ. At the saddle-node the coefficients of height
-    and phase are infinite. Parameters are as in :func:`law_errors`.
+    This holds far above the saddle-node. If the given ball has ϖ = 1, errors at other ϖ are K/ϖ. At
+    the saddle-node the coefficients of height and phase are infinite. Parameters are as in
+    :func:`law_errors`.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
@@ -266,11 +270,11 @@ def law_remainders(
 ) -> dict:
     """Estimate upper limits of the remainders of the error law.
 
-    A remainder is the exact error minus the error of the law. The limit is Sη: S is a scale from
-    the moduli of the terms of the law, and
-    η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ and Y₀ are its Λ
-    and Y_D. The theorem gives the order in D. The factor 1 is fitted to random orbits and tables
-    (docs/error-law.md). Parameters are as in :func:`law_errors`.
+    A remainder is the exact error minus the error of the law. The upper limit is Sη. The
+    scale S is computed from the moduli of the terms of the law, and
+    η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ is the Λ of the
+    doubling, and Y₀ is Y_D. The theorem gives the order of the limit in D. The factor 1 of Sη is
+    fitted to random orbits and tables (docs/error-law.md). Parameters are as in :func:`law_errors`.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     amplitude = off_rounding(impact, amplitude, table)
@@ -313,10 +317,10 @@ def law_thresholds(
     tolerance: float = 0.01,
     table: Table = SINE,
 ) -> dict:
-    """Compute the ϖ above which the restitution model is within a tolerance, by the error law.
+    """Use the error law to compute the ϖ above which the restitution model is within a tolerance.
 
-    This ϖ is |K|/ε, except for the height and the phase. The saddle-node changes their errors in
-    the first order (Eq. R7 of the article).
+    This ϖ is |K|/ε, except for the height and the phase. The saddle-node changes the errors of
+    height and phase in the first order (Eq. R7 of the article).
 
     Parameters
     ----------
@@ -324,9 +328,9 @@ def law_thresholds(
         One of
 
         1. a spring and a damper, whose ϖ is ignored;
-        2. a contact law with units, for which π/(D + κ) of the free impact replaces ϖ, with
-           κ = -δ/δ′ at its end;
-        3. a function that maps a number, which replaces ϖ, to the ball. The duration of a free
+        2. a contact law with units. The number π/(D + κ) then replaces ϖ, where D is the duration
+           of a free impact, and κ is -δ/δ′ at the end of this impact;
+        3. a function that returns the ball for a number that replaces ϖ. The duration of a free
            impact must be inversely proportional to this number.
     amplitude, n, table
         As in :func:`law_errors`.
@@ -358,7 +362,10 @@ def law_thresholds(
 def _first_stretch(
     impact: FreeImpact, amplitude: NDArray, tolerance: float, name: str, table: Table
 ) -> NDArray:
-    """Smallest stretch γ at which an error leaves the tolerance, bracketed by samples."""
+    """Find the smallest stretch γ at which an error exceeds the tolerance.
+
+    Samples bracket this γ.
+    """
     shift = impact.shift
     # The law has orbits if |C - s| is below Λ max W′. It does not apply to contacts as long as 4π.
     end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
@@ -366,7 +373,7 @@ def _first_stretch(
     if table.is_sine:
         # The error is concave. The error of the height is largest if Y₁ rises as fast as the depth
         # of the instant. The error of the phase is largest if ψ₁ falls as fast as the delay grows.
-        # `turns` has the values of C - s there.
+        # `turns` has the values of C - s at these maxima.
         deeper = shift * impact.line + impact.speed * impact.centroid
         share = shift / (shift + impact.centroid)
         turns = {
@@ -451,7 +458,7 @@ def contact_values(
 ) -> dict:
     """Compute quantities of the n-T orbit of a ball, and the Λ of its bifurcations.
 
-    The orbit is on the stable side of the saddle-node. It need not be admissible.
+    The orbit is on the stable side of the saddle-node. It may be inadmissible.
 
     Parameters
     ----------
@@ -465,9 +472,9 @@ def contact_values(
     Returns
     -------
     dict of arrays
-        Values by name, NaN if there is no orbit. A corrected ball has the phase, velocity and
-        apparent restitution of a contact that starts t_c before the instant and ends D - t_c after
-        it.
+        Values by name. They are NaN if there is no orbit. A corrected ball has instantaneous
+        impacts. Its phase, velocity and apparent restitution belong to contacts that start t_c
+        before these impacts and end D - t_c after them.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
         allowed = ", ".join(QUANTITIES)
@@ -493,7 +500,7 @@ def contact_values(
 
 
 def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
-    """Find n-T orbits on the stable side of the saddle-node, shape (rows, N); NaN if none."""
+    """Find n-T orbits on the stable side of the saddle-node, shape (rows, N), or NaN."""
     periods = np.broadcast_to(equations.periods, amplitude.shape)
     guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
     solution = newton(equations, guess)
@@ -512,7 +519,7 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
 
 
 def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
-    """Amplitudes of a bifurcation, shape (rows,), found from a guess by the error law."""
+    """Find amplitudes of a bifurcation, shape (rows,). The error law gives the guess."""
     impact = free_impact(row, periods)
     if name == "saddle_node":
         kind = "saddle-node"
@@ -549,7 +556,7 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     leaves = ends.leaves[:, 0]
     table = equations.table
     velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
-    # An instant replaces a contact that starts earlier and ends later.
+    # An instantaneous impact replaces a contact that starts earlier and ends later.
     before = equations.ball.elapsed_contact(speed)
     after = equations.ball.remaining_contact(speed)
     approach = amplitude * table(touch, 1) - speed + before
@@ -574,7 +581,7 @@ def exact_errors(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Compute the signed relative errors of a simple model by exact orbits (Eqs. 37 and 38).
+    """Use exact orbits to compute the signed relative errors of a simple model (Eqs. 37, 38).
 
     Parameters
     ----------
@@ -630,7 +637,7 @@ def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) 
 
 
 class ErrorThreshold(NamedTuple):
-    """Frequency ratios above which an error is within a tolerance, as arrays of one shape.
+    """Frequency ratios above which an error is within a tolerance, as arrays of the same shape.
 
     Attributes
     ----------
@@ -687,8 +694,8 @@ def error_thresholds(
     low, high : float
         Range of ϖ.
     samples : int
-        Number of samples in this range, at equal ratios. Two crossings between neighbouring samples
-        are missed.
+        Number of samples in this range. The ratio of neighbouring samples is constant. If the error
+        crosses the tolerance twice between neighbouring samples, these crossings are missed.
 
     Returns
     -------
@@ -721,7 +728,7 @@ def error_thresholds(
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
     errors = exact_errors(path(ratios), quantities=quantities, **known)
-    # The thresholds of one orbit are found together, and each bifurcation alone.
+    # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
     alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
     together = [name for name in quantities if name not in alone]
     found = {}
@@ -734,7 +741,7 @@ def error_thresholds(
             rows[:, places] = np.exp(logarithms)
             there = exact_errors(path(ratio), quantities=names, **known)
             error = np.stack([there[name][:, j] for j, name in enumerate(names)], axis=1)
-            # The error is about proportional to 1/ϖ, so its logarithm is about linear.
+            # The error is nearly proportional to 1/ϖ, so its logarithm is nearly linear in ln ϖ.
             return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
 
         scan = np.stack([np.abs(errors[name]) for name in names], axis=1).reshape(samples, -1)

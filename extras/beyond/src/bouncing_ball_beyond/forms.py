@@ -37,7 +37,7 @@ SHARE = 0.1
 
 
 class Curvature(NamedTuple):
-    """Derivatives of the legs of one orbit, shape (k, q, q + 2 + p) each.
+    """Derivatives of the residuals of the legs of one orbit, shape (k, q, q + 2 + p) each.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Curvature(NamedTuple):
 
 
 def closed(derivatives: NDArray, multiplier: float) -> NDArray:
-    """Matrix (kq, kq) of a chain of legs whose end is `multiplier` times its start."""
+    """Matrix, shape (kq, kq), of a chain of legs whose end is ``multiplier`` times its start."""
     q = derivatives.shape[-2]
     turned = derivatives.copy()
     turned[-1, :, q : q + 2] *= multiplier
@@ -63,9 +63,9 @@ def closed(derivatives: NDArray, multiplier: float) -> NDArray:
 def curvature(
     equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
 ) -> Curvature:
-    """Differentiate the legs along a vector v that returns multiplied by ±1.
+    """Differentiate the legs along a vector v that one period of the orbit multiplies by ±1.
 
-    The orbit is taken twice, so that the vector is periodic in both cases.
+    The differences use two periods, because two periods map v to v in both cases.
     """
     twice, row = equations.doubled(z[np.newaxis])
     direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
@@ -77,7 +77,7 @@ def curvature(
 
 
 def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> float:
-    """Coefficient a for the multiplier 1, or b for -1; the scales of v and w enter it."""
+    """Coefficient a for the multiplier 1, or b for -1. It depends on the scales of v and w."""
     bend = closed(bent.first, multiplier) @ v
     if multiplier == 1:
         return float(w @ bend / 2)
@@ -86,7 +86,7 @@ def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> flo
 
 
 def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
-    """Vectors v and w of docs/orbits.md, scaled to |v_0| = 1 and p v_0 = 1."""
+    """Vectors v and w of docs/orbits.md. Their scales follow from |v_0| = 1 and p v_0 = 1."""
     q = derivatives.shape[-2]
     left, _, right = np.linalg.svd(closed(derivatives, multiplier))
     v = right[-1]
@@ -98,14 +98,14 @@ def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
 
 
 def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
-    """Step of the differences along v."""
+    """Longest step of the central differences along v."""
     speeds = z[1 : equations.size : equations.unknowns]
     return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
 
 
 @dataclass(frozen=True)
 class NormalForm:
-    """Normal form of a saddle-node or a period doubling: see `normal_form`.
+    """Normal form of a saddle-node or a period doubling, the result of `normal_form`.
 
     Attributes
     ----------
@@ -212,7 +212,8 @@ Grazings are located to 1e-12.
 SLOW = 1e-3
 """Speed of an added impact, divided by aD².
 
-At a stiff contact the branch turns back at a few hundredths.
+a is δ″ at the touch. On a stiff contact, the branch of orbits with this impact turns back at a few
+hundredths.
 """
 
 
@@ -267,7 +268,7 @@ def _touch(equations: OrbitEquations, z: NDArray) -> Touch:
 def one_impact_more(
     equations: OrbitEquations, z: NDArray
 ) -> tuple[OrbitEquations, NDArray, NDArray]:
-    """Start of the orbits with one more impact, from an orbit z with a grazing flight.
+    """Find the first orbit with one more impact than an orbit z with a grazing flight.
 
     Returns
 
@@ -279,7 +280,8 @@ def one_impact_more(
     """
     at = _touch(equations, z)
     _, ball, amplitude, table = equations.split(z[np.newaxis])
-    # An added instant has the speed 0, because its free impact takes no time.
+    # If the added impact is instantaneous, it has the speed 0, because its free impact takes no
+    # time.
     free = float(np.ravel(ball.signature(SLOW).duration)[0])
     u = SLOW * at.acceleration * np.fmin(1.0, free) ** 2
     start = at.time - u / at.acceleration
@@ -331,8 +333,8 @@ class GrazingForm:
     opens_upwards : bool
         Whether the orbits with one more impact exist at larger values of the parameter.
     persists : bool
-        Whether they exist where the flight would be below the table. If not, they meet the orbit
-        without this impact at the grazing, and both disappear.
+        Whether the orbits with one more impact exist where the flight would be below the table. If
+        not, they meet the orbit with the grazing flight, and all these orbits disappear.
     """
 
     leg: int
@@ -346,11 +348,11 @@ class GrazingForm:
 
 
 def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
-    """Compute the square root of the return map at a grazing flight.
+    """Compute the square-root term of the return map at a grazing flight.
 
     If the flight would be at the depth d below the table, an additional impact changes the velocity
-    by S √d. S is (1 + r) √(2a) with r at the speed 0, and 0 for contacts of finite duration
-    (docs/orbits.md).
+    by S √d. S is (1 + r) √(2a), where r belongs to the speed 0. For contacts of finite duration S
+    is 0 (docs/orbits.md).
 
     Raises
     ------
@@ -368,14 +370,15 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
-    # On a curve two parameters change; the form belongs to the first.
+    # On a curve two parameters change. The form belongs to the first parameter.
     path = orbit.equations.along[0]
     equations, z = orbit.on(path)
     at = _touch(equations, z)
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
     tangent = newton(equations, z[np.newaxis]).tangent[0]
-    # The smallest gap is a smooth function, so a third of all digits gives the sign.
+    # The smallest gap is a smooth function. A step of a third of all digits is enough for the sign
+    # of its change.
     step = 1e-6 * max(1.0, abs(z[-1]))
     below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
     # r = -1 gives S = 0 for contacts of finite duration.

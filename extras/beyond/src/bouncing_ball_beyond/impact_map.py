@@ -1,14 +1,14 @@
-"""Map of the contacts of one ball on one table: polynomials replace integrations.
+"""Map of the contacts of one ball on one table. Polynomials replace the integration of contacts.
 
-The end of a contact depends on the phase τ of the table and on the closing speed u. It is an
-analytic function of them if the ball turns back once and then leaves. T, D, δ and δ′ at the release
-are then Fourier series in τ. Their coefficients are Chebyshev polynomials in ln u, on pieces of a
-factor 2 in u.
+The end of a contact depends on the phase τ of the table and on the closing speed u. If the ball
+turns back once and then leaves, the end is an analytic function of τ and u. T, D, δ and δ′ at the
+release are then Fourier series in τ, and their coefficients are Chebyshev polynomials in ln u. The
+map consists of *pieces*. The largest speed u of a piece is twice its smallest speed.
 
 The harmonic m is of the order of ε^m, where ε = (1 + Λ)D/u is the load divided by the contact
-force. A piece therefore needs only 512 integrations, or a few times as many, and serves a million
-impacts. The coefficients of slow impacts do not decay to rounding errors, so their contacts are
-integrated one by one.
+force. A piece therefore needs only 512 integrations, or a few times as many. It then replaces the
+integrations of a million impacts. The coefficients of slow impacts do not decay to rounding errors,
+so contacts of slow impacts are integrated one by one.
 """
 
 from dataclasses import dataclass
@@ -24,21 +24,22 @@ from bouncing_ball_beyond.tables import Table
 MAP_FACTOR, MAP_DEGREE = 2.0, 15
 """Ratio of the largest to the smallest speed of a piece of the map, and its degree in ln u.
 
-A pole at ln u = x ± iπ, as of a restitution coefficient 1/(1 + Cu), causes an error of 18⁻¹⁶.
+For example, a restitution coefficient 1/(1 + Cu) has poles at ln u = x ± iπ. They cause an error of
+18⁻¹⁶.
 """
 
 PHASES, MOST_PHASES = 32, 256
-"""First and maximum number of phases of a piece. The number is doubled as long as needed."""
+"""First and maximum number of phases of a piece. It is doubled until the coefficients decay."""
 
 ONE_SWING = 1.5
 """Maximum T of a contact of the map, divided by T of a free impact.
 
-The ball has then turned back only once, and no earlier release can appear between the points of the
-map.
+During shorter contacts the ball turns back only once, and no earlier release can appear between the
+points of the map.
 """
 
 PIECES = 12
-"""Maximum number of pieces. They reach down from the speed of the fastest impact."""
+"""Maximum number of pieces. The first piece has the fastest impacts."""
 
 LEFT_OUT = 1e-16
 """Size of coefficients, relative to the largest value, below which harmonics are left out."""
@@ -46,7 +47,7 @@ LEFT_OUT = 1e-16
 LAST_COEFFICIENTS = 1e-13
 """Maximum last coefficients of a piece, relative to the largest value.
 
-They are then as small as rounding errors of the integrations.
+Coefficients of this size are rounding errors of the integrations.
 """
 
 
@@ -136,7 +137,8 @@ def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:
 def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> ImpactMap:
     """Build the map of contacts with closing speeds up to ``top``.
 
-    It gets pieces for lower and lower speeds until a piece is not analytic, but at most `PIECES`.
+    Pieces for lower and lower speeds are added until a piece is not analytic, or until there are
+    `PIECES`.
     """
     pieces: list[Any] = []
     while len(pieces) < PIECES:
@@ -148,7 +150,7 @@ def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> Impact
 
 
 def _piece(ball: Ball, amplitude: float, table: Table, top: float) -> NDArray | None:
-    """Coefficients on the range of speeds below ``top``; None if they do not decay."""
+    """Coefficients of the piece below the speed ``top``; None if coefficients do not decay."""
     x = chebyshev.chebpts1(MAP_DEGREE + 1)
     u = top * MAP_FACTOR ** ((x - 1) / 2)
     longest = ONE_SWING * ball.free(u)

@@ -1,8 +1,8 @@
 """Pseudo-arclength continuation of many solution curves at once.
 
 The solutions of F(z) = 0, with N unknowns and N - 1 equations, form curves. `march` follows many of
-them in parallel, one curve per row. Each step predicts along the tangent; `newton` then corrects on
-the plane perpendicular to the tangent.
+them in parallel, one curve per row. Each step predicts the next point along the tangent. Then
+`newton` corrects this point on the plane perpendicular to the tangent.
 
 Source: E. L. Allgower and K. Georg, *Introduction to Numerical Continuation Methods*, SIAM (2003).
 """
@@ -37,11 +37,11 @@ matrix, as at a saddle-node.
 FAST = 0.1
 """Ratio of successive Newton steps below which the gradient is not computed again.
 
-Applies to special orbits with one free parameter, which are isolated points.
+This applies to special orbits with one free parameter, which are isolated points.
 """
 
 LONG = 2.0
-"""Longest Newton step to a special orbit, relative to 1 + |z|. Longer steps rarely converge."""
+"""Longest Newton step to a special orbit, divided by 1 + |z|. Longer steps rarely converge."""
 
 FIRST_STEP = 0.1
 """Length of the first step along a branch, in units of `OrbitEquations.scales`.
@@ -54,7 +54,7 @@ LONGEST_STEP = 0.4
 """Longest step along a branch."""
 
 SHORTEST_STEP = 1e-9
-"""Step length below which a branch is given up."""
+"""Step length below which a branch ends."""
 
 STRAIGHT = 0.95
 """Minimum cosine of the angle between the tangents at both ends of a step."""
@@ -70,9 +70,9 @@ become longer and longer.
 """
 
 BEFORE_END = 1e-3
-"""Distance between the end of a branch and the extra point before it.
+"""Distance between the end of a branch and the extra point before this end.
 
-It is divided by the distance between the start of the step and the end of the branch.
+The distance is divided by the distance between the start of the step and the end of the branch.
 """
 
 
@@ -114,7 +114,7 @@ def newton(
     normal: NDArray | None = None,
     iterations: int = 12,
 ) -> Solution:
-    """Solve the equations by Newton's method, each row on its own plane.
+    """Use Newton's method to solve the equations. Each row stays on its own plane.
 
     Parameters
     ----------
@@ -161,8 +161,9 @@ def newton(
 def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations: int) -> Solution:
     """Newton's method for special orbits.
 
-    Gradients are expensive, so the iteration of a row stops once it has converged. While the steps
-    to an isolated special orbit shrink fast (see `FAST`), Broyden's rule updates the gradient.
+    Gradients are expensive, so the iteration of a row stops as soon as the row has converged. While
+    the steps to an isolated special orbit shrink fast (see `FAST`), Broyden's rule updates the
+    gradient.
     """
     z = z.copy()
     tangent = np.full(z.shape, np.nan)
@@ -233,7 +234,7 @@ class Start(NamedTuple):
 
 
 def tangents(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Unit tangents of the solution curves at z, shape (rows, N); also at turning points."""
+    """Unit tangents of the solution curves at z, shape (rows, N). z may be a turning point."""
     linear = equations.linearized(z)
     normal = np.ones(z.shape)
     for _ in range(2):
@@ -292,7 +293,7 @@ def _same_sign(before: Points, after: Points) -> Points:
 def _predicted(
     equations: OrbitEquations, here: Points, step: NDArray, units: NDArray, window: NDArray
 ) -> tuple:
-    """Predict a step along each tangent, cut off at the border of the window.
+    """Predict a step along each tangent. A step that leaves the window ends at its border.
 
     Returns
     -------

@@ -1,8 +1,12 @@
 """Contacts with any force law f(p, p′), the force per mass of the ball.
 
 During a contact the penetration p = -δ obeys p″ = 1 + w″ - f, where w″ is the acceleration of the
-table. The contact ends where p = 0, or where the force vanishes; in the second case it never pulls
-at the ball. :mod:`.named_laws` has laws with names. :mod:`.root_time` computes the motion.
+table. The contact ends where p = 0, or where the force vanishes. If the contact ends where the
+force vanishes, the force never pulls at the ball. :mod:`.named_laws` has laws with names.
+
+:mod:`.root_time` computes the motion in the root time. T is the root time from the start of a
+contact to its end, the release. A free impact takes place without gravity on a table at rest. Its
+signature is r, D, t_c and σ (:class:`.Signature`).
 """
 
 from collections.abc import Callable, Mapping
@@ -46,34 +50,34 @@ TAKEN = ("tau", "u", "T", "amplitude", "gravity", "turn", "after", "load", "star
 """Names that parameters of a law must not have."""
 
 LN_DEPTHS = (-46.0, 23.0)
-"""Range of ln p in which the depth of an impact is searched: p from 1e-20 to 1e10."""
+"""Range of ln p in which the depth of an impact is searched. It covers p from 1e-20 to 1e10."""
 
 HALVINGS = 9
 """Number of halvings of `LN_DEPTHS`. They find the depth within one seventh of its value."""
 
 FIRST_PANEL = 0.4
-"""Length of the first panel of a contact, in units of P^{1/m}/u, with the `depth` P.
+"""Length of the first panel of a contact, in units of P^{1/m}/u, where P is the `depth`.
 
-At half and at twice this length, evaluations of the force change by 3 %.
+At half and at twice this length, the number of evaluations of the force changes by 3 %.
 """
 
 SIGNATURE_FACTOR, SIGNATURE_DEGREE = 8.0, 23
-"""Ratio of the largest to the smallest speed of an interpolation of signatures, and its degree.
+"""Factor in speed that one polynomial for signatures covers, and degree of this polynomial.
 
-If r has a pole at ln u = x ± iπ, as 1/(1 + Cu) has, the error is of the order of 6⁻²⁴.
+For example, r = 1/(1 + Cu) has poles at ln u = x ± iπ. The error is then of the order of 6⁻²⁴.
 """
 
 GUESS_FACTOR = 2.0
 """Ratio of the largest to the smallest speed of contacts that one free impact approximates."""
 
 SPARE = 1e-9
-"""Last Legendre coefficients of v of a free impact, divided by its speed, below which fewer Gauss
-nodes are enough. At half and at twice: no effect."""
+"""Limit of the last Legendre coefficients of v of a free impact, divided by its closing speed. If
+they are smaller, fewer Gauss nodes are enough. At half and at twice: no effect."""
 
 FEW_KINKS = 8
-"""Maximum number of faulty intervals of a check that count as kinks.
+"""Maximum number of intervals that fail a check and count as kinks.
 
-If there are more, the force is not analytic.
+If more intervals fail, the force is not analytic.
 """
 
 ALIKE = 1e-11
@@ -84,8 +88,8 @@ WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
 SHIFT = 0.02
 """Central differences of the sixth order with the relative step h = 2 %.
 
-Their errors are h⁶/140 times the seventh derivative, about 5e-13, and rounding errors divided by h,
-about 1e-14.
+They have an error of h⁶/140 times the seventh derivative, about 5e-13. They also have rounding
+errors divided by h, about 1e-14.
 """
 
 
@@ -97,23 +101,23 @@ class ForceLaw(Ball):
     ----------
     force : callable
         Force per mass ``force(p, v, **values)`` at the penetration p and its rate v = p′. p and v
-        are numpy arrays, real or complex, because all derivatives are complex steps. The function
-        must be analytic, so write it without ``abs`` and ``real``. ``np.where`` may join analytic
-        pieces if ``kinks`` declares the kinks between them.
+        are real or complex numpy arrays, because derivatives are computed by complex steps. The
+        function must be analytic, so write it without ``abs`` and ``real``. ``np.where`` may join
+        analytic pieces if ``kinks`` declares the kinks between them.
     values : mapping
-        Parameters of the force by name: numbers, or arrays for a row of balls.
+        Parameters of the force by name. They are numbers, or arrays for a row of balls.
     root : int
-        m, if the force is an analytic function of p^{1/m}. It is 1 if the force is smooth at p = 0,
-        2 for powers of √p, as in Hertz' law, and 4 for powers of p^{1/4}.
+        Number m for which the force is an analytic function of p^{1/m}. It is 1 if the force is
+        smooth at p = 0. It is 2 for powers of √p, as in Hertz' law, and 4 for powers of p^{1/4}.
     release : {"displacement", "force"}
-        Contacts end where p = 0, or where the force vanishes.
+        If "displacement", contacts end where p = 0. If "force", they end where the force vanishes.
     lag : callable, optional
-        Function ``lag(**values)`` that returns κ, if the force vanishes where p + κp′ = 0.
+        Function ``lag(**values)`` that returns κ. Give it if the force vanishes where p + κp′ = 0.
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
     needs : tuple of str
-        Additional keyword arguments of the force: "start_speed" is the speed at the start of the
-        contact, and "load" is the load a = 1 + w″.
+        Additional keyword arguments of the force: "start_speed" is the closing speed at the
+        start of the contact, and "load" is the load a = 1 + w″.
     units : mapping
         Powers of mass, length and time in the unit of each parameter. They are needed if the
         frequency of the table or the stiffness of the contact changes.
@@ -160,7 +164,7 @@ class ForceLaw(Ball):
                     " such as (1, 0, -2) for N/m"
                 )
         for name in self.values.keys() & set(TAKEN):
-            raise ValueError(f"{name}: is a reserved name; choose another one for the parameter")
+            raise ValueError(f"{name}: is a reserved name; choose another name for the parameter")
         check_force(self)
 
     def __repr__(self) -> str:
@@ -207,8 +211,8 @@ class ForceLaw(Ball):
     def _scales(self) -> NDArray | None:
         """Units of length and time in which the force equals the force of `_origin`.
 
-        If possible they change by the same factor, so that speeds keep their values. None if there
-        are no such units.
+        If possible, both units change by the same factor, and speeds then keep their values. The
+        result is None if there are no such units.
         """
         origin = self._origin
         if self is origin:
@@ -239,12 +243,12 @@ class ForceLaw(Ball):
 
     @property
     def kappa(self) -> Values:
-        """κ of a release where p + κp′ = 0; 0 for other releases."""
+        """κ if the contact ends where p + κp′ = 0; otherwise 0."""
         return self.lag(**self.values) if self.lag else 0.0
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Exponents s by name: for a given contact, the parameter is proportional to Ω^s.
+        """Exponent s of each parameter that is proportional to Ω^s for a given contact.
 
         Lengths are in units of g/Ω², and times in units of 1/Ω.
         """
@@ -252,7 +256,7 @@ class ForceLaw(Ball):
         return {name: power for name, power in powers.items() if power}
 
     def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """Return a function that maps a number, in the role of ϖ, to the law."""
+        """Return a function that maps a number to the law. The number replaces ϖ."""
         share = np.pi * restitution / ((1 + restitution) * centroid)
         # If all lengths and times are γ times as large, f(p, p′) becomes f(p/γ, p′)/γ.
         powers = {name: length + time for name, (_, length, time) in self.known_units.items()}
@@ -302,7 +306,7 @@ class ForceLaw(Ball):
     def contact_after(
         self, tau: Values, u: Values, time: Values, amplitude: Values, table: Table = SINE
     ) -> tuple[Values, Values]:
-        """δ and δ′ when ``time`` has passed since the start of a contact."""
+        """δ and δ′ at the given time after the start of a contact."""
         given = {"tau": tau, "u": u, "after": time, "amplitude": amplitude, "gravity": 1.0}
         rows, motion, start, by = self._started(given, table)
         after = rows.given.pop("after")
@@ -322,7 +326,7 @@ class ForceLaw(Ball):
         return slopes_at_release(self, tau, u, T, amplitude, table)
 
     def free(self, u: Values) -> Values:
-        """T of free impacts: without gravity, on a table at rest."""
+        """T of free impacts, which take place without gravity on a table at rest."""
         u = np.asarray(u)
         if self._scales is None or self.kinks or np.iscomplexobj(u) or not np.all(u > 0):
             return self._followed(0.0, u, 0.0, 0.0)[0]
@@ -333,7 +337,7 @@ class ForceLaw(Ball):
     def signature(self, u: Values) -> Signature:
         """r, D, t_c and σ of free impacts.
 
-        Laws that differ only by the units of length and time share one computation.
+        The computation is shared by laws that differ only in the units of length and time.
         """
         u = np.asarray(u)
         if self._scales is None or not np.all(u.real > 0):
@@ -347,10 +351,11 @@ class ForceLaw(Ball):
         return Signature(found[0], *(time * each for each in found[1:]))
 
     def known_signature(self, u: Values) -> NDArray:
-        """Signature of one ball, its derivatives and T at real speeds, shape (9, ...).
+        """Signature of one ball, its derivatives, and T at real speeds, shape (9, ...).
 
-        The rows are the four quantities of the signature, u d/du of each, and T. For a law without
-        kinks they are polynomials in ln u on ranges of a factor `SIGNATURE_FACTOR` in u.
+        The rows are the four quantities q of the signature, their derivatives u dq/du, and T. For a
+        law without kinks each row is a polynomial in ln u. Each polynomial covers a range of a
+        factor `SIGNATURE_FACTOR` in u.
         """
         if self.kinks:
             speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
@@ -376,7 +381,10 @@ class ForceLaw(Ball):
         return np.concatenate([values.real, values.imag / H, scaled_duration[np.newaxis]])
 
     def _range(self, number: float) -> NDArray | None:
-        """Polynomials of :meth:`known_signature` in a range; None if impacts do not end."""
+        """Find the polynomials of :meth:`known_signature` for one range of speeds.
+
+        The result is None if a free impact at an end of the range has no release.
+        """
         points = chebyshev.chebpts1(SIGNATURE_DEGREE + 1)
         speeds = SIGNATURE_FACTOR ** (number + (points + 1) / 2)
         if np.isnan(self._followed(0.0, speeds[[0, -1]], 0.0, 0.0)[0]).any():
@@ -389,7 +397,8 @@ class ForceLaw(Ball):
     def guess(self, u: NDArray, T: NDArray) -> Guess | None:
         """Return free impacts of one ball as a guess of contacts with the speeds u and lengths T.
 
-        Their speeds differ from u by a factor of at most √2. None if some free impacts do not end.
+        The speeds of the free impacts differ from u by a factor of at most √2. The result is None
+        if a free impact has no release.
         """
         numbers, which = np.unique(np.floor(np.log(u) / np.log(GUESS_FACTOR)), return_inverse=True)
         for k in set(numbers) - self._free_impacts.keys():
@@ -402,10 +411,10 @@ class ForceLaw(Ball):
         return Guess(WHOLE[-most], push * (u / T), which, [inverse for _, inverse in known])
 
     def _free_impact(self, u: float) -> list[tuple[NDArray, NDArray]]:
-        """F of a free impact, in units of u/T, and the inverse of its linear equations.
+        """F of a free impact, in units of u/T, and the inverse matrix of its linear equations.
 
-        There is one pair for each set of nodes in :data:`WHOLE` that is fine enough; the finest set
-        is always included. The list is empty if the impact does not end.
+        The list has one such pair for each set of nodes in :data:`WHOLE` that is fine enough, and
+        always a pair for the finest set. It is empty if the free impact has no release.
         """
         *_, finest = WHOLE
         T = np.ravel(self.free(np.array([u])))
@@ -441,7 +450,7 @@ class ForceLaw(Ball):
         """Compute :meth:`signature` from free impacts at each speed and parameter.
 
         The impulse J = u + w + aD under a constant load a gives σ = ∂J/∂a - t_c ∂J/∂u at a = 0.
-        These derivatives are differences, so that u and the parameters may have complex steps.
+        Differences give these derivatives, so u and the parameters may have complex steps.
         """
         u = np.asarray(u)[..., np.newaxis]
         law = self.at(**{name: np.asarray(x)[..., np.newaxis] for name, x in self.values.items()})
@@ -449,7 +458,7 @@ class ForceLaw(Ball):
         impact = law.first_impact(0.0, speeds, 0.0, 0.0)[1]
         by_speed = (speeds + impact.speed)[..., :6] @ WEIGHTS / (SHIFT * u[..., 0])
         gap, speed, duration = (x[..., 6] for x in (impact.gap, impact.speed, impact.duration))
-        # The unit of the load stops a released ball within the duration of the contact.
+        # A load of this size would stop a released ball within the duration of the contact.
         load = SHIFT * np.real(speed / duration)[..., np.newaxis]
         loaded = law.first_impact(0.0, u, 0.0, load * SHIFTS)[1]
         by_load = (loaded.speed + load * SHIFTS * loaded.duration) @ WEIGHTS / load[..., 0]
@@ -458,7 +467,7 @@ class ForceLaw(Ball):
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
     def depth(self, u: Values) -> Values:
-        """Approximate depth P at which the force stops a ball with the speed u: P f(P, 0) = u²."""
+        """Approximate depth P, at which the force stops a ball with the speed u: P f(P, 0) = u²."""
         given = {name: np.real(x) for name, x in self.values.items()} | {"u": u}
         shape = np.broadcast_shapes(*(np.shape(x) for x in given.values()))
         low = np.full(shape, LN_DEPTHS[0])
@@ -471,7 +480,7 @@ class ForceLaw(Ball):
         return np.exp(low)
 
     def force_at(self, p: Values, v: Values, a: Values, given: Mapping) -> Values:
-        """f under the load a. ``given`` has the parameters and the speed u at the start."""
+        """Force f under the load a. ``given`` has the parameters and the closing speed u."""
         more = {"load": a, "start_speed": given["u"]}
         return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
 
@@ -483,7 +492,7 @@ class ForceLaw(Ball):
         if self.release == "displacement":
             return -q
         if self.lag:
-            # The q at which p + κp′ = 0, minus q. Its zero is simple even for κ = 0.
+            # This is -q plus the q at which p + κp′ = 0. The zero is simple even for κ = 0.
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
         return -self.force_at(q**self.root, v, load_of(t, given), given)
 
@@ -497,7 +506,7 @@ class ForceLaw(Ball):
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """As :meth:`.Ball.release_slopes`, if one panel is enough for each contact; otherwise None.
+        """Compute :meth:`.Ball.release_slopes`; None unless one panel is enough for each contact.
 
         The slopes come from the polynomials through the nodes of the panels.
         """
@@ -548,7 +557,7 @@ class ForceLaw(Ball):
         return rows, motion, np.array([q, given["u"]]), by
 
     def _guessed(self, rows: Rows) -> Guess | None:
-        """Free impacts as a guess of contacts with a known end; None if they are a bad guess."""
+        """Return free impacts as a guess of contacts with a known end; None if the guess is bad."""
         u = rows.given["u"]
         if self.root == 1 or self.kinks or not rows.size or not np.all(u > 0):
             return None
@@ -566,7 +575,7 @@ class ForceLaw(Ball):
         *,
         guessed: bool = True,
     ) -> tuple[Values, Impact]:
-        """Root time and state, at T if it is given, otherwise at the first release."""
+        """Return T and the state of contacts at T. By default T is the T of the first release."""
         values = {"tau": tau, "u": u, "amplitude": amplitude, "gravity": gravity}
         rows, motion, start, by = self._started(values if T is None else values | {"T": T}, table)
         given = rows.given
@@ -621,14 +630,14 @@ def _check_one(law: ForceLaw, given: dict) -> None:
 
 
 def _depth_of_one(law: ForceLaw) -> float:
-    """Depth at which the force stops a ball with the speed 1. Raises ValueError if it does not."""
+    """Depth at which the force stops a ball of the speed 1. Raises ValueError if there is none."""
     p = np.array([0.5, 1.0]) + 1j * H
     try:
         force = law.force_at(p, p, 0.0, {**law.values, "u": 1.0})
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(
-            f"force: fails for arrays of complex numbers, which need np.where instead of if"
+            f"force: fails for arrays of complex numbers: write np.where(...) instead of 'if'"
             f" ({reason})"
         ) from None
     if np.shape(force) != p.shape:
@@ -641,7 +650,7 @@ def _depth_of_one(law: ForceLaw) -> float:
 
 
 def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Callable) -> None:
-    """Compare the changes of the force between points x of lines with integrals of its slope."""
+    """Check that changes of the force between points x of lines are integrals of its slope."""
     nodes, weights = legendre.leggauss(4)
     width = np.diff(x)
     inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
@@ -682,12 +691,12 @@ def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:
     to_coefficients = np.linalg.inv(legendre.legvander(x, 23))
 
     def last(root: int) -> float:
-        """Last coefficients, divided by the middle ones or by rounding errors."""
+        """Last coefficients, divided by the middle coefficients or by rounding errors."""
         q = (x + 1) / 2 * (0.01 * depth) ** (1 / root)
         sizes = np.abs(to_coefficients @ law.force_at(q**root, 0.5 + 0 * q, 1.0, given))
         return sizes[-4:].max() / max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())
 
     if last(law.root) > 1:
         others = [m for m in (1, 2, 4, 6, 8) if last(m) <= 0.01]
-        hint = f"; root={others[0]} would do" if others else ""
+        hint = f"; give root={others[0]}" if others else ""
         raise ValueError(f"force: is not an analytic function of p^(1/{law.root}) at p = 0{hint}")

@@ -7,7 +7,8 @@ derivative of F. The motion is periodic with k impacts if
 2. the distance from s to the fixed point s* = s + (I - M)⁻¹ (F(s) - s) is less than `RETURNED`;
 3. the moduli of both eigenvalues of M (the multipliers) are less than 1 - `MARGIN`.
 
-A periodic motion is *locked* if the ball sticks to the table in each period (docs/orbits.md).
+The motion from s to F(s) is a *lap*. A periodic motion is *locked* if the ball sticks to the table
+in each period (docs/orbits.md). A *section* is a group of successive impacts.
 """
 
 from dataclasses import replace
@@ -50,13 +51,13 @@ MARGIN = 1e-3
 ROUNDING_GROWTH = np.log(RETURNED / 2.0**-52)
 """Logarithm of the growth that turns a rounding error into a deviation of `RETURNED`."""
 MIN_SECTION = 25
-"""Minimum number of impacts in a section. The growth of deviations is summed over each section."""
+"""Minimum number of impacts in a section. Growth of deviations is summed over each section."""
 MAX_SECTIONS = 1024
 """Maximum number of sections of a motion."""
 IMPACTS_AT_ONCE = 1 << 16
 """Number of impacts computed at once, summed over all balls."""
 RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
-"""Map that replaces a deviation by an arbitrary one after a lift-off."""
+"""Map that replaces a deviation by an arbitrary deviation after a lift-off."""
 RESET_OFFSET = 1e6
 """Offset larger than the logarithm of the growth over all impacts computed at once."""
 WORTH_A_MAP = 20_000
@@ -134,7 +135,7 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
 
 
 def are_rests(T: NDArray, duration: NDArray) -> NDArray:
-    """Whether impacts are rests on the table: T is 0, as for instants, but D is positive."""
+    """Whether impacts are rests on the table. Then T is 0, but D is positive."""
     return (T == 0) & (duration > 0)
 
 
@@ -182,8 +183,8 @@ def ends_of(balls: Balls, impacts: int) -> dict:
 def is_worth_a_map(balls: Balls, impacts: int) -> bool:
     """Whether an :class:`.ImpactMap` saves time.
 
-    It does if there are at least `WORTH_A_MAP` impacts, if the contact law must be integrated
-    numerically, and if all balls have the same parameters and the same table amplitude.
+    A map saves time if three conditions hold: there are at least `WORTH_A_MAP` impacts, the contact
+    law must be integrated numerically, and all balls have the same parameters and the same Λ.
     """
     ball = balls.ball
     if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
@@ -204,7 +205,7 @@ def _take(track: dict, which: Any) -> dict:
 
 @np.errstate(all="ignore")
 def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
-    """Follow balls until the motion of each is known, and store it in ``found``.
+    """Follow balls until the motion of each ball is known, and store the motions in ``found``.
 
     Floating-point warnings are off, because deviations overflow in long motions and vanish at a
     lift-off.
@@ -278,7 +279,7 @@ def grow_deviations(
     length = np.hypot(*vectors)
     growth = np.diff(logarithms + np.log(length), axis=0, prepend=0.0)
     growth = np.where(lifts, 0.0, growth)
-    # Shift the sums down at each lift-off, so that the running minimum restarts there.
+    # Shift the sums down at each lift-off. The running minimum then restarts at the lift-off.
     number = lifts.cumsum(axis=0)
     sums = growth.cumsum(axis=0) - RESET_OFFSET * number
     climb = sums - np.minimum(np.minimum.accumulate(sums, axis=0), -track["climb"])
@@ -368,12 +369,12 @@ def largest_multiplier(trace: NDArray, determinant: NDArray) -> NDArray:
 
 
 def contraction(maps: NDArray) -> NDArray:
-    """Logarithm of the absolute determinant of each map: the contraction of areas."""
+    """Logarithm of the contraction of areas, the modulus of the determinant of each map."""
     return np.log(np.abs(maps[0, 0] * maps[1, 1] - maps[0, 1] * maps[1, 0]))
 
 
 def _store_resting(found: dict, lane: NDArray, record: NDArray, going: NDArray, seen: int) -> None:
-    """Store balls that stay on the table or whose contact would resume below it."""
+    """Store balls that stay on the table, or whose contact would resume below the table."""
     resting = np.delete(np.arange(lane.size), going)
     count = np.isfinite(record[:, 0, resting]).sum(axis=0)
     stays = np.isinf(record[count - 1, 4, resting])
@@ -499,8 +500,9 @@ def exponent(growth: NDArray, time: NDArray, areas: NDArray) -> tuple[float, flo
     Nearly elastic balls change their energy slowly. The start of the motion is therefore ignored:
     the first quarter of the sections, or the first `SETTLING_LENGTHS` relaxation lengths if these
     are longer. Neighbouring sections are correlated, so the error is the maximum over blocks of 1,
-    2, 4, ... sections (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). It is multiplied by
-    the ratio of the quantiles of Student's t and normal distributions.
+    2, 4, ... sections (Flyvbjerg and Petersen, J. Chem. Phys. 91, 461, 1989). The error is
+    multiplied by the ratio of a quantile of Student's t distribution to the same quantile of the
+    normal distribution.
 
     Parameters
     ----------
@@ -574,12 +576,12 @@ def motion_of(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motion on which a ball ends; the first impact is that of :func:`.simulate`.
+    """Find the motion on which a ball ends, after a first impact as in :func:`.simulate`.
 
     Parameters
     ----------
     ball, amplitude, phase, velocity, relative_velocity, table
-        As in :func:`.simulate`; arrays span a grid.
+        As in :func:`.simulate`. Arrays span a grid.
     impacts : int
         Number of impacts after which the search for a repetition ends. It is rounded up to a
         multiple of 25, or of ⌈impacts/1024⌉ if that is larger.
@@ -666,8 +668,8 @@ def lyapunov(
         Number of neighbours of each motion that looks chaotic. They start next to its last state,
         and each is followed for up to ``impacts`` impacts. If a neighbour comes to rest on the
         table or repeats its motion, the chaos may be a transient. The kind is then "undecided", and
-        the exponent is NaN. With 0 neighbours, transients are not detected, and a contact law takes
-        a third of the time.
+        the exponent is NaN. With 0 neighbours, transients are not detected, and a ball with a
+        contact law takes a third of the time.
 
     Returns
     -------
@@ -716,10 +718,10 @@ def lyapunov(
 def fastest(ball: Ball, amplitude: Values, table: Table = SINE) -> Values:
     """Return a speed above which every impact slows the ball: (1 + r) max(V, 1)/(1 - r).
 
-    V is the maximum speed of the table: Λ for a sine. After an impact at the absolute speed v, the
-    speed is at most r v + (1 + r) V. This is less than v if v is above the returned speed. r is the
-    restitution coefficient of a free impact at the speed 2π, or 0 if that impact never ends. A
-    divisor 1 - r below 0.05 is replaced by 0.05.
+    V is the maximum speed of the table, which is Λ for a sine. After an impact at the absolute
+    speed v, the speed is at most r v + (1 + r) V. This is less than v if v is above the returned
+    speed. r is the restitution coefficient of a free impact at the speed 2π, or 0 if that impact
+    never ends. A divisor 1 - r below 0.05 is replaced by 0.05.
 
     Examples
     --------
@@ -757,8 +759,8 @@ def basins(
     table : Table
         Waveform of the table, by default a sine.
     impacts : int
-        Maximum number of impacts of a ball, as in :func:`motion_of`. A ball is no longer followed
-        once its motion is known.
+        Maximum number of impacts of a ball, as in :func:`motion_of`. A ball is followed until
+        its motion is known.
 
     Returns
     -------
@@ -774,9 +776,9 @@ def basins(
           error.
         - ``end_phase``, ``end_velocity``: fastest impact of the motion.
 
-        Two motions that repeat count as one only if their impacts agree. Motions of unknown period
-        count as one motion per kind, whose fastest impact is NaN. The attribute ``impacts`` is the
-        argument of the same name.
+        Two motions that repeat count as one motion only if their impacts agree. All motions of one
+        kind with an unknown period count as one motion, and its fastest impact is NaN. The
+        attribute ``impacts`` is the argument of the same name.
 
     Raises
     ------
@@ -880,9 +882,10 @@ def orbit_diagram(
     amplitude : float or array
         Λ. Either Λ or one parameter of the ball must be an array.
     starts : int
-        Number of balls at each value, spread evenly over phases and speeds. An equal number starts
-        from the final states at the next larger value, and a third set from the final states at the
-        next smaller value. Motions are thus followed in both directions.
+        Number of balls at each value. Their starts are spread evenly over phases and speeds. The
+        same number of balls starts from the final states at the next larger value, and again the
+        same number from the final states at the next smaller value. Motions are thus followed in
+        both directions.
     samples : int
         Number of recorded impacts of each motion.
     impacts, table
@@ -963,7 +966,7 @@ def orbit_of_motion(
     ------
     OrbitNotFound
         If the motion does not repeat, if the ball rests several times before it repeats, or if a
-        :class:`.Corrected` rests on the table.
+        :class:`.Corrected` ball rests on the table.
     ValueError
         As :func:`.simulate`.
 

@@ -1,7 +1,7 @@
 """Contact laws with names: functions that return a :class:`.ForceLaw` (docs/laws.md).
 
-Give either the parameters of the force, as numbers or arrays, or the restitution coefficient and
-the duration of a free impact at a speed.
+Give a law in one of two ways: by the parameters of its force, as numbers or arrays; or by the
+restitution coefficient, the duration and the speed of a free impact.
 
 All quantities are dimensionless. Let a ball of mass m bounce on a table of frequency Ω under
 gravity g. Then p = Ω²x/g is the penetration, and f = F/(mg) is the force per mass. Some laws use
@@ -37,7 +37,7 @@ UNITS_OF_RATIOS = {"frequency_ratio": (0, 0, -1), "damping_ratio": NUMBER}
 """Units of ϖ and ζ."""
 
 STEPPED = 0.1
-"""Depth d, divided by the scale P of the penetration, of a law that is given by an impact."""
+"""Depth d of a law that is given by an impact, divided by the scale P of the penetration."""
 
 MOST_DAMPED = 1e4
 """Maximum damping that is tried for a restitution coefficient, in the unit of each law."""
@@ -46,7 +46,7 @@ MOST_DAMPED = 1e4
 def law_of_impact(
     law_of: Callable, restitution: Values, duration: Values, speed: Values
 ) -> ForceLaw:
-    """Find the law whose free impact at a speed has a restitution coefficient and a duration.
+    """Find the law whose free impact at a speed has a given restitution coefficient and duration.
 
     Parameters
     ----------
@@ -89,7 +89,7 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
     """Damping g that gives a restitution coefficient, and D of this law for P = v = 1."""
 
     def impact(damping: Values) -> tuple[float, float]:
-        """w and D of a free impact with the speed 1; w = 0 if the ball stays."""
+        """w and D of a free impact with the speed 1; w = 0 if the ball stays on the table."""
         _, end = law_of(damping, 1.0, 1.0).first_impact(0.0, 1.0, 0.0, 0.0)
         return float(np.nan_to_num(end.speed)), float(end.duration)
 
@@ -106,8 +106,8 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
     if abs(r - restitution) > 1e-9:
         least = max(r, impact(low)[0])
         raise ValueError(
-            f"restitution = {restitution:g}: this law has none between 0 and {least:.4g};"
-            f" give a larger one"
+            f"restitution = {restitution:g}: this law has no value between 0 and {least:.4g};"
+            f" give a larger value"
         )
     return damping, duration
 
@@ -115,7 +115,7 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
 def _given(
     values: dict[str, Values], impact: dict[str, Values], of_scales: Callable, **kind: Any
 ) -> ForceLaw:
-    """Return a law from the values of its parameters, or from an impact.
+    """Return a law that is given by the values of its parameters, or by an impact.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ def linear(
 
     - "displacement": where p = 0;
     - "force": where f = 0;
-    - "approach": where p = 0, and the damper acts only on approach, p′ > 0.
+    - "approach": where p = 0. The damper then acts only while p′ > 0, when the ball approaches.
 
     Examples
     --------
@@ -321,9 +321,9 @@ def adams_impact(
 ) -> ForceLaw:
     """f = max(0, K p^{3/2} + C s p′) with K > 0, C ≥ 0, d > 0: the function IMPACT of Adams.
 
-    The force is 0 where the damper would make it pull. The contact ends at p = 0. The damping is
-    full from the depth d on, so much shallower impacts lose little energy. If an impact is given, d
-    is a tenth of (v²/K)^{2/5}.
+    The force is 0 where the damper would make it pull. The contact ends at p = 0. The damping
+    increases up to the depth d, and is constant at larger depths. Impacts that reach only a small
+    part of d therefore lose little energy. If an impact is given, d is a tenth of (v²/K)^{2/5}.
 
     Sources: the manuals of SolidWorks Motion and Altair MotionSolve.
     """
@@ -339,7 +339,7 @@ def adams_impact(
 
 
 def _step(p: Values, depth: Values) -> Values:
-    """s(p)."""
+    """Cubic step s at the penetration p."""
     x = p / depth
     return np.where(np.real(x) < 1, x * x * (3 - 2 * x), 1.0)
 
@@ -372,9 +372,9 @@ def simscape_contact(
 ) -> ForceLaw:
     """f = s (K p + C p′) with K > 0, C ≥ 0, d > 0: Spatial Contact Force of Simscape Multibody.
 
-    Spring and damper increase over a transition region of width d. The contact ends where the force
-    vanishes: p + κp′ = 0 with κ = C/K. The manual gives no formula of the step, so a cubic is
-    assumed. If an impact is given, d is a tenth of v/√K.
+    The forces of spring and damper increase over a transition region of the width d. The contact
+    ends where the force vanishes: p + κp′ = 0 with κ = C/K. The manual gives no formula of the
+    step, so a cubic is assumed. If an impact is given, d is a tenth of v/√K.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},

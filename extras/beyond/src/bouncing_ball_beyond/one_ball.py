@@ -1,4 +1,4 @@
-r"""Follow one ball from impact to impact on a sinusoidal table, with scalar loops.
+r"""Use scalar loops to follow one ball from impact to impact on a sinusoidal table.
 
 Landings and releases are first zeros of functions f ≥ 0. Bounds of the derivatives, f″ ≥ -K and
 \|f‴\| ≤ J, give steps that never pass a zero (docs/impacts.md).
@@ -20,14 +20,14 @@ REACH = 4.0
 See docs/impacts.md.
 """
 PATIENCE = 100 * PERIOD
-"""Duration, times Ω, from which a contact without a release counts as permanent."""
+"""Duration, multiplied by Ω, above which a contact without a release counts as permanent."""
 SLOWEST = 1e-12
-"""Closing speed of a ball that is laid on the table, instead of 0."""
+"""Closing speed that replaces 0 for a ball that is laid on the table."""
 CHATTER = 1e-5
-"""Largest T₀ and Λ T₀, divided by the gravity on the table, at which chattering is summed up.
+"""Limit of T₀ and Λ T₀, divided by the gravity on the table, below which bounces are summed up.
 
-T₀ is the time in which all bounces end; see :func:`settling`. The relative error of the sum is of
-the order of the square of this limit.
+T₀ is the time in which infinitely many bounces end; see :func:`settling`. The relative error of the
+sum is of the order of the square of this limit.
 """
 STEPS = 20_000
 """Maximum number of steps of a search for a zero. A search that needs more returns NaN.
@@ -106,8 +106,8 @@ def resumption(
     """Follow a ball that was released below the level of the table until it rises above the level.
 
     Returns whether the contact resumes, and a time after the release. The contact resumes if
-    δ + κδ′ falls back to zero; the time is then that of the zero. Otherwise the ball is above the
-    level of the table at this time.
+    δ + κδ′ falls back to zero, and the time is then the time of this zero. Otherwise the ball is
+    above the level of the table at the returned time.
     """
     forcing = amplitude * math.sqrt(1 + kappa * kappa)
     t = 0.0
@@ -166,7 +166,7 @@ def contact(
     """Return δ, δ′, w and w′ at the time s after the start of a contact, for ζ < 1.
 
     The contact starts with δ = gap and δ′ = -u. w and w′ are the height and the velocity of the
-    table. Same formulas as :func:`.oscillator.closed_motion`, for real numbers.
+    table. The formulas are those of :func:`.oscillator.closed_motion`, for real numbers.
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
@@ -272,7 +272,7 @@ def settling(w: float, r: float, x: float, y: float, amplitude: float) -> float:
 
 
 def until_lift_off(phase: float, amplitude: float) -> float:
-    """Return the time until Λ sin τ rises to 1, when a resting ball leaves (Eq. 9), or infinity."""
+    """Return the time until a resting ball leaves at Λ sin τ = 1 (Eq. 9); it may be infinite."""
     if amplitude <= 1:
         return math.inf
     wait = (math.asin(1 / amplitude) - phase) % PERIOD
@@ -326,7 +326,7 @@ def impacts(
     kappa: float,
     out: NDArray,
 ) -> tuple:
-    """Compute impacts of a ball and record them in the rows of ``out``, with `COLUMNS`.
+    """Compute impacts of a ball. Record them in the rows of ``out``, in the columns `COLUMNS`.
 
     If the frequency ratio is 0, the impacts are instantaneous. Returns whether the ball stays on
     the table, and the turns, the phase and the closing speed of the next impact.
@@ -356,7 +356,7 @@ def impacts(
         passed, phase = reduced(phase + duration)
         turns += passed
         if rests:
-            # Assign the exact phase of the lift-off: motions after equal lift-offs are then equal.
+            # Assign the exact phase of the lift-off. Motions after equal lift-offs are then equal.
             phase = leaves
         x = amplitude * math.cos(phase)
         y = amplitude * math.sin(phase)

@@ -1,4 +1,4 @@
-"""The linear contact: a ball on a spring and a damper, on any table.
+"""Contacts of a ball with a spring and a damper, on any table.
 
 The equation of motion is δ″ + 2ζϖδ′ + ϖ²δ = -1 - w″ (Eq. 11). The solution is a sum of responses
 of an oscillator that starts at rest:
@@ -9,8 +9,9 @@ of an oscillator that starts at rest:
 
       h = (e^{iks} - K - ikg)/(ϖ² - k² + 2ikζϖ)
 
-The formulas contain 1 - K and 1 - cos ks, so that short contacts keep all digits. Near a resonance
-ϖ = k and near ζ = 1 terms cancel, and doublings compute the responses. Motions may be complex.
+The formulas contain 1 - K and 1 - cos ks, so results for short contacts keep all digits. Near a
+resonance ϖ = k and near ζ = 1, terms of these formulas cancel. There the responses are computed by
+*doublings* (:func:`doubled_motion`). Motions may be complex.
 """
 
 from math import factorial
@@ -27,7 +28,7 @@ UNDERDAMPED = 0.99
 """Damping ratio above which the search for a release computes contacts by doublings."""
 
 TERMS = 20
-"""Number of terms of Taylor series, for times of at most 1."""
+"""Number of terms of the Taylor series, which are used for times of at most 1."""
 
 FACTORS = np.array([[1 / factorial(j + n) for j in range(TERMS)] for n in range(4)])
 """1/(j + n)!: factor of derivative j in the Taylor series of an n-fold integral."""
@@ -51,7 +52,7 @@ class Motion(NamedTuple):
 
 
 def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Values:
-    """Whether a contact is near the resonance with a harmonic of the table; see `DELICATE`."""
+    """Whether a contact is near a resonance with a harmonic of the table; see `DELICATE`."""
     near = False
     for k in orders:
         detuning = ratio * ratio - k * k
@@ -157,7 +158,7 @@ def doubled_motion(
     *,
     loads: bool = True,
 ) -> Motion:
-    """Return the state of a contact as :func:`closed_motion` does, by doublings.
+    """Compute the state of a contact of :func:`closed_motion` by doublings.
 
     Taylor series give the responses at the time s/2^m, and each of m doublings doubles the time.
     This involves no division, so no digits are lost at resonances. The responses are g and g′ to an
@@ -171,7 +172,7 @@ def doubled_motion(
     doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
     part = (s + 0 * loss) / 2.0**doublings
     square = part * part
-    # Derivatives j of g′ at 0, times part^j; `bends` below contains those of C″.
+    # Derivatives j of g′ at 0, times part^j. Below, `bends` contains the derivatives of C″.
     rates = np.empty((TERMS, *np.shape(part)), np.asarray(part).dtype)
     rates[0] = 1.0
     rates[1] = damped = -loss * part
@@ -217,7 +218,7 @@ def doubled_motion(
 def _series(derivatives: Values, *integrals: int) -> list:
     """Return n-fold integrals of a function, divided by timeⁿ, for several n.
 
-    ``derivatives`` contains its derivatives of the orders j at 0, times timeʲ, shape (TERMS, ...).
+    ``derivatives`` contains timeʲ times the derivative of order j at 0, shape (TERMS, ...).
     """
     flat = derivatives.reshape(TERMS, -1)
     return [(FACTORS[n] @ flat).reshape(derivatives.shape[1:]) for n in integrals]
@@ -268,12 +269,14 @@ def motion(
 def forcing(
     table: Table, waves: list, ratio: Values, zeta: Values, kappa: Values, resonant: Values
 ) -> tuple:
-    """Return four bounds that are constant during a contact, for :func:`bounds`.
+    """Return four numbers for :func:`bounds` that are constant during a contact.
+
+    F is the free oscillation of the release function (docs/impacts.md).
 
     1. The largest steady response of δ + κδ′ to the table.
     2. The contribution of the table to K: the largest second derivative of this response.
     3. The contribution of the table to J: the largest third derivative of this response.
-    4. The largest growth of the energy e of F: 0 away from resonances.
+    4. The largest growth of the energy e of F. It is 0 away from resonances.
 
     Near a resonance F includes the steady response. The first bound is then 0, and the second and
     the third bound follow from the forces.

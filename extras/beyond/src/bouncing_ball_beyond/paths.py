@@ -25,7 +25,7 @@ OF_TABLES = ("harmonic_", "phase_")
 
 @dataclass(frozen=True)
 class Path:
-    """A path along one parameter: "amplitude" (Λ), or a parameter of the ball or of the table."""
+    """A path along the parameter "amplitude" (Λ), or a parameter of the ball or of the table."""
 
     name: str
 
@@ -83,7 +83,7 @@ class Frequency(Path):
 
 
 def path_of(along: str, ball: Ball, table: Table = SINE) -> Path:
-    """Return the path of a name. Raises ValueError if ball and table have no such parameter."""
+    """Return the path with a name. Raises ValueError if ball and table have no such parameter."""
     allowed = ["amplitude", "frequency", *ball.parameters, *table.parameters]
     if along in allowed:
         return Frequency() if along == "frequency" else Path(along)
@@ -99,7 +99,7 @@ def usual_range(path: Path, value: float, least: float, greatest: float) -> tupl
     """Return the default range of a parameter, cut off at its limits ``least`` and ``greatest``.
 
     A phase covers one turn: value ± π. For other parameters the upper end is the larger of 10 and
-    10 |value|. The lower end is value/10 if value > 0. Otherwise it is minus the upper end.
+    10 |value|. The lower end is value/10 if value > 0, and otherwise minus the upper end.
     """
     if path.name.startswith("phase_"):
         return value - np.pi, value + np.pi

@@ -1,6 +1,7 @@
 """Find periodic orbits of a ball at one amplitude.
 
-These are the n-T orbit, all orbits with k impacts in m periods, or the orbit near a guess.
+Three searches are possible: for the n-T orbit, for all orbits with k impacts in m periods, and for
+the orbit near a guess.
 """
 
 from typing import Any
@@ -75,9 +76,9 @@ def orbit(
     Returns
     -------
     PeriodicOrbit or list
-        One orbit if all arguments are numbers. If arguments are arrays, a list with an entry for
-        each element of the broadcast arrays: the orbit, or the OrbitNotFound if it does not exist.
-        If no ball follows the orbit, its ``admissible`` is False.
+        One orbit if all arguments are numbers. If arguments are arrays, a list with one entry for
+        each element of the broadcast arrays. The entry is an orbit, or an OrbitNotFound if the
+        orbit does not exist. If no ball follows an orbit, ``admissible`` of the orbit is False.
 
     Raises
     ------
@@ -111,14 +112,15 @@ def orbit(
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
-    """Return one orbit, or the OrbitNotFound, for each row.
+    """Return one orbit, or an OrbitNotFound, for each row.
 
-    In this order:
+    The first possible result of this list is returned:
 
-    1. the orbit with the shortest contact on the side of the saddle-node, if a ball follows it;
-    2. the OrbitNotFound, if Λ is below the saddle-node of the branch;
-    3. an orbit that no ball follows: the orbit of ``near``, or otherwise of the search;
-    4. the OrbitNotFound.
+    1. the orbit with the shortest contact on the given side of the saddle-node, if a ball follows
+       this orbit;
+    2. an OrbitNotFound, if Λ is below the saddle-node of the branch;
+    3. an orbit that no ball follows, from ``near`` or, if there is none, from the search;
+    4. an OrbitNotFound.
     """
     shortest, admissible = shortest_contacts(equations, amplitude, sign)
     found: list = [*shortest]

@@ -1,4 +1,4 @@
-"""Integrate contacts of any force law, in a time in which the motion is analytic (docs/panels.md).
+"""Integrate contacts of any force law in a time in which the motion is analytic (docs/panels.md).
 
 1. Root time. The penetration p satisfies p″ = a - f(p, p′), with the load a = g + w″(τ + t). Forces
    such as p^{3/2} are analytic functions of q = p^{1/m}. In the *root time* s, with dt = λ ds and
@@ -13,17 +13,18 @@
    oscillation in s.
 3. Accuracy (:func:`_resolved`). If the last Legendre coefficients of v are ε, the error of the end
    of the panel is of the order ε².
-4. Events (:func:`_next_panel`). A panel ends where the force has a kink, at the release, and at the
-   end of a period of the table.
-5. Barely reached ends (:func:`_maxima`). A panel also ends at a maximum of the release function
-   that may be above zero.
-6. Permanent contacts (:meth:`_Contacts.compare_periods`).
+4. Events (:func:`_next_panel`). An *event* is a kink of the force, the release, or the end of a
+   period of the table. A panel ends at its first event.
+5. Ends that the motion only just reaches (:func:`_maxima`). A panel also ends at a maximum of the
+   release function that may be above zero.
+6. Permanent contacts (:meth:`_Contacts.compare_periods`). The motion is compared with the motion
+   one period before.
 7. Derivatives (:func:`carried`). They solve the linearised equations of the collocation.
 8. Contacts up to a known end (:func:`integrate_to`). A contact that resembles a free impact of its
    speed is one panel. The linear equations of the free impact then make each sweep nearly a Newton
    step.
 9. Linear solvers (:func:`by_newton`, :func:`are_solved_directly`). The size of the equations
-   decides.
+   determines the solver.
 
 Arrays of contacts have the shape (rows,), values at nodes the shape (nodes, rows), and derivatives
 the shape (directions, rows).
@@ -47,16 +48,16 @@ from bouncing_ball_beyond.tables import Table, Values
 # 1e-11, and the numbers of evaluations within 5 %.
 
 RESOLVED = 1e-7
-"""Largest last Legendre coefficients of v of an accepted panel, divided by its maximum speed.
-The error at the end of the panel is their square. At half: no effect. At twice: 5 % fewer
-evaluations."""
+"""Limit of the last Legendre coefficients of v of an accepted panel, divided by the maximum speed.
+The error at the end of the panel is the square of these coefficients. At half: no effect. At twice:
+5 % fewer evaluations."""
 
 FALLING = 0.02
 """Largest ratio of the last to the middle Legendre coefficients of an accepted panel.
 If a panel contains a kink, the ratio is (1/2)² to (1/2)³, and the error is larger than the square
 of the last coefficients. At half and at twice: no effect. `FALLING` matters for kinks that the law
-does not declare: without it, the median error of ends with a limited damper is 4e-9 instead of
-5e-15."""
+does not declare. For example, with a limited damper and without `FALLING`, the median error of ends
+is 4e-9 instead of 5e-15."""
 
 SMOOTH = 1e-13
 """Size of the last coefficients below which a panel is accepted even if its coefficients do not
@@ -64,15 +65,15 @@ fall, because all of them are rounding errors. At half and at twice: no effect."
 
 SWEEPS = 20
 """Maximum number of sweeps of a panel. A panel that needs more sweeps is made shorter.
-At half: 14 % more evaluations. At twice: one slow contact with a barely reached end changes by
-2e-3."""
+At half: 14 % more evaluations. At twice: one slow contact, whose end is only just reached, changes
+by 2e-3."""
 
 CONVERGED = 1e-13
 """Change of v in a sweep, divided by the maximum speed, below which the sweeps stop.
 At half and at twice: evaluations change by 3 %."""
 
 ACCEPTED_CHANGE = 1e-12
-"""Largest last change of v, divided by the maximum speed, of an accepted panel.
+"""Limit of the last change of v, divided by the maximum speed, for a panel to be accepted.
 At half and at twice: evaluations change by 3 %."""
 
 EARLY = 3
@@ -85,10 +86,10 @@ At half and at twice: evaluations change by 3 %. This value needed the fewest sw
 
 LONGER = 2.0
 """Largest ratio of the lengths of successive panels.
-At half panels cannot grow: 2.6 times as many evaluations. At twice: no effect."""
+At half: panels cannot grow, and evaluations increase by a factor of 2.6. At twice: no effect."""
 
 EVENT_STEP = 1e-13
-"""Largest last Newton step to an event, divided by the length of the panel.
+"""Newton step to an event, divided by the length of the panel, below which the event is found.
 At half and at twice: no effect."""
 
 SAME = 1e-10
@@ -101,17 +102,17 @@ MOST_PANELS = 4000
 An impact needs about six. At half: the ends of contacts with 2000 to 4000 panels would be NaN."""
 
 PATIENT = 40
-"""Number of panels after which Newton's method solves a contact, because the ball lies on the
-table. At half and at twice: no effect. Without `PATIENT`, 100 contacts of a strongly damped law, 54
+"""Number of panels after which the ball lies on the table, and Newton's method solves the contact.
+At half and at twice: no effect. Without `PATIENT`, 100 contacts of a strongly damped law, 54
 of them permanent, take 22 times as many evaluations."""
 
 PERIODS = 30
-"""Number of periods after which a contact counts as permanent, unless the caller gives another.
+"""Number of periods after which a contact counts as permanent. The caller may give another number.
 At half and at twice: no effect."""
 
 SAFE = 8.0
-"""Safety factor on the sum of all further changes of a contact. If this multiple of the sum cannot
-lift the ball, the contact is permanent: see :meth:`_Contacts.compare_periods`.
+"""Safety factor on the sum of all further changes of a contact. If the sum times this factor cannot
+lift the ball, the contact is permanent; see :meth:`_Contacts.compare_periods`.
 At half: 5 % fewer evaluations. At twice: 3 % more."""
 
 CONTACTS_AT_ONCE = 1000
@@ -119,13 +120,13 @@ CONTACTS_AT_ONCE = 1000
 At half and at twice: the same time within 25 %."""
 
 FEW_CONTACTS = 50
-"""Number of contacts up to which linear equations are solved directly; above it, by sweeps.
-Up to this number and if m = 1, Newton's method solves the panels.
-At half and at twice: the same time within 25 %."""
+"""Number of contacts up to which linear equations are solved directly instead of by sweeps. Up to
+this number, Newton's method also solves the panels if m = 1. At half and at twice: the same time
+within 25 %."""
 
 FEW_ENTRIES = 2 * 80 * 80
-"""Number of matrix entries up to which linear equations of whole contacts are solved directly;
-above it, by sweeps. These matrices fit into a processor's cache.
+"""Number of matrix entries up to which linear equations of whole contacts are solved directly.
+Such matrices fit into a processor's cache. Larger equations are solved by sweeps.
 At half and at twice: the same time within 25 %."""
 
 TINY = 1e-300
@@ -171,7 +172,7 @@ WHOLE = tuple(Gauss.of_order(n) for n in (32, 48, 64, 80))
 
 
 class Guess(NamedTuple):
-    """Guesses of whole contacts, from free impacts.
+    """Guesses of whole contacts. They are free impacts.
 
     Attributes
     ----------
@@ -194,7 +195,7 @@ class Guess(NamedTuple):
         return self._replace(push=self.push[:, rows], which=self.which[rows])
 
     def corrected(self, missing: NDArray) -> NDArray:
-        """Estimate the correction of F from its residual ``missing``, shape (nodes, ..., rows)."""
+        """Estimate the correction of F from the residual ``missing``, shape (nodes, ..., rows)."""
         if len(self.inverses) == 1:
             flat = self.inverses[0] @ missing.reshape(len(missing), -1)
             return flat.reshape(missing.shape)
@@ -207,9 +208,9 @@ class Guess(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Numbers and arrays, real or complex, as rows of contacts and directions of complex steps.
+    """Values of contacts, one row for each contact, and their complex steps in several directions.
 
-    If the real parts of complex arrays are equal along the first axis, this axis counts directions.
+    The first axis counts directions if the real parts of complex arrays are equal along this axis.
 
     Attributes
     ----------
@@ -218,7 +219,7 @@ class Rows(NamedTuple):
     given : dict of numbers or arrays, shape (rows,)
         Real parts.
     steps : dict of arrays, shape (directions, rows)
-        Imaginary parts, if they are not all zero. Directions without a step are left out.
+        Imaginary parts that are not all zero. Directions without a step are left out.
     size : int
         Number of rows.
     stepped : array of bool
@@ -344,7 +345,7 @@ def rates(motion: ContactMotion, state: Sequence | NDArray) -> tuple:
 def event_rate(
     motion: ContactMotion, event: Callable, state: Sequence | NDArray
 ) -> tuple[NDArray, NDArray]:
-    """Return an event function and its derivative with respect to s along the motion."""
+    """Return an event function, and its derivative with respect to s along the motion."""
     beside = (y + 1j * H * rate for y, rate in zip(state, rates(motion, state), strict=True))
     value = event(*beside, motion.given)
     return value.real, value.imag / H
@@ -427,7 +428,7 @@ class LinearizedPanel(NamedTuple):
         return self.h * flat.reshape(values.shape)
 
     def time(self, q: NDArray) -> NDArray:
-        """Return δt at the nodes, from δq."""
+        """Compute δt at the nodes from δq."""
         return self.integrated(self.bend * q)
 
     def felt(self, q: NDArray, v: NDArray, t: NDArray) -> NDArray:
@@ -451,7 +452,7 @@ class LinearizedPanel(NamedTuple):
         return np.linalg.solve(self.matrix(), np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
 
     def swept(self, known: NDArray, guess: Guess | None = None) -> NDArray:
-        """Solve for δF as :meth:`solved`, by sweeps. They converge as the sweeps of the motion."""
+        """Solve for δF by sweeps. They converge as fast as the sweeps of the motion."""
         push = guess.corrected(known) if guess else known
         rate = self.integrated(push)
         change = np.zeros(rate.shape[1:])
@@ -470,7 +471,7 @@ class LinearizedPanel(NamedTuple):
 
 
 def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPanel:
-    """Linearise panels about a motion with complex steps of the force."""
+    """Use complex steps of the force to linearise panels about a motion."""
     q, v, t = nodes
     given = motion.given
     m = motion.root
@@ -490,7 +491,7 @@ def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPane
 def _end_of(start: Sequence, h: NDArray, slopes: tuple, weights: NDArray) -> tuple:
     """Return q, v and t at the ends of panels.
 
-    ``slopes`` are their derivatives with respect to s at the nodes.
+    ``slopes`` are the derivatives of q, v and t with respect to s at the nodes.
     """
     return tuple(y + h * (weights @ slope) for y, slope in zip(start, slopes, strict=True))
 
@@ -518,12 +519,12 @@ def solve_panel(
     start : sequence of arrays, shape (rows,)
         q, v and t at the starts.
     h : array, shape (rows,)
-        Lengths of the panels. If there is an event, they are guesses.
+        Lengths of the panels. If there is an event function, the lengths are guesses.
     event : callable, optional
-        Event function, at whose zero the panels end. In each sweep a Newton step moves the end of
-        each panel towards the zero.
+        Event function. The panels end at its zero. In each sweep a Newton step moves the end of
+        each panel towards this zero.
     within : float or array, shape (rows,)
-        Largest last step to an event that is found.
+        Length of the Newton step to an event below which the event is found.
     push : float or array, shape (nodes, rows)
         Guess of F.
     newton : bool
@@ -655,9 +656,9 @@ def _first_event(
     """Find the first event of each panel.
 
     Returns the index of the event, -1 if there is none, and an estimate of its position on [0, 1].
-    ``side`` contains the signs of the event functions before their events. This function updates
-    signs of kinks that are unknown (0), or that changed at the end of the last panel together with
-    another event.
+    ``side`` contains the signs of the event functions before their events. Two kinds of signs of
+    kinks are updated: unknown signs (0), and signs that changed at the end of the last panel
+    together with another event.
     """
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     which = np.full(start[0].size, -1)
@@ -674,7 +675,8 @@ def _first_event(
         low = np.abs(values[after - 1, crossed])
         high = np.abs(values[after, crossed])
         here = x[after - 1] + (x[after] - x[after - 1]) * low / np.maximum(low + high, TINY)
-        # An event function may be zero at the start of a contact, which does not end there.
+        # An event function may be zero at the start of a contact, but the contact does not end
+        # there.
         here = np.maximum(here, x[1] / 2)
         earlier = here < place[crossed]
         place[crossed[earlier]] = here[earlier]
@@ -687,16 +689,16 @@ def _maxima(
 ) -> tuple[NDArray, NDArray]:
     """Find maxima between nodes at which an event function may reach zero.
 
-    Returns the rows of the panels with a maximum, and its positions on [0, 1]. ``before`` contains
-    the signs of the function before its event. ``states`` are (q, v, t) at the starts, nodes and
-    ends of the panels.
+    Returns the rows of the panels with a maximum, and the positions of the maxima on [0, 1].
+    ``before`` contains the signs of the function before its event. ``states`` are (q, v, t) at the
+    starts, nodes and ends of the panels.
     """
     below = -before * event(*states, motion.given)
     middle = below[1:-1]
     rises = middle - below[:-2]
     falls = middle - below[2:]
-    # The maximum of a parabola through three values exceeds the largest value by less than the
-    # difference of this value from the others.
+    # The maximum of a parabola through three values is less than d above the largest value. Here d
+    # is the larger difference between the largest value and the other values.
     near = (rises >= 0) & (falls > 0) & (middle + np.maximum(rises, falls) > 0)
     node, row = np.nonzero(near)
     if not row.size:
@@ -718,7 +720,7 @@ def _maxima(
 def _first_maximum(
     motion: ContactMotion, events: tuple, side: NDArray, start: Sequence, panel: Panel
 ) -> NDArray:
-    """Position on [0, 1] of the first of the :func:`_maxima` of all events, or infinity."""
+    """Position on [0, 1] of the first maximum in :func:`_maxima` of all events, or infinity."""
     states = [np.vstack(x) for x in zip(start, panel.nodes, panel.end, strict=True)]
     first = np.full(start[0].size, np.inf)
     for event, before in zip(events, side, strict=True):
@@ -813,9 +815,9 @@ def by_newton(motion: ContactMotion, contacts: int, lies: bool) -> bool:
 def are_solved_directly(linear: LinearizedPanel, newton: bool, guess: Guess | None) -> bool:
     """Whether the equations of derivatives are solved directly instead of by sweeps.
 
-    They are if there are at most `FEW_CONTACTS` panels, or if Newton's method solved the panels.
-    The limit for whole contacts is `FEW_ENTRIES`, so that the matrices fit into a processor's
-    cache.
+    They are solved directly if there are at most `FEW_CONTACTS` panels, or if Newton's method
+    solved the panels. For whole contacts the limit is `FEW_ENTRIES`, because such matrices fit into
+    a processor's cache.
     """
     if guess:
         return linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
@@ -860,13 +862,14 @@ class _Contacts:
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
         good, factor = _resolved(motion, panel, np.fmax(self.size[here], greatest))
-        # If a maximum may reach zero, end the panel there: its end shows whether there is an event.
+        # If a maximum may reach zero, end the panel at the maximum. The end shows whether there is
+        # an event.
         place = _first_maximum(motion, self.events, side, start, panel)
         doubtful = good & (place < 1)
         factor = np.where(doubtful, place * panel.length / length, factor)
         good &= ~doubtful
         if self.until is not None:
-            # Do not shorten accepted panels, so that the number of equal pieces does not grow.
+            # Do not shorten accepted panels. Otherwise the number of equal pieces grows.
             factor = np.where(good, np.fmax(factor, 1.0), factor)
         self.length[here] = length * np.where(good & (which >= 0), 1.0, factor)
         self.ended[here] = good & last & (which < 0)
@@ -882,7 +885,7 @@ class _Contacts:
             self.end_events(kept[at_events], which[at_events])
 
     def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
-        """Update the derivatives to the ends of panels. At events, the ends move as well."""
+        """Compute the derivatives at the ends of panels. Ends that are events also move."""
         given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
         self.by[1:, :, here] = carried(*given, newton=newton)
         for k in np.unique(which[which >= 0]):
@@ -905,14 +908,16 @@ class _Contacts:
     def compare_periods(self, turned: NDArray) -> None:
         """Decide at the ends of periods which contacts are permanent.
 
-        Three quantities are compared with the period before: q, v divided by its frequency, and the
-        minimum of q. The sum of their changes finally forms a geometric series. Its ratio is the
-        larger of the last two ratios, and its sum bounds all further changes. The contact is
-        permanent if the minimum of q in the last period is larger than `SAFE` times this bound.
+        Three quantities are compared with the period before: q, v divided by the frequency of the
+        oscillation, and the minimum of q. The changes of the three quantities are added. The
+        changes in successive periods finally form a geometric series. Its ratio is taken as the
+        larger of the last two ratios. The sum of the series is a bound of all further changes. The
+        contact is permanent if the minimum of q in the last period is larger than `SAFE` times
+        this bound.
         """
         q, v, t = self.now[1:, turned]
         stiffness = -rates(self.motion.of(turned), (q + 1j * H, v, t))[1].imag / H
-        # A ball without a restoring force does not stay: then moved is infinite.
+        # A ball without a restoring force does not stay on the table: `moved` is then infinite.
         stiffness = np.where(stiffness > 0, stiffness, 0.0)
         least = self.least[turned]
         now = np.array([q, v, least])
@@ -935,9 +940,9 @@ class _Contacts:
 def whole_panel(
     motion: ContactMotion, start: NDArray, until: NDArray, guess: Guess
 ) -> tuple[Panel, NDArray]:
-    """Solve contacts up to root times in one panel each.
+    """Solve each contact up to a root time in one panel.
 
-    Returns the panels, and whether each is accepted because the contact resembles its guess.
+    Returns the panels, and whether each panel is accepted because the contact resembles the guess.
     """
     panel = solve_panel(motion, (*start, 0 * until), until, push=guess.push, guess=guess)
     good, _ = _resolved(motion, panel, np.abs(panel.nodes[1]).max(0))
@@ -990,10 +995,10 @@ def integrate_contacts(
     until: NDArray | None = None,
     after: NDArray | None = None,
 ) -> tuple[NDArray, NDArray]:
-    """Integrate contacts from their starts to the first releases, to root times, or to times.
+    """Integrate contacts up to the first releases, to given root times, or to given times.
 
-    A contact is permanent if its motion converges so that the ball never leaves
-    (:meth:`_Contacts.compare_periods`), or if it lasts for ``longest`` periods.
+    A contact is permanent if its motion converges to a motion in which the ball never leaves the
+    table (:meth:`_Contacts.compare_periods`), or if the contact lasts for ``longest`` periods.
 
     Parameters
     ----------
@@ -1059,7 +1064,7 @@ def integrate_contacts(
         if not active.size:
             break
         for here in np.array_split(active, -(-active.size // CONTACTS_AT_ONCE)):
-            # Most balls leave the table after few panels. The other balls lie on it.
+            # Most balls leave the table after few panels. The other balls lie on the table.
             contacts.advance(here, lies=attempt >= PATIENT)
     now[:, ~contacts.ended] = np.nan
     return now, contacts.by

@@ -141,7 +141,7 @@ def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
     several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
     with pytest.raises(ValueError, match="the same number of impacts"):
         to_dataset([one, *several])
-    with pytest.raises(ValueError, match="balls of one kind"):
+    with pytest.raises(ValueError, match="the same kind of ball"):
         to_dataset([one, orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.6)])
     with pytest.raises(ValueError, match="there is no orbit"):
         to_dataset(orbit(Rigid(0.5), amplitude=[0.1]))

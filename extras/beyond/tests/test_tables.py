@@ -393,7 +393,7 @@ def test_datasets_carry_the_table(tmp_path):
     assert back.orbits[-1].distance(branch.orbits[-1]) == 0
     assert back.along == "phase_2"
     one = bb.orbit(bb.Rigid(0.7), amplitude=0.8)
-    with pytest.raises(ValueError, match="change along one path"):
+    with pytest.raises(ValueError, match="vary the same parameter"):
         bb.to_dataset([one, branch.orbits[0]])
 
 

@@ -118,7 +118,7 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and len(to) != len(latest):
         raise ValueError(
-            f"to: has {len(to)} values for {len(latest)} orbits: give one, or one for each orbit"
+            f"to: has {len(to)} values for {len(latest)} orbits: give one value, or one for each"
         )
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]

@@ -1,7 +1,8 @@
 """Draw branches of orbits and curves of special orbits.
 
-Stable orbits are solid lines, unstable orbits dashed lines. Orbits that no ball follows are pale.
-Special orbits have marks. The pictures do not use pyplot or the user's settings of matplotlib.
+Stable orbits are drawn as solid lines, and unstable orbits as dashed lines. Orbits that no ball
+follows are pale. Special orbits have marks. The pictures do not use pyplot or the user's settings
+of matplotlib.
 """
 
 from dataclasses import replace
@@ -48,7 +49,7 @@ HEIGHT = 2.8
 DECADES = 2, 8
 """An axis is logarithmic if it covers more than 2 and fewer than 8 powers of ten.
 
-If it covers more, the smallest values are zero within rounding.
+If it covers more powers of ten, the smallest values are zero within rounding.
 """
 
 TITLE = 50
@@ -56,7 +57,7 @@ TITLE = 50
 EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
 
 BESIDE = 1e-3
-"""Distance from the unit circle above which a multiplier shows that an orbit is not special."""
+"""If multipliers are farther than this from the unit circle, the orbit is not special."""
 
 MARKED = 4
 """Number of impacts above which special orbits have no marks. More marks would hide the lines."""
@@ -70,8 +71,8 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     *found : FollowedBranch, SpecialCurve or list of them
         Branches or curves, all along the same parameters. A cascade is a list of branches.
     quantity : str
-        Quantity drawn against the parameter of a branch: "max_height" or a quantity of impacts,
-        such as "phase", which gives one line per impact.
+        Quantity drawn against the parameter of a branch. It is "max_height", or a quantity of
+        impacts such as "phase". A quantity of impacts gives one line per impact.
     ax : matplotlib.axes.Axes, optional
         Axes to draw into. By default the figure is new.
 
@@ -82,7 +83,7 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     Raises
     ------
     ValueError
-        If ``found`` contains anything else, or if there is no such quantity.
+        If ``found`` contains other objects, or if there is no such quantity.
     """
     branches = [each for group in found for each in _branches(group)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
@@ -120,7 +121,7 @@ def _branches(group: Any) -> list[FollowedBranch]:
 
 
 def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:
-    """Draw one branch or curve. Returns its entries for the legend: samples of lines by text."""
+    """Draw one branch or curve, and return samples of its lines by their texts in the legend."""
     is_curve = isinstance(branch, SpecialCurve)
     shown = branch.refined()
     orbits = shown.with_special()
@@ -152,10 +153,11 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 
 
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
-    """For each orbit, return the index of the next ordinary orbit, or of the last ordinary orbit.
+    """For each orbit, return the index of the next ordinary orbit, or else of the last one.
 
-    Orbits at the ends of the branch are left out, because they may be special. An end is ordinary
-    if its only neighbour is special and its multipliers are away from the unit circle.
+    Orbits at the ends of the branch are left out, because they may be special. The orbit at an end
+    is ordinary if its only neighbour is special, and if the multipliers of the orbit at the end are
+    away from the unit circle.
     """
     places = [each.z for each in special]
     marked = [any(np.array_equal(each.z, z) for z in places) for each in orbits]
@@ -197,19 +199,19 @@ def _scale(axes: Axes) -> None:
 
 
 def _label(name: str) -> str:
-    """Label of an axis: name and symbol."""
+    """Label of an axis, with the name and the symbol of a quantity."""
     _, symbol, unit = (OF_IMPACTS | OF_ORBITS | PARAMETERS).get(name, (name, "", "1"))
     symbol = f"{symbol}/π" if unit == "rad" else symbol
     return f"{name} {symbol}".replace("_", " ").rstrip()
 
 
 def _name(branch: FollowedBranch) -> str:
-    """Text of a branch in a legend: its numbers of impacts and periods."""
+    """Text of a branch in a legend, with its numbers of impacts and periods."""
     return f"{branch.impacts} impact{'s'[: branch.impacts - 1]} in {branch.periods} T"
 
 
 def _title(branches: list[FollowedBranch]) -> str:
-    """Title of a figure: the parameters that are constant and equal on all branches."""
+    """Title of a figure, with the parameters that are constant and equal on all branches."""
     others = [branch.orbits[i].parameters for branch in branches for i in (0, -1)]
     same = {
         name: value

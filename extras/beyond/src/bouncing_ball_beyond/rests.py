@@ -39,9 +39,9 @@ BOUNCES_AT_ONCE = 32
 """Number of bounces that are simulated before it is checked whether the ball is at rest."""
 
 SOON = 1e-6
-"""Time after a lift-off before which zeros of δ′ are ignored, because δ grows as slowly as t³.
+"""Time after a lift-off in which zeros of δ′ are ignored. There δ grows as slowly as t³.
 
-Also the tolerance with which successive lift-offs must agree in phase.
+The phases of successive lift-offs must agree within the same tolerance.
 """
 
 MOST = 2000
@@ -96,7 +96,7 @@ class RestEquations(OrbitEquations):
         return Flights(leaves, 0 * time, speed, time, amplitude + 0 * leaves, table)
 
     def linearized(self, z: NDArray) -> LinearizedLegs:
-        """Evaluate the equations, shape (rows, N - p, 1), their derivatives and times of flight.
+        """Evaluate the residuals, shape (rows, N - p, 1), their derivatives, and times of flight.
 
         The times of flight to the last slow bounces are replaced by `FAR`.
         """
@@ -141,7 +141,7 @@ class RestEquations(OrbitEquations):
         return np.where(self._tail(speeds), FAR, speeds).min(axis=1)
 
     def clearance(self, z: NDArray, flights: Flights | None = None) -> NDArray:
-        """Minimum height above the table where flights turn back from it, shape (rows,).
+        """Smallest local minimum of the gap in all flights, shape (rows,).
 
         The last slow bounces are left out.
         """
@@ -180,7 +180,7 @@ class _Superstable(LinearizedLegs):
 
 
 class _Lifted(Flights):
-    """Flights, the first of which starts with a lift-off."""
+    """Flights. The first flight starts with a lift-off."""
 
     def bends(self) -> NDArray:
         """Times of the turning points of flights, without the lift-off itself."""
@@ -206,7 +206,7 @@ class RestOrbit(PeriodicOrbit):
 
     @property
     def lift_off(self) -> float:
-        """Phase of the table at which the ball leaves it, in (-π, π]."""
+        """Phase of the table at which the ball leaves the table, in (-π, π]."""
         return float(np.pi - (np.pi - self.z[self.equations.size - 1]) % (2 * np.pi))
 
     @cached_property
@@ -277,9 +277,9 @@ def orbit_with_rest(ball: Ball, *, amplitude: float, table: Table = SINE) -> Res
     Raises
     ------
     OrbitNotFound
-        If the impacts have a duration or are below the table (:class:`.Corrected`), or if the ball
-        never leaves the table, does not come to rest again, or rests several times before its
-        motion repeats.
+        If the impacts have a duration or are below the table (:class:`.Corrected`). If the ball
+        never leaves the table, or does not come to rest again. If it rests several times before
+        its motion repeats.
     ValueError
         If an argument is out of range.
 

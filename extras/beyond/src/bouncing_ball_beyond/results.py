@@ -76,15 +76,17 @@ def to_dataset(found: Found) -> xr.Dataset:
     Parameters
     ----------
     found : PeriodicOrbit, FollowedBranch, SpecialCurve or list of PeriodicOrbit
-        The orbits of a list must have the same number of impacts, balls of one kind, and tables
-        with the same harmonics. An `OrbitNotFound` is left out.
+        The orbits of a list must vary the same parameter. They must have the same number of
+        impacts, the same kind of ball and the same harmonics of the table. An `OrbitNotFound` is
+        left out.
 
     Returns
     -------
     xarray.Dataset
         One row per orbit along ``point``. Quantities of impacts also have the axis ``impact``.
-        Special orbits stand between their neighbours on the branch, and have a ``kind``. Parameters
-        are variables. Attributes contain the ball and the table of the first orbit.
+        Special orbits are between their neighbours on the branch, and have a ``kind``. Parameters
+        are variables. The attributes of the dataset contain the ball and the table of the first
+        orbit.
 
     Raises
     ------
@@ -159,8 +161,8 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
         raise ValueError("there is no orbit to store: give an orbit, a branch or a list of orbits")
     if len({(type(each), type(each.ball), each.impacts, *each.parameters) for each in orbits}) > 1:
         raise ValueError(
-            "the orbits of one dataset must have the same number of impacts, balls of one kind and"
-            " tables with the same harmonics, and change along one path"
+            "the orbits of one dataset must vary the same parameter; they must have the same number"
+            " of impacts, the same kind of ball and the same harmonics of the table"
         )
     return orbits
 
@@ -169,7 +171,7 @@ def _listed(found: Found) -> list[PeriodicOrbit]:
 
 
 def encoded(value: Any) -> Any:
-    """Encode a ball by its class and fields, and a function by its name, for json."""
+    """Encode a value for json: a ball by its class and fields, a function by its name."""
     if isinstance(value, Ball):
         ball: Any = value
         given = {field.name: getattr(ball, field.name) for field in fields(ball)}

@@ -16,7 +16,7 @@ from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 AT_FOLD = 1e-6
-"""|1 - tr/(1 + det)| below which an orbit counts as the saddle-node, on both of its sides.
+"""Limit of |1 - tr/(1 + det)| below which an orbit counts as the saddle-node, on both sides.
 
 1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
 cause a value of 3e-7.
@@ -47,12 +47,13 @@ def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
 def guess_of_instants(
     ball: Ball, periods: int | NDArray, amplitude: NDArray, side: int = 1, table: Table = SINE
 ) -> NDArray:
-    """Guess n-T orbits from the corrected model, which replaces contacts by instants.
+    """Guess n-T orbits from the corrected model, which replaces contacts by instantaneous impacts.
 
-    An instant takes place at the phase ψ of the centroid of the contact force. The speed u and ψ
-    satisfy (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node these have
-    no solution, and ψ is the phase at which the table rises fastest. Orbits are stable on the side
-    1 of the saddle-node, and unstable on the side -1.
+    Such an impact takes place at the phase ψ of the centroid of the contact force. The speed u and
+    ψ satisfy (1 + r(u)) u + σ (1 + w″(ψ)) = 2πn and w′(ψ) = u - πn. Below the saddle-node these
+    equations have no solution, and ψ is the phase at which the table rises fastest. If ``side`` is
+    1, orbits are on the stable side of the saddle-node. If ``side`` is -1, they are on the unstable
+    side.
 
     ``amplitude`` has the shape (rows,). Returns rows z, shape (rows, N).
     """
@@ -105,7 +106,7 @@ def near_instants(
 def shortest_contacts(
     equations: OrbitEquations, amplitude: NDArray, sign: int
 ) -> tuple[list[PeriodicOrbit | None], NDArray]:
-    """Find the orbit with the shortest contact on one side of the saddle-node for each row.
+    """For each row, find the orbit with the shortest contact on one side of the saddle-node.
 
     Orbits that a ball follows come first. Returns the orbit of each row, or None, and whether a
     ball follows it, shape (rows,).
@@ -147,7 +148,8 @@ def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
 def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Guess all orbits with one impact.
 
-    The guesses are impacts, at many phases, whose closing speed returns after n periods.
+    The guesses are impacts at many phases. The closing speed of these impacts returns after n
+    periods.
     """
     table = equations.table
     longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
@@ -170,7 +172,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
 
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
-    """Guess orbits with k impacts: simulated motions of k impacts that take about m periods."""
+    """Guess orbits with k impacts. The guesses are simulated motions of about m periods."""
     turn = 2 * np.pi
     fastest = 1.1 * np.pi * equations.periods + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
@@ -191,7 +193,7 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
 def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Iterate Newton's method from many starts, and return the solutions.
 
-    A start is given up when its iterates become larger than twice the largest start.
+    An iteration ends without a solution if it becomes larger than twice the largest start.
     """
 
     def sizes(z: NDArray) -> NDArray:
@@ -213,7 +215,7 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
 def _distinct(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Return each orbit once, with its fastest impact first.
 
-    Repetitions of orbits of a shorter period are left out.
+    An orbit that repeats an orbit of a shorter period is left out.
     """
     k = equations.impacts
     x = equations.split(z)[0]

@@ -1,7 +1,7 @@
 """Decide whether a restitution coefficient is good enough for a given ball and shaker.
 
-It is good enough if both models agree: the ball bounces, its orbit is stable, and the heights
-differ by at most a tolerance.
+It is good enough if the ball bounces and its orbit is stable in both models, and if the heights of
+both models differ by at most a tolerance.
 """
 
 from dataclasses import dataclass
@@ -104,7 +104,7 @@ class ShakerAnswer:
 
     @property
     def error(self) -> float:
-        """Relative error: height on the contact divided by height of the restitution model, - 1."""
+        """Height on the contact, divided by the height in the restitution model, minus 1."""
         return self.max_height.exact / self.max_height.by_restitution - 1
 
     @property
@@ -114,7 +114,7 @@ class ShakerAnswer:
 
     @property
     def reason(self) -> str:
-        """Why a restitution coefficient is not good enough; empty if it is."""
+        """Why a restitution coefficient is not good enough; empty if it is good enough."""
         if not self.bounces:
             where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
             return f"the ball does not bounce, {where}, so there is no height to compare"
@@ -204,7 +204,7 @@ WHERE: dict[tuple, str] = {
 }
 """Text on where a condition fails.
 
-The key is whether it fails in the restitution model, and whether it fails on the contact.
+A key has two parts: whether the condition fails in the restitution model, and on the contact.
 """
 BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
 """Text on bouncing. The index is the number of models in which the ball bounces."""
@@ -241,21 +241,23 @@ def on_shaker(
     restitution : float
         Restitution coefficient r of a free impact, between 0 and 1.
     stroke, acceleration : float
-        Give exactly one of them: the stroke of the table in m, which is half of the distance
-        between its lowest and highest positions; or its maximum acceleration in m/s².
+        Give exactly one of the two. The stroke of the table, in m, is half of the distance between
+        its lowest and highest positions. The acceleration, in m/s², is the maximum acceleration of
+        the table.
     mass : float, optional
         Mass of the ball in kg. Not needed with ``contact_duration``.
     radius, density : float, optional
-        Radius of the ball in m and density in kg/m³. They can replace the mass.
+        Radius of the ball in m, and density of the ball in kg/m³. They can replace the mass.
     contact_duration, stiffness, youngs_modulus : float
-        Give exactly one of them.
+        Give exactly one of the three.
 
-        - Duration of the contact in s, or stiffness in N/m: the contact is a spring and a damper.
-        - Young's modulus of the ball in Pa: the contact is a Hertz contact with the damping of
-          Tsuji. Its r is the same at every speed, and the radius is required.
+        - Duration of the contact in s, or stiffness in N/m. The contact is then a spring and a
+          damper.
+        - Young's modulus of the ball in Pa. The contact is then a Hertz contact with the damping
+          of Tsuji. Its r is the same at every speed. The radius of the ball is required.
     poissons_ratio, table_youngs_modulus, table_poissons_ratio : float
         Poisson's ratio of the ball, Young's modulus of the table in Pa, and Poisson's ratio of the
-        table, for a contact of Hertz. If the table has no modulus, it is rigid.
+        table, for a contact of Hertz. If no modulus of the table is given, the table is rigid.
     gravity : float
         Acceleration of gravity in m/s².
     n : int
@@ -417,7 +419,7 @@ def _answer(
 
 
 def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
-    """Factor on the frequency at which a bifurcation reaches the Λ of the table, at equal stroke.
+    """Find the factor on the frequency at which a bifurcation takes place at the same stroke.
 
     Returns NaN if the iteration does not converge.
     """

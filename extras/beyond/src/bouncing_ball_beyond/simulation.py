@@ -21,7 +21,7 @@ MOST_IMPACTS = 1_000_000
 
 
 def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
-    """Return an argument as a labelled array. A list becomes an axis with the argument's name."""
+    """Return an argument as a labelled array. A list becomes an axis named as the argument."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if np.asarray(value).dtype.kind in "SU":
@@ -120,7 +120,7 @@ def dataset(
     """Return values over the points of a grid as a labelled dataset.
 
     The first axis of each of the ``variables`` has the points of the grid. The axes of the
-    ``coordinates`` follow it.
+    ``coordinates`` come after the first axis.
     """
     found = xr.Dataset(coords=dict(grid.coords) | coordinates)
     names = list(coordinates)
@@ -174,14 +174,16 @@ def simulate(
 
         - ``time`` since the start;
         - ``impact_phase``: phase of the table at the start of the impact;
-        - ``impact_velocity``, ``bounce_velocity``: velocities of the ball before and after it;
+        - ``impact_velocity``, ``bounce_velocity``: velocities of the ball before and after the
+          impact;
         - ``relative_impact_velocity``, ``relative_bounce_velocity``: the same velocities relative
           to the table;
-        - ``contact_duration`` and ``flight_time`` after it.
+        - ``contact_duration``: duration of the contact;
+        - ``flight_time``: duration of the flight after the impact.
 
         The ``status`` of each ball is "bouncing" or "permanent contact". A ball may come to rest
-        after infinitely many bounces. One impact then stands for these bounces: its
-        ``contact_duration`` is their total time plus the rest up to the lift-off.
+        after infinitely many bounces. One impact then represents these bounces. Its
+        ``contact_duration`` is the total time of the bounces and of the rest up to the lift-off.
 
     Raises
     ------
@@ -364,7 +366,7 @@ def states_at(
     ball = balls.ball
     amplitude = float(balls.amplitude[0])
     begin = PERIOD * record[:, 0] + record[:, 1] - origin
-    # By rounding, the first impact may begin after the first time.
+    # Rounding may put the start of the first impact after the first time.
     number = np.maximum(np.searchsorted(begin, times, side="right") - 1, 0)
     _, phase, u, _, duration, gap, w, _ = record[number].T
     since = np.maximum(times - begin[number], 0.0)

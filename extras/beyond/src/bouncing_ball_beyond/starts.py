@@ -1,4 +1,4 @@
-"""Start branches at ordinary orbits, or at special orbits at which another branch begins."""
+"""Start branches at ordinary orbits, or at special orbits at which other branches begin."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -13,7 +13,7 @@ from bouncing_ball_beyond.march import Solution, Start, newton, tangents, unit
 from bouncing_ball_beyond.search import single
 
 NEAREST = 1e-9
-"""Relative distance of the parameter from a period doubling below which rounding hides the branch.
+"""Relative distance from a period doubling, in the parameter, below which rounding hides orbits.
 
 The distance of the parameter is proportional to ξ², where ξ is the distance of the doubled orbits
 from the period doubling. Rounding errors of the doubled orbits are eps/ξ².
@@ -50,8 +50,8 @@ class Task(NamedTuple):
 def _refuse(reasons: NDArray, which: NDArray, task: Task, text: str, away: NDArray) -> None:
     """Store a reason for the rows ``which`` that do not have one yet.
 
-    ``text`` contains {name}, the parameter, {place}, the parameter with its value, or {side},
-    "above" or "below".
+    ``text`` may contain three fields. {name} is the parameter, {place} is the parameter with its
+    value, and {side} is "above" or "below".
     """
     name = task.equations.along[-1].name
     for i in np.flatnonzero((reasons == "") & which):
@@ -63,9 +63,9 @@ def _refuse(reasons: NDArray, which: NDArray, task: Task, text: str, away: NDArr
 def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
     """Directions in which the doubled orbits leave period doublings, shape (rows, 2kq + p).
 
-    At the multiplier -1, a deviation of the first impact changes its sign after a period. The null
-    vector v of the equations with this condition is the direction in the first half of the doubled
-    orbit. The direction in the second half is -v.
+    If a multiplier is -1, a deviation of the first impact changes its sign after a period. Let v be
+    the null vector of the equations with this condition. The direction is v in the first half of
+    the doubled orbit, and -v in the second half.
     """
     q = equations.unknowns
     derivatives = equations.linearized(z).derivatives[..., : q + 3].copy()
@@ -82,9 +82,9 @@ def flip(equations: OrbitEquations, z: NDArray) -> NDArray:
 
 
 def _beside(equations: OrbitEquations, z: NDArray, direction: NDArray, step: Any) -> Solution:
-    """Find orbits at the distance ``step`` from special orbits in a direction.
+    """Go the distance ``step`` from special orbits in a direction, and find orbits there.
 
-    Newton's method corrects the orbits on planes perpendicular to the direction.
+    Newton's method corrects the orbits on planes perpendicular to this direction.
     """
     units = equations.scales(z)
     ahead = unit(direction / units)
@@ -104,8 +104,8 @@ def _ordinary_start(task: Task) -> Start:
 def _fold_start(task: Task) -> Start:
     """Start the stable branch at a saddle-node.
 
-    If both directions are followed, the unstable branch is the second. Both branches are on the
-    same side of the parameter.
+    If both directions are followed, the second branch is unstable. The parameter of both branches
+    is on the same side of the saddle-node.
     """
     direction = tangents(task.equations, task.z)
     near = _beside(task.equations, task.z, direction, 1e-3)
@@ -123,7 +123,7 @@ def _fold_start(task: Task) -> Start:
 
 
 def _grazing_start(task: Task) -> Start:
-    """Start branches with one more impact, from orbits with a flight that touches the table."""
+    """Start branches with one more impact at orbits with a flight that touches the table."""
     more = replace(task.equations, impacts=task.equations.impacts + 1)
     origin = np.zeros((len(task.z), more.length))
     direction = np.ones(origin.shape)
@@ -144,19 +144,19 @@ def _grazing_start(task: Task) -> Start:
 
 
 def _halved_start(task: Task) -> Start:
-    """Start the branch of half the period, from a period halving."""
+    """Start the branch of orbits of half the period at a period halving."""
     equations, z = task.equations.halved(task.z)
     return _ordinary_start(task._replace(equations=equations, z=z))
 
 
 def _doubled_start(task: Task) -> Start:
-    """Start the branch of twice the period, from a period doubling.
+    """Start the branch of orbits of twice the period at a period doubling.
 
     Near the period doubling, the parameter and tr/(1 + det) change with the square of the distance.
     tr/(1 + det) is 1 at the period doubling. The first step is halved until
 
-    1. half the step changes both by about a quarter of the change over the whole step;
-    2. tr/(1 + det) has changed by less than 0.3.
+    1. a step of half the length changes the parameter and tr/(1 + det) by about a quarter as much;
+    2. the whole step changes tr/(1 + det) by less than 0.3.
 
     Then no bifurcation is between the period doubling and the end of the step.
     """
@@ -177,7 +177,7 @@ def _doubled_start(task: Task) -> Start:
             away = change[..., -1]
             lost = 1 - pair.turn(solution.linear).reshape(2, rows)
             ratios = np.stack([away[0] / away[1], lost[0] / lost[1]])
-        # Where the branch bends, orbits on the planes are farther away than the step.
+        # Where the branch bends, the distance of the orbits on the planes is larger than the step.
         bend = np.linalg.norm(change[0] / units, axis=1) / step
         new = ~good & solution.found.reshape(2, rows).all(axis=0) & (bend < np.hypot(1, 0.2))
         new &= ((ratios > 3) & (ratios < 5.5)).all(axis=0) & (np.abs(lost[0]) < 0.3)

@@ -1,4 +1,4 @@
-"""The motion of the table: ΛW(τ), where the waveform W is a sum of harmonics of the period 2π.
+"""The motion ΛW(τ) of the table. The waveform W is a sum of harmonics and has the period 2π.
 
 Other modules use waveforms only through this module. The sine of the paper is :data:`SINE`. W is
 analytic in τ and in its parameters, the sizes and phases of the harmonics. Complex steps therefore
@@ -24,7 +24,7 @@ JUMP = 2.0
 Larger steps mean that the samples do not cover exactly one period.
 """
 UPPER_SHARE = 0.1
-"""Largest share of the upper half of the harmonics in the acceleration of samples.
+"""Maximum share of the acceleration that the upper half of the harmonics of samples may have.
 
 If the share is larger, the caller must give the highest harmonic.
 """
@@ -157,7 +157,8 @@ class Table:
             Heights or accelerations, in any unit.
         harmonics : int, optional
             Highest harmonic to keep. By default all harmonics that the samples resolve are kept.
-            Give it for measured heights, because the acceleration amplifies noise by k².
+            Give the highest harmonic for measured heights, because the acceleration amplifies noise
+            by k².
         acceleration : bool
             Whether the values are accelerations.
 
@@ -168,7 +169,7 @@ class Table:
         Raises
         ------
         ValueError
-            If the first and the last sample do not join. If ``harmonics`` is not given, also if the
+            If the first and the last sample do not join. If ``harmonics`` is not given, and the
             upper half of all harmonics has more than a tenth of the acceleration.
 
         Examples
@@ -191,8 +192,8 @@ class Table:
         if jump > JUMP * steps.max():
             raise ValueError(
                 f"values: the first and the last sample do not join: the step between them is"
-                f" {jump:.3g}, but all others are at most {steps.max():.3g}; give samples of"
-                " exactly one period, with any jumps inside, or use Table.of_record"
+                f" {jump:.3g}, but all other steps are at most {steps.max():.3g}; give samples"
+                " of exactly one period that does not start at a jump, or use Table.of_record"
             )
         series = np.fft.rfft(values) / len(values)
         k = np.arange(1, last + 1)
@@ -204,7 +205,7 @@ class Table:
         if harmonics is None and upper > UPPER_SHARE:
             raise ValueError(
                 f"values: harmonics above {max(last // 2, 2)} have {upper:.0%} of the acceleration,"
-                " because of noise, a jump, or a sample at both ends of the period; give the"
+                " because of noise, a jump, or equal samples at both ends of a period; give the"
                 " highest harmonic to keep, such as harmonics=5"
             )
         return cls._of_accelerations(k, pulls)[0]
@@ -224,7 +225,7 @@ class Table:
         Parameters
         ----------
         time : array_like, shape (samples,)
-            In seconds; the phase of the table is 0 at the time 0.
+            Times in s. At the time 0 the phase of the table is 0.
         acceleration : array_like, shape (samples,)
             Upward acceleration in m/s². A constant part, such as gravity, is ignored.
         frequency : float
@@ -240,7 +241,7 @@ class Table:
         table : Table
             Waveform W, scaled so that the maximum of |W″| is 1.
         amplitude : float
-            Its amplitude Λ.
+            Amplitude Λ of the table.
 
         Raises
         ------
@@ -314,7 +315,7 @@ class Table:
 
     @property
     def parameters(self) -> dict[str, Values]:
-        """Names and values of the sizes and phases of the harmonics."""
+        """Sizes and phases of the harmonics, by name."""
         sizes = {f"harmonic_{k}": a for k, a in zip(self.orders, self.sizes, strict=True)}
         return sizes | {f"phase_{k}": p for k, p in zip(self.orders, self.phases, strict=True)}
 
@@ -421,12 +422,12 @@ class Table:
 
     @cached_property
     def grid(self) -> Values:
-        """Phases of one period: `SAMPLES` in each period of the highest harmonic."""
+        """Phases of one period, with `SAMPLES` phases in each period of the highest harmonic."""
         return np.linspace(0, PERIOD, SAMPLES * self.orders[-1] + 1)
 
     @cached_property
     def bounds(self) -> Values:
-        """Upper bounds of |W| and of its first five derivatives, six numbers."""
+        """Six upper bounds: of |W|, and of the moduli of its first five derivatives."""
         remainder = (self.grid[1] / 2) ** 2 / 2
         sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
         largest = [np.abs(self(self.grid, m)).max() + remainder * sums[m + 2] for m in range(6)]
@@ -443,7 +444,7 @@ class Table:
         for _ in range(steps):
             value, slope = function(phase)
             step = np.divide(value, slope, where=slope != 0, out=np.zeros_like(value))
-            # Limit the step: where the slope vanishes, Newton's first step leads far away.
+            # Limit the step, because Newton's first step leads far away where the slope vanishes.
             phase = phase - np.clip(step, -most, most)
         return phase
 
@@ -476,8 +477,8 @@ class Table:
     def _sides(self) -> dict:
         """Samples of W′ on both sides of the steepest phase, up to the next minimum of W′.
 
-        The key 1 is the side after the steepest phase, and -1 the side before it. The values are
-        phases and W′.
+        The key 1 is the side after the steepest phase, and the key -1 is the side before this
+        phase. The values are phases and W′.
         """
         found = {}
         for side in (1, -1):
@@ -505,7 +506,7 @@ class Table:
         """Find the phase at which W′ equals a slope.
 
         The phase is after the steepest phase (``side`` 1) or before it (-1). If W′ does not reach
-        the slope, the phase is where W′ comes nearest to it.
+        the slope, the phase is where W′ is nearest to the slope.
         """
         phase, slopes = self._sides[side]
         slope = np.clip(slope, slopes[-1], slopes[0])
@@ -566,11 +567,12 @@ class Table:
     def lift_offs(self, amplitude: Values) -> Values:
         """Phases in [0, 2π) at which a resting ball leaves, shape (*amplitude.shape, phases).
 
-        At these phases 1 + ΛW″ falls to zero. They are sorted, and missing phases are NaN.
+        At these phases 1 + ΛW″ falls to zero. The phases are sorted, and missing phases are NaN.
         """
         phases = self.levels(amplitude)
         falls = self(phases, 3) < 0
-        # A fall of the table that is shorter than the distance of samples is missed by `levels`.
+        # The function `levels` misses a fall of the table that is shorter than the distance of
+        # samples.
         short = ~falls.any(axis=-1) & (np.asarray(amplitude) * self.lift > 1)
         phases[short, 0] = self._top(2, -1)
         falls[short, 0] = True

@@ -5,8 +5,8 @@ Times are in units of 1/Ω and lengths in units of g/Ω². These terms are used:
 - *Gap* δ: height of the ball above the table, which is at ΛW(τ).
 - *Impact*: starts at the time τ with the closing speed u = -δ′, and has the duration D. At its end
   the ball leaves at the gap δ with the relative speed w = δ′.
-- *Contact*: impact with a duration. It ends at its *release*, at the first zero of the release
-  function.
+- *Contact*: impact with a duration. It ends at the first zero of the release function. This end is
+  the *release*.
 - T: duration in a time scale of the ball. It is ϖD for a spring and a damper, and the root time of
   :mod:`.root_time` for a force law.
 - *Load*: acceleration g + ΛW″ that presses the ball onto the table.

@@ -134,7 +134,7 @@ def landings(
 def emergences(
     table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> NDArray:
-    """Find the first time from ``start`` at which each ball is not below the level of the table.
+    """For each ball, find the first time, not before ``start``, at or above the level of the table.
 
     The time is infinite if a ball falls back before it reaches this level.
     """

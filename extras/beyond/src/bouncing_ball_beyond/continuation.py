@@ -32,7 +32,7 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
     """Follow a periodic orbit, or many orbits at once, along a parameter.
 
     The branch of an ordinary orbit goes through this orbit. The branch of a special orbit depends
-    on its kind:
+    on the kind of this orbit:
 
     - saddle-node: the stable branch;
     - period doubling: orbits of twice the period;

@@ -102,7 +102,7 @@ class FreeImpact(NamedTuple):
 
     @property
     def doubling(self) -> NDArray:
-        """-w″ of the period doubling of the restitution model: 2(1 + rb)/[(1 + r)(1 + b)] = Y_D."""
+        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the -w″ of the restitution model's doubling."""
         return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 

@@ -377,8 +377,8 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     _, _, direction = one_impact_more(equations, z)
     opens_upwards = bool(direction[-1] > 0)
     tangent = newton(equations, z[np.newaxis]).tangent[0]
-    # The smallest gap is a smooth function. A step of a third of all digits is enough for the sign
-    # of its change.
+    # The smallest gap is a smooth function. Its difference over a step of 1e-6 has enough digits
+    # for the sign.
     step = 1e-6 * max(1.0, abs(z[-1]))
     below, above = equations.clearance(z + np.multiply.outer([-step, step], tangent))
     # r = -1 gives S = 0 for contacts of finite duration.

@@ -576,7 +576,7 @@ def motion_of(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motion on which a ball ends, after a first impact as in :func:`.simulate`.
+    """Find the motion on which a ball ends. The first impact is given as in :func:`.simulate`.
 
     Parameters
     ----------
@@ -754,8 +754,8 @@ def basins(
         Number of starts along each axis. The axes are the phase of the table and the closing speed.
     relative_velocity_max : float, optional
         Largest closing speed. The default is (1 + r) max(V, 1)/(1 - r), where V is the maximum
-        speed of the table; a divisor below 0.05 is replaced by 0.05. If r ≤ 0.95, every impact
-        above the default slows the ball.
+        speed of the table. A divisor 1 - r below 0.05 is replaced by 0.05. If r ≤ 0.95, every
+        impact above the default slows the ball.
     table : Table
         Waveform of the table, by default a sine.
     impacts : int

@@ -354,7 +354,7 @@ def _full_depth(p: Values, v: Values, stiffness: Values, damping: Values, depth:
 
 
 def _pulls(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
-    """Force without the limit 0, divided by p^{3/2}."""
+    """Force before its negative values are replaced by 0, divided by p^{3/2}."""
     inside = np.sqrt(p) * (3 - 2 * p / depth) / (depth * depth)
     deep = np.maximum(p, depth)
     step = np.where(np.real(p) < np.real(depth), inside, 1 / (deep * np.sqrt(deep)))

@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 PERIOD = 2 * math.pi
 REACH = 4.0
-"""Reach H of the parabola with the bound J, divided by the step of the parabola with K alone.
+"""Reach H in which the parabola with the bound J holds, divided by a step of the other parabola.
 
-See docs/impacts.md.
+The other parabola uses only the bound K (docs/impacts.md).
 """
 PATIENCE = 100 * PERIOD
 """Duration, multiplied by Ω, above which a contact without a release counts as permanent."""
@@ -205,7 +205,7 @@ def bounds(motion: tuple, amplitude: float, ratio: float, zeta: float, kappa: fl
     detuning = (ratio - 1) * (ratio + 1)
     share = 1 / (detuning * detuning + loss * loss)
     forced = amplitude * math.sqrt((1 + kappa * kappa) * share)
-    # The steady response of δ + κδ′ is a Λ sin + b Λ cos of the phase of the table.
+    # The steady response of δ + κδ′ is aΛ sin φ + bΛ cos φ, where φ is the phase of the table.
     a = (detuning + kappa * loss) * share
     b = (kappa * detuning - loss) * share
     second = push - 1 - loss * rate - stiffness * position

@@ -153,7 +153,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
 
 
 def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -> NDArray:
-    """For each orbit, return the index of the next ordinary orbit, or else of the last one.
+    """For each orbit, return the index of the next ordinary orbit, or of the last ordinary orbit.
 
     Orbits at the ends of the branch are left out, because they may be special. The orbit at an end
     is ordinary if its only neighbour is special, and if the multipliers of the orbit at the end are
@@ -174,7 +174,7 @@ def _ordinary(orbits: list[PeriodicOrbit], special: tuple[PeriodicOrbit, ...]) -
 
 
 def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:
-    """Sort key of a legend: lines of stable orbits, other lines, marks."""
+    """Sort key of a legend. Lines of stable orbits come first, then other lines, then marks."""
     text, line = entry
     return line.get_linestyle() == "None", "no ball" in text, text == "unstable"
 

@@ -89,8 +89,8 @@ LONGER = 2.0
 At half: panels cannot grow, and evaluations increase by a factor of 2.6. At twice: no effect."""
 
 EVENT_STEP = 1e-13
-"""Newton step to an event, divided by the length of the panel, below which the event is found.
-At half and at twice: no effect."""
+"""Limit of the last Newton step to an event, divided by the length of the panel.
+The event is found if the step is smaller. At half and at twice: no effect."""
 
 SAME = 1e-10
 """Distance of a kink from the release, divided by the length of the panel, below which the kink
@@ -524,7 +524,7 @@ def solve_panel(
         Event function. The panels end at its zero. In each sweep a Newton step moves the end of
         each panel towards this zero.
     within : float or array, shape (rows,)
-        Length of the Newton step to an event below which the event is found.
+        Limit of the last Newton step to an event. The event is found if the step is smaller.
     push : float or array, shape (nodes, rows)
         Guess of F.
     newton : bool
@@ -885,7 +885,7 @@ class _Contacts:
             self.end_events(kept[at_events], which[at_events])
 
     def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
-        """Compute the derivatives at the ends of panels. Ends that are events also move."""
+        """Compute the derivatives at the ends of panels. An end at an event also moves."""
         given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
         self.by[1:, :, here] = carried(*given, newton=newton)
         for k in np.unique(which[which >= 0]):

@@ -16,7 +16,9 @@ from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
 AT_FOLD = 1e-6
-"""Limit of |1 - tr/(1 + det)| below which an orbit counts as the saddle-node, on both sides.
+"""Limit of |1 - tr/(1 + det)| below which an orbit counts as the saddle-node.
+
+Such an orbit belongs to both sides of the saddle-node.
 
 1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
 cause a value of 3e-7.
@@ -148,8 +150,8 @@ def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
 def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Guess all orbits with one impact.
 
-    The guesses are impacts at many phases. The closing speed of these impacts returns after n
-    periods.
+    The guesses are impacts at many phases. After n periods the ball has the same closing speed
+    again.
     """
     table = equations.table
     longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]

@@ -30,7 +30,7 @@ def _in_mm(value: float) -> str:
 
 
 def positive(name: str, value: Any, unit: str) -> float:
-    """Return a number as float. Raises ValueError, with the required unit, unless it is > 0."""
+    """Return a number as float. Raises ValueError unless it is > 0; the message has the unit."""
     is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     if not (is_number and 0 < value < np.inf):
         raise ValueError(f"{name} = {value!r}: must be a positive number{unit and ' in '}{unit}")
@@ -274,8 +274,8 @@ def on_shaker(
     Raises
     ------
     ValueError
-        If a quantity is missing or out of range. If the contact is so compliant that its
-        saddle-node or its period doubling is not found.
+        If a quantity is missing or out of range. If the contact is so compliant that the
+        saddle-node or the period doubling is not found.
 
     Examples
     --------

@@ -21,7 +21,7 @@ MOST_IMPACTS = 1_000_000
 
 
 def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
-    """Return an argument as a labelled array. A list becomes an axis named as the argument."""
+    """Return an argument as a labelled array. A list becomes an axis with the argument's name."""
     if isinstance(value, xr.DataArray):
         return value.astype(float)
     if np.asarray(value).dtype.kind in "SU":

@@ -195,7 +195,9 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
         if not (low <= goal <= high and np.isfinite(goal)):
             raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
     if len(goals) == 2 and not goals[0] <= value <= goals[1]:
-        raise ValueError(f"to = {to}: {path.name} = {value:.10g} of the orbit must be between them")
+        raise ValueError(
+            f"to = {to}: {path.name} = {value:.10g} of the orbit must be in this range"
+        )
     others = goals[::-1] if len(goals) == 2 else np.array([np.nan])
     common = np.array([[low, high]]), np.array([until])
     return [

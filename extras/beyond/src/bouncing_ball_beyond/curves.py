@@ -76,7 +76,9 @@ def special_curve(
     if not first.found[0]:
         raise OrbitNotFound(f"no {equations.kind} is found: Newton's method does not converge")
     if not np.abs(first.z - z).max() < OTHER * (1 + np.abs(z).max()):
-        raise OrbitNotFound(f"the orbit is not a {equations.kind}: Newton's method finds another")
+        raise OrbitNotFound(
+            f"the orbit is not a {equations.kind}: Newton's method finds another orbit"
+        )
     return both_ways(equations, first.z, unit(first.tangent), window, points)
 
 

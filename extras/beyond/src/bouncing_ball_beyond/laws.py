@@ -506,7 +506,7 @@ class ForceLaw(Ball):
         amplitude: Values,
         table: Table = SINE,
     ) -> NDArray | None:
-        """Compute :meth:`.Ball.release_slopes`; None if a contact needs more than one panel.
+        """Compute :meth:`.Ball.release_slopes`; None if a contact is not solved by one panel.
 
         The slopes come from the polynomials through the nodes of the panels.
         """

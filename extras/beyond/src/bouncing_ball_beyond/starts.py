@@ -153,8 +153,7 @@ def _doubled_start(task: Task) -> Start:
     """Start the branch of orbits of twice the period at a period doubling.
 
     Near the period doubling, the parameter and tr/(1 + det) change with the square of the distance.
-    For the doubled orbits, tr/(1 + det) is 1 at the period doubling. The first
-    step is halved until
+    For the doubled orbits, tr/(1 + det) is 1 at the period doubling. The first step is halved until
 
     1. a step of half the length changes the parameter and tr/(1 + det) by about a quarter as much;
     2. the whole step changes tr/(1 + det) by less than 0.3.

@@ -70,8 +70,8 @@ def checked_harmonic(each: Any) -> tuple[int, float, float]:
         good = False
     if not good:
         raise ValueError(
-            f"harmonics: {each!r}: must be (k, a, p) with a whole number k from 1 and numbers a, p"
-            " of a sin(kτ + p)" + (FRACTIONS if fraction else "")
+            f"harmonics: {each!r}: must be (k, a, p) for a harmonic a · sin(kτ + p), with a whole"
+            " number k from 1 and numbers a, p" + (FRACTIONS if fraction else "")
         )
     return int(k), float(a), float(p)
 

@@ -26,8 +26,8 @@ OF_TSUJI = bb.orbit(TSUJI, amplitude=0.8)
 CALLS = {
     "an n-T orbit": lambda: bb.orbit(SPRING, amplitude=0.8),
     "an n-T orbit, Tsuji's law": lambda: bb.orbit(TSUJI, amplitude=0.8),
-    "its `limits`": lambda: bb.limits(SPRING),
-    "its `limits`, Tsuji's law": lambda: bb.limits(TSUJI),
+    "`limits` of n-T orbits": lambda: bb.limits(SPRING),
+    "`limits` of n-T orbits, Tsuji's law": lambda: bb.limits(TSUJI),
     "all `orbits` with 3 impacts in 3 periods, r = 0.5": lambda: bb.orbits(
         bb.Rigid(0.5), impacts=3, periods=3, amplitude=1.6
     ),
@@ -51,9 +51,13 @@ CALLS = {
         bb.Rigid(0.5), amplitude=np.linspace(1.0, 1.7, 50)
     ),
     "`law_errors`": lambda: bb.law_errors(SPRING, amplitude=1.0),
-    "six `error_thresholds`": lambda: bb.error_thresholds(SPRING, amplitude=1.0),
-    "six `error_thresholds`, Tsuji's law": lambda: bb.error_thresholds(TSUJI, amplitude=1.0),
-    "a law of a given r and duration": lambda: bb.tsuji(restitution=0.7, duration=0.1, speed=3.0),
+    "`error_thresholds` of six quantities": lambda: bb.error_thresholds(SPRING, amplitude=1.0),
+    "`error_thresholds` of six quantities, Tsuji's law": lambda: bb.error_thresholds(
+        TSUJI, amplitude=1.0
+    ),
+    "`tsuji` with a given r and duration": lambda: bb.tsuji(
+        restitution=0.7, duration=0.1, speed=3.0
+    ),
 }
 
 
@@ -65,7 +69,9 @@ def seconds(call) -> float:
 
 
 def text(value: float) -> str:
-    return f"{value:.2g} s" if value >= 1 else f"{1e3 * value:.2g} ms"
+    """A time with two digits, such as 130 ms."""
+    number, unit = (value, "s") if value >= 1 else (1e3 * value, "ms")
+    return f"{float(f'{number:.2g}'):g} {unit}"
 
 
 def main() -> None:
@@ -74,18 +80,19 @@ def main() -> None:
     PAGE.write_text(
         f"""# How long a call takes
 
-`make speed` renews this page. Times are processor times: medians of {ROUNDS} rounds, each of which
-measures all calls, with one thread and with numba ({platform.machine()}, Python
-{platform.python_version()}, numpy {np.__version__}). Unless the table names another, the ball is
-`SpringDamper(20.0, restitution=0.65)`. Tsuji's law has the same restitution coefficient and
-duration; its contacts have no closed form and are integrated.
+`make speed` measures the times and writes this page. The table lists processor times with one
+thread and with numba ({platform.machine()}, Python {platform.python_version()}, numpy
+{np.__version__}). All calls are measured in each of {ROUNDS} rounds, and each time is the median of
+the rounds. If the table names no ball, the ball is `SpringDamper(20.0, restitution=0.65)`. The ball
+with Tsuji's law has the same restitution coefficient and nearly the same duration of contact. Its
+contacts have no closed form, so they are integrated numerically.
 
 | call | time |
 | --- | --- |
 {chr(10).join(rows)}
 
-Contact laws are integrated on arrays, which are efficient for many balls: one ball alone is slow.
-The first motion after the installation takes a few seconds longer, because numba compiles the
+The integration of contact laws uses arrays. This is efficient for many balls, but slow for a single
+ball. The first motion after the installation takes a few seconds longer, because numba compiles the
 functions and stores them.
 """,
         encoding="utf-8",

@@ -659,7 +659,7 @@ class TestRefusedForces:
             (lambda p, v, k: k * p + 3 * np.maximum(v, 0), r"kink or a jump near p = .*, v = 0\.0"),
             (lambda p, v, k: k * p**1.5, "give root=2"),
             (lambda p, v, k: k * p**1.5 + p**0.25 * v, "give root=4"),
-            (lambda p, v, k: k * float(p), "fails for arrays of complex numbers"),
+            (lambda p, v, k: k * float(p), "arrays of complex numbers: write np.where"),
             (lambda p, v, k: 3.0, "shape of p and v"),
             (lambda p, v, k: -k * p, "stops no ball"),
             (lambda p, v, k: k * p if p > 0 else 0 * p, r"np\.where\(...\) instead of 'if'"),

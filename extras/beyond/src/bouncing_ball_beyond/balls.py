@@ -271,6 +271,13 @@ def check_ball(ball: Any) -> None:
         raise ValueError(f"ball = {brief(ball)}: must be a ball, such as Rigid(0.7)")
 
 
+def check_one_ball(ball: Any) -> None:
+    """Raise ValueError unless ``ball`` is a `Ball` whose parameters are numbers."""
+    check_ball(ball)
+    if any(map(np.ndim, ball.parameters.values())):
+        raise ValueError(f"ball = {ball!r}: must be one ball, with numbers as parameters")
+
+
 def whole_number(name: str, value: Values, least: int = 1) -> int:
     """Convert a whole number to int. The number may be an int or a float.
 
@@ -311,7 +318,7 @@ def checked(name: str, value: Values, low: float, high: float, *, low_allowed: b
     allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
     try:
         values = np.array(value, float)
-        is_number = values.size and np.asarray(value).dtype.kind not in "SU"
+        is_number = values.size and np.asarray(value).dtype.kind in "iuf"
     except (TypeError, ValueError):
         is_number = False
     if not is_number:
@@ -475,8 +482,10 @@ class SpringDamper(Ball):
             raise ValueError("restitution, damping_ratio: exactly one of them must be given")
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
-        for name, value in self.parameters.items():
+        given = "restitution" if self.damping_ratio is None else "damping_ratio"
+        for name in ("frequency_ratio", given):
             most = 1 if name == "restitution" else np.inf
+            value = getattr(self, name)
             value = checked(name, value, 0, most, low_allowed=name == "damping_ratio")
             object.__setattr__(self, name, value)
         broadcast_named(self.parameters.items())
@@ -564,6 +573,7 @@ class SpringDamper(Ball):
         square = np.where(np.real(zeta) < 1, (1 - zeta) * (1 + zeta), np.nan)
         return np.pi / np.sqrt(square) + 0 * u
 
+    @np.errstate(invalid="ignore")  # NaN if free impacts do not end
     def signature(self, u: Values) -> Signature:
         """r = e^{-ζT}, D = T/ϖ, t_c = r (D + κ)/(1 + r), σ = (1 - r)(D + κ) - 2ζ (1 + r)/ϖ."""
         T = self.free(u)

@@ -142,7 +142,7 @@ class FollowedBranch:
         Spaces and hyphens are equivalent. Raises OrbitNotFound if there is no such orbit.
         """
         for each in self.special:
-            if each.kind.replace("-", " ") == kind.replace("-", " ").lower():
+            if each.kind.replace("-", " ") == str(kind).replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
         raise OrbitNotFound(f"no {kind} on {self._where}: {others}")
@@ -276,7 +276,8 @@ def followed(
             passed = [each for each in passed if each.number + 1 < len(orbits)]
         else:
             end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
-            end += _in_words_of_symmetry(crossings, i, equations.along[-1].name)
+            if not equations.kind:
+                end += _in_words_of_symmetry(crossings, i, equations.along[0].name)
         special = tuple(each.orbit for each in passed)
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))

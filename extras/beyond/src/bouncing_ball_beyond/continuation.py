@@ -190,7 +190,10 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
     if to is None:
         turn = path.name.startswith("phase_")
         to = value + PERIOD if turn else usual_range(path, value, low, high)[1]
-    goals = np.atleast_1d(np.asarray(to, float))
+    try:
+        goals = np.atleast_1d(np.asarray(to, float))
+    except (TypeError, ValueError):
+        raise ValueError(f"to = {to!r}: must be a number, or two numbers") from None
     for goal in goals:
         if not (low <= goal <= high and np.isfinite(goal)):
             raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")

@@ -22,7 +22,7 @@ from bouncing_ball_beyond.equations import (
     OrbitNotFound,
     PeriodicOrbit,
 )
-from bouncing_ball_beyond.forms import one_impact_less
+from bouncing_ball_beyond.forms import SUCH, one_impact_less
 from bouncing_ball_beyond.march import newton, unit
 from bouncing_ball_beyond.paths import path_of, usual_range
 
@@ -80,9 +80,6 @@ def special_curve(
             f"the orbit is not a {equations.kind}: Newton's method finds another orbit"
         )
     return both_ways(equations, first.z, unit(first.tangent), window, points)
-
-
-SUCH = "such as branch.first('period doubling')"
 
 
 def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:

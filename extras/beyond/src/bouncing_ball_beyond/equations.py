@@ -685,6 +685,7 @@ class PeriodicOrbit:
             "impacts": self.impacts,
             "periods": self.periods,
             **{name: x for name, x in self.parameters.items() if FUNDAMENTAL.get(name) != x},
+            **({"release": "force"} if getattr(self.ball, "release", "") == "force" else {}),
             **self._further,
             "phase": self.phase,
             "contact_duration": self.contact_duration,

@@ -121,6 +121,11 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
         step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
         # nπ ≤ v ≤ 2nπ, because 0 ≤ r ≤ 1. The duration broadcasts to the shape of all parameters.
         speed = np.clip(speed - step, half, 2 * half) + 0 * np.real(signature.duration)
+    if not np.isfinite(speed).any():
+        raise ValueError(
+            f"ball = {brief(ball)}: its free impacts do not end, so that it has no restitution"
+            " coefficient"
+        )
     aside = 1e-4 * speed
     at = np.stack([speed - aside, speed, speed + aside]) + 1j * H
     values = np.array(np.broadcast_arrays(*ball.signature(at), at))
@@ -174,8 +179,9 @@ def law_errors(
 ) -> dict:
     """Use the error law to compute the signed relative errors of the restitution model.
 
-    The law is right to the second order in the duration of contacts. Next to the saddle-node it is
-    right to the order 3/2.
+    An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
+    (Eqs. 37 and 38). The remainder of the law is of the second order in the duration of contacts,
+    and of the order 3/2 next to the saddle-node.
 
     Parameters
     ----------
@@ -520,6 +526,8 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
 
 def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
     """Find amplitudes of a bifurcation, shape (rows,). The error law gives the guess."""
+    if not np.isfinite(row.signature(1.5 * np.pi * periods).restitution).any():
+        return np.full(periods.shape, np.nan)
     impact = free_impact(row, periods)
     if name == "saddle_node":
         kind = "saddle-node"
@@ -581,7 +589,10 @@ def exact_errors(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Use exact orbits to compute the signed relative errors of a simple model (Eqs. 37, 38).
+    """Use exact orbits to compute the signed relative errors of a simple model.
+
+    An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
+    (Eqs. 37 and 38).
 
     Parameters
     ----------
@@ -605,6 +616,8 @@ def exact_errors(
     >>> round(float(error["max_height"]), 6)
     -0.000121
     """
+    if not (simple is None or isinstance(simple, FreeImpact) or callable(simple)):
+        raise ValueError(f"simple = {brief(simple)}: must map a ball to a ball, such as Corrected")
     given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
     exact = contact_values(ball, **given)
     if simple is None or isinstance(simple, FreeImpact):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bouncing_ball_beyond.balls import brief
 from bouncing_ball_beyond.chains import dense
 from bouncing_ball_beyond.equations import (
     MULTIPLIERS,
@@ -31,6 +32,10 @@ They are exact for polynomials of degree 8.
 
 SHARE = 0.1
 """Largest change of an unknown in a step of the differences, divided by min(1, min |u|)."""
+
+
+SUCH = "such as branch.first('period doubling')"
+"""What messages propose instead of a wrong orbit."""
 
 
 # Normal forms
@@ -167,6 +172,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     >>> form.supercritical, form.opens_upwards, round(form.coefficient, 6)
     (True, True, 1.54243)
     """
+    if not isinstance(orbit, PeriodicOrbit):
+        raise ValueError(f"orbit = {brief(orbit)}: must be an orbit, {SUCH}")
     if orbit.kind not in MULTIPLIERS:
         raise ValueError(
             f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
@@ -370,6 +377,8 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
+    if not isinstance(orbit, PeriodicOrbit):
+        raise ValueError(f"orbit = {brief(orbit)}: must be an orbit, {SUCH}")
     # On a curve two parameters change. The form belongs to the first parameter.
     path = orbit.equations.along[0]
     equations, z = orbit.on(path)

@@ -637,7 +637,8 @@ def _depth_of_one(law: ForceLaw) -> float:
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise ValueError(
-            f"force: fails for arrays of complex numbers: write np.where(...) instead of 'if'"
+            "force: must accept its parameters by name, and arrays of complex numbers: write"
+            " np.where(...) instead of 'if'"
             f" ({reason})"
         ) from None
     if np.shape(force) != p.shape:

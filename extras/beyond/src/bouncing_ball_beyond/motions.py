@@ -169,6 +169,7 @@ def ends_of(balls: Balls, impacts: int) -> dict:
     found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
     found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
+    found["rested"] = np.zeros(balls.phase.size, bool)
     section = max(MIN_SECTION, -(-impacts // MAX_SECTIONS))
     if is_worth_a_map(balls, impacts):
         amplitude = float(balls.amplitude[0])
@@ -487,6 +488,7 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
             j,
             kind=UNDECIDED if reason else CHAOTIC,
             reason=reason,
+            rested=track["lifted"][j] >= 0,
             lyapunov_exponent=PERIOD * rate,
             lyapunov_error=PERIOD * error,
             exponent_sum=PERIOD * areas.sum() / time.sum(),
@@ -596,7 +598,8 @@ def motion_of(
         - ``reason``: why the motion is undecided, or why its period is unknown.
         - ``impacts``, ``periods``: number of impacts, and of periods of the table, until the motion
           repeats; 0 if it does not. They are also 0 for a locked motion if rounding errors
-          determine them; ``reason`` then reports this.
+          determine them; ``reason`` then reports this. Bounces that are summed up before a rest do
+          not count.
         - ``lyapunov_exponent``: largest Lyapunov exponent per period of the table.
         - ``lyapunov_error``: error of the exponent; 0 if the motion repeats.
         - ``exponent_sum``: sum of both Lyapunov exponents, per period of the table.
@@ -625,6 +628,7 @@ def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) 
     """Convert the results of :func:`ends_of` to a dataset over a grid."""
     found = ends.copy()
     found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
+    del found["rested"]
     words = zip(ends["kind"], ends["followed"], ends["reason"], strict=True)
     found["in_words"] = np.array([in_words(*each) for each in words])
     found |= {name: ends[name].astype(str) for name in ("kind", "reason")}
@@ -701,9 +705,10 @@ def lyapunov(
     beside = np.repeat(chaotic, neighbours)
     shift = RETURNED * np.tile(np.arange(1, neighbours + 1), chaotic.size)
     states = {"phase": ends["end_phase"][beside], "speed": ends["end_speed"][beside] + shift}
-    kinds = ends_of(replace(balls.take(beside), **states), impacts)["kind"]
-    kinds = kinds.reshape(chaotic.size, neighbours)
-    leaves = chaotic[np.isin(kinds, [CHAOTIC, UNDECIDED], invert=True).any(axis=1)]
+    near = ends_of(replace(balls.take(beside), **states), impacts)
+    repeats = np.isin(near["kind"], [CHAOTIC, UNDECIDED], invert=True)
+    # After a rest all motions are the same, and a second rest would repeat it.
+    leaves = chaotic[(repeats | near["rested"]).reshape(chaotic.size, neighbours).any(axis=1)]
     _store(
         ends,
         leaves,

@@ -13,6 +13,7 @@ from bouncing_ball_beyond.balls import (
     Ball,
     brief,
     check_ball,
+    check_one_ball,
     check_whole_numbers,
     checked,
     whole_number,
@@ -192,9 +193,7 @@ def orbits(
     >>> [(round(each.max_height, 3), each.stable) for each in found]
     [(8.209, True), (8.007, False)]
     """
-    check_ball(ball)
-    if any(map(np.ndim, ball.parameters.values())):
-        raise ValueError(f"ball = {ball!r}: must be one ball")
+    check_one_ball(ball)
     amplitude = one_amplitude(amplitude)
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, H, check_ball
+from bouncing_ball_beyond.balls import Ball, H, check_one_ball
 from bouncing_ball_beyond.bounces import Balls, bounce, reduced
 from bouncing_ball_beyond.chains import solved_or_nan
 from bouncing_ball_beyond.equations import (
@@ -290,7 +290,7 @@ def orbit_with_rest(ball: Ball, *, amplitude: float, table: Table = SINE) -> Res
     >>> orbit.periods, round(orbit.rest, 6)
     (1, 0.449792)
     """
-    check_ball(ball)
+    check_one_ball(ball)
     check_table(table)
     amplitude = one_amplitude(amplitude)
     if ball.has_duration or ball.below_table:

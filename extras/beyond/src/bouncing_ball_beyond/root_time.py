@@ -883,6 +883,9 @@ class _Contacts:
         at_events = which >= 0
         if at_events.any():
             self.end_events(kept[at_events], which[at_events])
+        # A panel that is shorter than a rounding error makes no progress.
+        s = self.now[0, here]
+        self.lost[here] |= s + self.length[here] == s
 
     def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
         """Compute the derivatives at the ends of panels. An end at an event also moves."""

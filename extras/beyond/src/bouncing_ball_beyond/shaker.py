@@ -109,7 +109,10 @@ class ShakerAnswer:
 
     @property
     def is_good_enough(self) -> bool:
-        """Whether the orbits of both models exist, are stable, and agree in height."""
+        """Whether the orbits of both models exist, are stable, and agree in height.
+
+        If there is no height to compare, this is false, and :attr:`reason` says why.
+        """
         return not self.reason
 
     @property

@@ -188,6 +188,15 @@ def test_both_lines_of_the_restitution_map():
     assert (ball > amplitude * np.sin(tau + part)).all()
 
 
+def test_a_history_from_a_late_phase_lasts_to_its_end():
+    start = {"amplitude": 1.2, "phase": 6.0, "velocity": -3.0}
+    longer = bb.history(bb.Rigid(0.5), **start, periods=50)
+    # Impacts are computed 32 at once.
+    for periods in range(28, 40):
+        found = bb.history(bb.Rigid(0.5), **start, periods=periods)
+        np.testing.assert_allclose(found.ball, longer.ball[: found.time.size], atol=1e-9)
+
+
 @pytest.mark.parametrize("r", [0.0, 0.5, 0.9, 0.99])
 def test_a_ball_on_a_fixed_table_rests_when_its_bounces_end(r):
     """Bounce k lasts 2 u rᵏ, and all together 2 u r/(1 - r)."""

@@ -34,6 +34,8 @@ FEW_BALLS = 40
 """Number of balls below which a scalar loop is faster than arrays.
 
 One step on arrays takes as long as one step of this many balls in a loop.
+
+At half: no effect. At twice: motions 30 % faster; 24 of 960 transients end elsewhere.
 """
 
 

@@ -35,10 +35,10 @@ has errors of 1e-12, which are small enough for tangents of curves.
 """
 
 LASTING = 4 * np.pi
-"""T of two free oscillations. Above this T, step lengths count relative changes of T."""
+"""T of two free oscillations. Above this T, step lengths count relative changes of T.
 
-VANISHED = 1e-12
-"""Duration up to which a flight counts as vanished: a few thousand rounding errors of a time."""
+At half: 7 % fewer points on branches of long contacts. At twice: 8 % more.
+"""
 
 
 @dataclass(frozen=True, eq=False)

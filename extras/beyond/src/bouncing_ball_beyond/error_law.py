@@ -38,6 +38,8 @@ SMALL = 1e-11
 """Size of the last coefficients below which a polynomial is exact within rounding.
 
 An error of 1e-2 has rounding errors of 1e-14.
+
+At half and at twice: thresholds change by 1e-10.
 """
 
 

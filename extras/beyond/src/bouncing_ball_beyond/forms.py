@@ -31,7 +31,10 @@ They are exact for polynomials of degree 8.
 """
 
 SHARE = 0.1
-"""Largest change of an unknown in a step of the differences, divided by min(1, min |u|)."""
+"""Largest change of an unknown in a step of the differences, divided by min(1, min |u|).
+
+At half and at twice: coefficients change by 1e-9.
+"""
 
 
 SUCH = "such as branch.first('period doubling')"
@@ -207,13 +210,15 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
 
 # Grazing flights
 
-FLIGHT_SAMPLES = 2001
+FLIGHT_SAMPLES = 201
 """Number of samples of a flight in the search for its lowest point."""
 
 TOUCHES = 1e-9
 """Maximum gap at the lowest point of a flight that touches the table.
 
 Grazings are located to 1e-12.
+
+At half and at twice: no effect.
 """
 
 SLOW = 1e-3
@@ -221,6 +226,8 @@ SLOW = 1e-3
 
 a is δ″ at the touch. On a stiff contact, the branch of orbits with this impact turns back at a few
 hundredths.
+
+At half and at twice: no effect.
 """
 
 

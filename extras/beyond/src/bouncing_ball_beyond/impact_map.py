@@ -26,28 +26,43 @@ MAP_FACTOR, MAP_DEGREE = 2.0, 15
 
 For example, a restitution coefficient 1/(1 + Cu) has poles at ln u = x ± iπ. They cause an error of
 18⁻¹⁶.
+
+With half the degree there are no maps. With twice the degree they take 76 % longer to build.
 """
 
 PHASES, MOST_PHASES = 32, 256
-"""First and maximum number of phases of a piece. It is doubled until the coefficients decay."""
+"""First and maximum number of phases of a piece. It is doubled until the coefficients decay.
+
+At half: 6 % fewer harmonics. At twice: 40 % slower to build.
+"""
 
 ONE_SWING = 1.5
 """Maximum T of a contact of the map, divided by T of a free impact.
 
 During shorter contacts the ball turns back only once, and no earlier release can appear between the
 points of the map.
+
+At half there are no maps. At twice: no effect.
 """
 
 PIECES = 12
-"""Maximum number of pieces. The first piece has the fastest impacts."""
+"""Maximum number of pieces. The first piece has the fastest impacts.
+
+At half and at twice: no effect.
+"""
 
 LEFT_OUT = 1e-16
-"""Size of coefficients, relative to the largest value, below which harmonics are left out."""
+"""Size of coefficients, relative to the largest value, below which harmonics are left out.
+
+At half: 11 % more harmonics. At twice: 12 % fewer. The errors are the same.
+"""
 
 LAST_COEFFICIENTS = 1e-13
 """Maximum last coefficients of a piece, relative to the largest value.
 
 Coefficients of this size are rounding errors of the integrations.
+
+At half: no effect. At twice: 1 of 4 maps has one more piece.
 """
 
 

@@ -53,7 +53,10 @@ LN_DEPTHS = (-46.0, 23.0)
 """Range of ln p in which the depth of an impact is searched. It covers p from 1e-20 to 1e10."""
 
 HALVINGS = 9
-"""Number of halvings of `LN_DEPTHS`. They find the depth within one seventh of its value."""
+"""Number of halvings of `LN_DEPTHS`. They find the depth within one seventh of its value.
+
+At half: 36 of 80 signatures are not found. At twice: 13 % slower.
+"""
 
 FIRST_PANEL = 0.4
 """Length of the first panel of a contact, in units of P^{1/m}/u, where P is the `depth`.
@@ -65,10 +68,15 @@ SIGNATURE_FACTOR, SIGNATURE_DEGREE = 8.0, 23
 """Factor in speed that one polynomial for signatures covers, and degree of this polynomial.
 
 For example, r = 1/(1 + Cu) has poles at ln u = x ± iπ. The error is then of the order of 6⁻²⁴.
+
+At half of the degree: errors of 6e-9. At twice: 15 % slower.
 """
 
 GUESS_FACTOR = 2.0
-"""Ratio of the largest to the smallest speed of contacts that one free impact approximates."""
+"""Ratio of the largest to the smallest speed of contacts that one free impact approximates.
+
+At half and at twice: no effect.
+"""
 
 SPARE = 1e-9
 """Limit of the last Legendre coefficients of v of a free impact, divided by its closing speed. If
@@ -78,10 +86,15 @@ FEW_KINKS = 8
 """Maximum number of intervals that fail a check and count as kinks.
 
 If more intervals fail, the force is not analytic.
+
+At half, 1 of 11 wrong laws gets the other message. At twice: no effect.
 """
 
 ALIKE = 1e-11
-"""Largest relative difference of two forces that are equal within rounding."""
+"""Largest relative difference of two forces that are equal within rounding.
+
+At half and at twice: no effect.
+"""
 
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
@@ -90,6 +103,8 @@ SHIFT = 0.02
 
 They have an error of h⁶/140 times the seventh derivative, about 5e-13. They also have rounding
 errors divided by h, about 1e-14.
+
+At half: signatures change by 6e-13. At twice: by 4e-11.
 """
 
 

@@ -15,64 +15,80 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.equations import KINDS, SINGULAR, LinearizedLegs, OrbitEquations
 
-RESIDUAL_ROUNDING = 4 * np.finfo(float).eps
+RESIDUAL_ROUNDING = 8 * np.finfo(float).eps
 """Size of the rounding errors of the equations, relative to their largest terms."""
 
 TOLERANCE = 1e-11
 """Newton's method stops if its step is smaller than this, in units of `OrbitEquations.sizes`.
 
 The next step would consist of rounding errors only.
+
+At half and at twice: results change by 7e-14.
 """
 
 SPECIAL = 1e-9
-"""`TOLERANCE` for special orbits. Their gradients have errors of up to 1e-7."""
+"""`TOLERANCE` for special orbits. Their gradients have errors of up to 1e-7.
+
+At half and at twice: no effect on bifurcations; 2 of 90 curves stop up to 8e-4 elsewhere.
+"""
 
 NOISE = 1e-3
 """If the equations hold within rounding, Newton steps larger than this are not taken.
 
 Units as for `TOLERANCE`. Such a step consists of rounding errors divided by a nearly singular
 matrix, as at a saddle-node.
+
+At half and at twice: no effect. Without `NOISE`, 1 of 540 heights next to saddle-nodes is lost.
 """
 
 FAST = 0.1
 """Ratio of successive Newton steps below which the gradient is not computed again.
 
 This applies to special orbits with one free parameter, which are isolated points.
-"""
 
-LONG = 2.0
-"""Longest Newton step to a special orbit, divided by 1 + |z|. Longer steps rarely converge."""
+At half and at twice: results change by 1e-13.
+"""
 
 FIRST_STEP = 0.1
 """Length of the first step along a branch, in units of `OrbitEquations.scales`.
 
 In these units the length combines the root mean square change of the unknowns over the impacts and
 the relative change of the parameter.
+
+At half: 5 % more points. At twice: 3 % fewer; 2 of 144 branches end elsewhere.
 """
 
 LONGEST_STEP = 0.4
-"""Longest step along a branch."""
+"""Longest step along a branch.
+
+At half: up to 48 % more points. At twice: up to 27 % fewer; 1 of 144 branches loses two special
+orbits.
+"""
 
 SHORTEST_STEP = 1e-9
-"""Step length below which a branch ends."""
+"""Step length below which a branch ends.
+
+At half and at twice: no effect.
+"""
 
 STRAIGHT = 0.95
-"""Minimum cosine of the angle between the tangents at both ends of a step."""
+"""Minimum cosine of the angle between the tangents at both ends of a step.
+
+With half the angle: 3 % more points. With twice the angle: 2 % fewer.
+"""
 
 LARGEST_TURN = 0.3
-"""Largest change of arctan(tr/(1 + det)) in a step. A larger change could hide two bifurcations."""
+"""Largest change of arctan(tr/(1 + det)) in a step. A larger change could hide two bifurcations.
 
-FADED = 1e-6
-"""Impact speed, in g/Ω, below which an impact counts as vanished, and its branch ends.
-
-The last step must have reduced the speed by less than half. This ends branches on which contacts
-become longer and longer.
+At half: 30 % more points. At twice: 11 % fewer.
 """
 
 BEFORE_END = 1e-3
 """Distance between the end of a branch and the extra point before this end.
 
 The distance is divided by the distance between the start of the step and the end of the branch.
+
+At half and at twice: no effect.
 """
 
 
@@ -81,9 +97,6 @@ AT_GOAL = "the end of the window"
 
 CLOSED = "the branch is closed: it is back at its start"
 """Reason for the end of a branch: it returned to its start."""
-
-IMPACT = "grazing of an impact"
-"""Kind of special orbit at which the speed of an impact vanishes."""
 
 
 class Solution(NamedTuple):
@@ -182,8 +195,6 @@ def _special(equations: OrbitEquations, z: NDArray, normal: NDArray, iterations:
         condition = value, gradient[todo]
         solution = part.bordered(z[todo], linear, normal[todo], condition)
         step = solution[..., 0]
-        size = np.abs(step).max(axis=1) / (1 + np.abs(z[todo]).max(axis=1))
-        step[size > LONG] = np.nan
         z[todo] += step
         tangent[todo] = solution[..., 1]
         moved = (np.abs(step) / part.sizes(z[todo])).max(axis=1)
@@ -380,9 +391,6 @@ def march(
             inside = ((values >= low) & (values <= high)).all(axis=1)
         good = solution.found & inside & (cosine > STRAIGHT) & (missed < 0.4 * length)
         good &= (turned < LARGEST_TURN) | (length < 1e-6)
-        speed = equations.kinds.index(IMPACT)
-        before, after = (each.tests[:, speed] for each in (here, there))
-        fades = good & (0 < after) & (after < FADED) & (after > before / 2) & (after < before)
         easy = (cosine > 0.99) & (turned < LARGEST_TURN / 2)
         moved = zip(here, there, strict=True)
         here = Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
@@ -400,8 +408,6 @@ def march(
             kind = until[rows[j]]
             passed = np.array(equations.kinds)[crossed[j]]
             ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
-            if not ends[rows[j]] and fades[j]:
-                ends[rows[j]] = f"the speed of an impact has fallen below {FADED:g}"
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"the maximum of {points} points is reached"
         for j in np.flatnonzero(step < SHORTEST_STEP):

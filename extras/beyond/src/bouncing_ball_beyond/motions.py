@@ -41,19 +41,31 @@ RETURNED = 1e-7
 
 It is far above rounding errors. It is far below the distance between two orbits whose multipliers
 are less than 1 - `MARGIN`.
+
+At half: no kind of 960 motions changes. At twice: 2 of 960 are periodic instead of undecided.
 """
 NEAR_BEFORE = 1e-5
-"""Largest distance between corresponding impacts of the last two laps of a periodic motion."""
+"""Largest distance between corresponding impacts of the last two laps of a periodic motion.
+
+At half and at twice: no effect on 960 kinds of motion.
+"""
 CANDIDATES = 8
-"""Maximum number of returns within `NEAR_BEFORE` that are tried, the most recent first."""
+"""Maximum number of returns within `NEAR_BEFORE` that are tried, the most recent first.
+
+At half and at twice: no effect on 960 kinds of motion.
+"""
 MARGIN = 1e-3
-"""Margin by which the multipliers of a periodic motion must be less than 1."""
+"""Margin by which the multipliers of a periodic motion must be less than 1.
+
+At half and at twice: up to 10 of 142 slow motions have another reason.
+"""
 ROUNDING_GROWTH = np.log(RETURNED / 2.0**-52)
 """Logarithm of the growth that turns a rounding error into a deviation of `RETURNED`."""
-MIN_SECTION = 25
-"""Minimum number of impacts in a section. Growth of deviations is summed over each section."""
-MAX_SECTIONS = 1024
-"""Maximum number of sections of a motion."""
+SECTION = 25
+"""Number of impacts in a section. Growth of deviations is summed over each section.
+
+At half and at twice: up to 7 of 960 chaotic or marginal motions change their kind.
+"""
 IMPACTS_AT_ONCE = 1 << 16
 """Number of impacts computed at once, summed over all balls."""
 RESTART = np.array([[1.0, 0.618], [0.0, 0.0]])[:, :, np.newaxis, np.newaxis]
@@ -64,9 +76,14 @@ WORTH_A_MAP = 20_000
 """Number of impacts, summed over all balls, above which an :class:`.ImpactMap` saves time.
 
 Building the map takes as long as about a thousand contacts.
+
+At half: three basins take 40 % less time. At twice: 28 % more.
 """
 BALLS_AT_ONCE = 1 << 14
-"""Maximum number of balls followed at once."""
+"""Maximum number of balls followed at once.
+
+At half: 17 % faster. At twice: 14 % slower.
+"""
 SIGNIFICANT = 5.0
 """Number of standard errors by which the exponent of a chaotic motion must exceed zero.
 
@@ -77,16 +94,24 @@ SETTLING_LENGTHS = 5.0
 
 Over one relaxation length areas contract by a factor of e, and the deviation of the energy from its
 mean shrinks by the same factor.
+
+At half and at twice: up to 2 of 60 nearly elastic balls change between chaotic and undecided.
 """
 TELLING_LENGTHS = 20.0
-"""Minimum number of relaxation lengths from which the error of an exponent is estimated."""
+"""Minimum number of relaxation lengths from which the error of an exponent is estimated.
+
+At half: 4 of 60 nearly elastic balls gain an error. At twice: 5 lose theirs.
+"""
 LOW_DISCREPANCY = (0.7548776662466927, 0.5698402909980532)
 """Generators of a low-discrepancy sequence.
 
 The fractional parts of their multiples cover the unit square evenly.
 """
 NEIGHBOURS = 32
-"""Number of neighbours of a chaotic ball that are followed to detect transient chaos."""
+"""Number of neighbours of a chaotic ball that are followed to detect transient chaos.
+
+At half and at twice: no effect on 56 exponents; the time is proportional.
+"""
 
 LIFT_OFF_ERROR = 1e-12
 """Tolerance for rounding errors in the condition -w″ = 1 of a lift-off."""
@@ -170,14 +195,13 @@ def ends_of(balls: Balls, impacts: int) -> dict:
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
     found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
     found["rested"] = np.zeros(balls.phase.size, bool)
-    section = max(MIN_SECTION, -(-impacts // MAX_SECTIONS))
     if is_worth_a_map(balls, impacts):
         amplitude = float(balls.amplitude[0])
         top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
         balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
     for first in range(0, balls.phase.size, BALLS_AT_ONCE):
         lane = np.arange(first, min(first + BALLS_AT_ONCE, balls.phase.size))
-        _follow_to_end(found, balls.take(lane), lane, impacts, section)
+        _follow_to_end(found, balls.take(lane), lane, impacts)
     return found
 
 
@@ -205,7 +229,7 @@ def _take(track: dict, which: Any) -> dict:
 
 
 @np.errstate(all="ignore")
-def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, section: int) -> None:
+def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int) -> None:
     """Follow balls until the motion of each ball is known, and store the motions in ``found``.
 
     Floating-point warnings are off, because deviations overflow in long motions and vanish at a
@@ -225,11 +249,11 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, secti
     seen = 0
     while track["lane"].size and seen < impacts:
         count = min(
-            max(seen // section, 1),
-            -(-(impacts - seen) // section),
-            max(IMPACTS_AT_ONCE // track["lane"].size // section, 1),
+            max(seen // SECTION, 1),
+            -(-(impacts - seen) // SECTION),
+            max(IMPACTS_AT_ONCE // track["lane"].size // SECTION, 1),
         )
-        record, going, after = bounce(balls, count * section)
+        record, going, after = bounce(balls, count * SECTION)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)
         track = _take(track, going)
@@ -237,7 +261,7 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, secti
         lifts = lift_offs(balls, record)
         maps = tangent_maps(balls, record, lifts)
         again = recurrence(balls, record, after, maps)
-        lap = grow_deviations(track, record, after, maps, lifts, section)
+        lap = grow_deviations(track, record, after, maps, lifts)
         track["marginal"] = again["marginal"]
         _store_periodic(found, track["lane"], record, after, again, seen)
         locked = _store_locked(found, track, record, after, lifts, lap, seen)
@@ -267,7 +291,7 @@ def running_products(maps: NDArray) -> tuple[NDArray, NDArray]:
 
 
 def grow_deviations(
-    track: dict, record: NDArray, after: Balls, maps: NDArray, lifts: NDArray, section: int
+    track: dict, record: NDArray, after: Balls, maps: NDArray, lifts: NDArray
 ) -> NDArray:
     """Propagate the deviation of each ball over the recorded impacts, and update ``track``.
 
@@ -288,7 +312,7 @@ def grow_deviations(
     lap = np.where(number[-1] == 1, np.maximum(lap, track["most"]), lap)
     areas = np.nan_to_num(contraction(maps), neginf=0.0)
     sums = np.stack([growth, np.diff(times(record, after), axis=0), areas])
-    sums = sums.reshape(3, len(record) // section, section, lifts.shape[1]).sum(axis=2)
+    sums = sums.reshape(3, len(record) // SECTION, SECTION, lifts.shape[1]).sum(axis=2)
     track["vector"] = vectors[:, -1] / length[-1]
     track["most"] = np.where(number[-1] == 0, np.maximum(most, track["most"]), most)
     track["climb"] = climb[-1]
@@ -586,7 +610,7 @@ def motion_of(
         As in :func:`.simulate`. Arrays span a grid.
     impacts : int
         Number of impacts after which the search for a repetition ends. It is rounded up to a
-        multiple of 25, or of ⌈impacts/1024⌉ if that is larger.
+        multiple of 25.
 
     Returns
     -------

@@ -18,16 +18,26 @@ REACH = 4.0
 """Reach H in which the parabola with the bound J holds, divided by a step of the other parabola.
 
 The other parabola uses only the bound K (docs/impacts.md).
+
+At half and at twice: only rounding errors change.
 """
 PATIENCE = 100 * PERIOD
-"""Duration, multiplied by Ω, above which a contact without a release counts as permanent."""
+"""Duration, multiplied by Ω, above which a contact without a release counts as permanent.
+
+At half: lasting contacts take 35 % less time. At twice: 80 % more.
+"""
 SLOWEST = 1e-12
-"""Closing speed that replaces 0 for a ball that is laid on the table."""
+"""Closing speed that replaces 0 for a ball that is laid on the table.
+
+At half and at twice: the first contact of a laid ball changes by 3e-11.
+"""
 CHATTER = 1e-5
 """Limit of T₀ and Λ T₀, divided by the gravity on the table, below which bounces are summed up.
 
 T₀ is the time in which infinitely many bounces end; see :func:`settling`. The relative error of the
 sum is of the order of the square of this limit.
+
+At half: bounces are summed up 1 to 3 impacts later. At twice: 1 to 3 sooner.
 """
 STEPS = 20_000
 """Maximum number of steps of a search for a zero. A search that needs more returns NaN.

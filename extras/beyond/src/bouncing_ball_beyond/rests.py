@@ -42,13 +42,21 @@ SOON = 1e-6
 """Time after a lift-off in which zeros of δ′ are ignored. There δ grows as slowly as t³.
 
 The phases of successive lift-offs must agree within the same tolerance.
+
+At half and at twice: no effect.
 """
 
 MOST = 2000
-"""Maximum number of impacts between a lift-off and the next rest."""
+"""Maximum number of impacts between a lift-off and the next rest.
+
+At half and at twice: no effect, except on the time of a search without success.
+"""
 
 CYCLES = 20
-"""Maximum number of rests that are followed until two successive lift-offs have the same phase."""
+"""Maximum number of rests that are followed until two successive lift-offs have the same phase.
+
+At half and at twice: no effect, except on the time of a search without success.
+"""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
 from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.equations import VANISHED, OrbitEquations, PeriodicOrbit, unknowns_of
+from bouncing_ball_beyond.equations import OrbitEquations, PeriodicOrbit, unknowns_of
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
@@ -22,6 +22,8 @@ Such an orbit belongs to both sides of the saddle-node.
 
 1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
 cause a value of 3e-7.
+
+At half: 1005 of 1020 orbits next to saddle-nodes are found, instead of 1011. At twice: 1015.
 """
 
 
@@ -99,7 +101,7 @@ def near_instants(
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
     z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
-    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > VANISHED)
+    good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
     rows = enumerate(zip(good, z, strict=True))
     found = [single(equations, i).orbit(row) if is_good else None for i, (is_good, row) in rows]
     return found, good & equations.admissible(z, solution.linear)
@@ -199,17 +201,18 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
     """
 
     def sizes(z: NDArray) -> NDArray:
-        return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)
+        return equations.split(z)[0][..., 1:]
 
-    largest = 2 * sizes(z).max(axis=0, initial=0.0)
+    largest = 2 * sizes(z).max(axis=(0, 1), initial=0.0)
     found = [z[:0]]
     for _ in range(30):
         if not len(z):
             break
         solution = newton(equations, z, iterations=1)
         found.append(solution.z[solution.found])
-        # The comparison is false for NaN.
-        inside = (sizes(solution.z) <= largest).all(axis=1)
+        # The comparisons are false for NaN. Speeds and durations of orbits are positive.
+        size = sizes(solution.z)
+        inside = ((0 < size) & (size <= largest)).all(axis=(1, 2))
         z = solution.z[inside & ~solution.found]
     return np.concatenate(found)
 

@@ -14,7 +14,10 @@ from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 AT_ONCE = 32
-"""Number of impacts that :func:`history` computes before it checks whether the time is over."""
+"""Number of impacts that :func:`history` computes before it checks whether the time is over.
+
+At half: no effect. At twice: 40 % slower.
+"""
 
 MOST_IMPACTS = 1_000_000
 """Maximum number of impacts of a ball in :func:`history`. More impacts raise a ValueError."""

@@ -17,6 +17,9 @@ NEAREST = 1e-9
 
 The distance of the parameter is proportional to ξ², where ξ is the distance of the doubled orbits
 from the period doubling. Rounding errors of the doubled orbits are eps/ξ².
+
+At half, all 12 branches at 0.6 and 0.9 of this distance are found. At twice, all 6 branches at 1.5
+of it are refused.
 """
 
 

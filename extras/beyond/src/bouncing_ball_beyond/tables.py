@@ -16,17 +16,24 @@ import numpy as np
 from bouncing_ball_beyond.one_ball import CHATTER, PERIOD
 
 SAMPLES = 64
-"""Number of samples of W in a period of its highest harmonic."""
+"""Number of samples of W in a period of its highest harmonic.
+
+At half: bounds are too large by up to 5e-3, instead of 1e-3. At twice: by 3e-4.
+"""
 
 JUMP = 2.0
 """Largest step from the last sample to the first, divided by the largest other step.
 
 Larger steps mean that the samples do not cover exactly one period.
+
+At half: 34 of 800 records more are refused. At twice: 58 fewer, of which 28 are cut records.
 """
 UPPER_SHARE = 0.1
 """Maximum share of the acceleration that the upper half of the harmonics of samples may have.
 
 If the share is larger, the caller must give the highest harmonic.
+
+At half: 67 of 800 records more are refused. At twice: 34 fewer.
 """
 
 FUNDAMENTAL = {"harmonic_1": 1.0, "phase_1": 0.0}

@@ -201,18 +201,17 @@ def _solutions_near(equations: OrbitEquations, z: NDArray) -> NDArray:
     """
 
     def sizes(z: NDArray) -> NDArray:
-        return equations.split(z)[0][..., 1:]
+        return np.abs(equations.split(z)[0][..., 1:]).max(axis=1)
 
-    largest = 2 * sizes(z).max(axis=(0, 1), initial=0.0)
+    largest = 2 * sizes(z).max(axis=0, initial=0.0)
     found = [z[:0]]
     for _ in range(30):
         if not len(z):
             break
         solution = newton(equations, z, iterations=1)
         found.append(solution.z[solution.found])
-        # The comparisons are false for NaN. Speeds and durations of orbits are positive.
-        size = sizes(solution.z)
-        inside = ((0 < size) & (size <= largest)).all(axis=(1, 2))
+        # The comparison is false for NaN.
+        inside = (sizes(solution.z) <= largest).all(axis=1)
         z = solution.z[inside & ~solution.found]
     return np.concatenate(found)
 

@@ -556,7 +556,7 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
         (lambda: follow(start, to=1.3), "amplitude = 1.3 is already the value of the orbit"),
         (
             lambda: follow(orbit(SpringDamper(9.0, 0.5), amplitude=1.3), along="damping_ratio"),
-            "along = 'damping_ratio': the ball is given by frequency_ratio and restitution; start",
+            "along = 'damping_ratio': the ball has frequency_ratio and restitution as parameters",
         ),
     ):
         with pytest.raises(ValueError, match=text) as raised:

@@ -231,6 +231,12 @@ def test_what_is_not_known_has_a_reason():
     assert lost.any() and np.array_equal(lost, locked.impacts == 0)
 
 
+def test_a_neighbour_that_rests_once_shows_a_transient():
+    """A ball with r = 0.9 rests about once in three thousand impacts, and then repeats itself."""
+    found = bb.lyapunov(bb.Rigid(0.9), amplitude=1.25, phase=1.0)
+    assert found.kind in ("undecided", "locked")
+
+
 def test_chaos_that_ends_is_a_transient():
     """A ball that sticks once in some thousand impacts looks chaotic in two thousand."""
     found = bb.lyapunov(bb.Rigid(0.7), amplitude=1.85, phase=1.0, impacts=400)

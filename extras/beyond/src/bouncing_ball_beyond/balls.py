@@ -136,7 +136,7 @@ class Ball:
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Exponent s of each parameter that is proportional to Ω^s for a given contact."""
+        """Exponents by name: a parameter of a given contact is proportional to Ω^exponent."""
         return {}
 
     def start(self, u: Values) -> Values:

@@ -420,9 +420,10 @@ class OrbitEquations:
         ).min(axis=-1)
 
     def contact_clearance(self, z: NDArray) -> NDArray:
-        """Minus the largest local maximum of the release function in all contacts, shape (rows,).
+        """How far release functions stay below zero where they turn back, shape (rows,).
 
-        It is at most `FAR`. For instantaneous impacts it is `FAR`.
+        The largest local maximum in all contacts of an orbit counts, with a negative sign. The
+        result is at most `FAR`, and it is `FAR` for instantaneous impacts.
         """
         if not self.ball.has_duration:
             return np.full(len(z), FAR)

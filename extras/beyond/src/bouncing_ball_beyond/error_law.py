@@ -642,7 +642,10 @@ def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table
 
 
 def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
-    """Whether n-T orbits on the stable side of the saddle-node exist and are unstable."""
+    """Whether the n-T orbits on the stable side of the saddle-node are past their doubling.
+
+    False where there are no orbits.
+    """
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     equations = OrbitEquations(row, 1, periods, table=table)
     z = rows_of_orbits(equations, amplitudes)

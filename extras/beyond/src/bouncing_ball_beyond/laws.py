@@ -263,7 +263,7 @@ class ForceLaw(Ball):
 
     @property
     def frequency_powers(self) -> dict[str, Any]:
-        """Exponent s of each parameter that is proportional to Ω^s for a given contact.
+        """Exponents by name: a parameter of a given contact is proportional to Ω^exponent.
 
         Lengths are in units of g/Ω², and times in units of 1/Ω.
         """
@@ -619,9 +619,10 @@ class ForceLaw(Ball):
 def check_force(law: ForceLaw) -> None:
     """Raise ValueError unless the force meets the requirements of :class:`ForceLaw`.
 
-    The force is sampled along lines of constant rate and of constant depth. Its change between
-    neighbouring samples must equal the integral of its derivative by complex steps. In a row of
-    balls, the balls with an extreme value of a parameter are checked.
+    The force is sampled along lines of constant rate and of constant depth. Complex steps give its
+    derivative. The integral of the derivative must equal the change of the force between
+    neighbouring samples. In a row of balls, the balls with an extreme value of a parameter are
+    checked.
     """
     # The entry without a name serves forces without parameters.
     arrays = broadcast_named([*law.values.items(), ("", 0.0)])

@@ -861,8 +861,10 @@ def basins(
 def told_apart(balls: Balls, ends: dict) -> tuple[NDArray, dict]:
     """Distinguish the motions on which balls end.
 
-    Returns the number of the motion of each ball, shape (balls,), and columns over the motions by
-    name.
+    Returns
+
+    1. the index of the motion of each ball, shape (balls,);
+    2. the properties of the motions: by name, an array with an entry for each motion.
     """
     kinds = ends["kind"].astype(str)
     balls = replace(balls, phase=ends["end_phase"], speed=ends["end_speed"])

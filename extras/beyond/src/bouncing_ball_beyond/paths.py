@@ -89,8 +89,8 @@ def path_of(along: str, ball: Ball, table: Table = SINE) -> Path:
         return Frequency() if along == "frequency" else Path(along)
     if isinstance(along, str) and along in vars(ball):
         raise ValueError(
-            f"along = {along!r}: the ball is given by {' and '.join(ball.parameters)}; start from"
-            f" the orbit of a ball that is given by its {along}"
+            f"along = {along!r}: the ball has {' and '.join(ball.parameters)} as parameters; make"
+            f" it with {along} instead, and start from its orbit"
         )
     raise ValueError(f"along = {along!r}: must be one of {', '.join(allowed)}")
 

@@ -261,8 +261,8 @@ def orbit_near(
     periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
     if periods < 1:
         raise OrbitNotFound(
-            "the guess takes less than half a period: give the velocities of the ball before its"
-            " impacts, negative if it falls"
+            "the guess lasts less than half a period: check the velocities of the ball before its"
+            " impacts; a falling ball has a negative velocity"
         )
     z = row_of(ball, times[:-1], u, T, amplitude)
     equations = OrbitEquations(ball, len(u), periods, table=table)

@@ -945,7 +945,8 @@ def whole_panel(
 ) -> tuple[Panel, NDArray]:
     """Solve each contact up to a root time in one panel.
 
-    Returns the panels, and whether each panel is accepted because the contact resembles the guess.
+    Returns the panels, and whether each panel is accepted. A panel is accepted if its contact is
+    like the guess.
     """
     panel = solve_panel(motion, (*start, 0 * until), until, push=guess.push, guess=guess)
     good, _ = _resolved(motion, panel, np.abs(panel.nodes[1]).max(0))

@@ -335,7 +335,7 @@ class Table:
         new = self.parameters | values
         if len(new) > len(self.parameters):
             known = ", ".join(self.parameters) or "none"
-            raise ValueError(f"{', '.join(values)}: no parameter of the table: it has {known}")
+            raise ValueError(f"{', '.join(values)}: must be a parameter of the table: {known}")
         found = object.__new__(type(self))
         vars(found).update(
             orders=self.orders,

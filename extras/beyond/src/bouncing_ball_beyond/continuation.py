@@ -333,8 +333,7 @@ def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound
 def _between_limits(equations: OrbitEquations) -> list:
     """For each row, return an orbit with one impact, or an OrbitNotFound.
 
-    The search starts between the limits of instantaneous impacts. It prefers orbits that a ball
-    follows.
+    The search starts between the limits of instantaneous impacts. It prefers admissible orbits.
     """
     n = np.asarray(equations.periods)
     r = equations.ball.signature(1.5 * np.pi * n).restitution

@@ -218,15 +218,15 @@ class OrbitEquations:
         return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
-        """Return impacts, shape (rows, k, q), and ball, Λ and table as columns."""
+        """Return impacts, shape (rows, k, q); then the ball, Λ and the table, as columns."""
         x = z[:, : self.size].reshape(len(z), self.impacts, self.unknowns)
         return x, *self.at(z[:, self.size :])
 
     def sizes(self, z: NDArray) -> NDArray:
         """Sizes of the entries of z, shape (rows, N).
 
-        All unknowns of the impacts have the size 1 + their largest modulus. A parameter λ has the
-        size 1 + |λ|.
+        Newton steps are measured in these sizes: 1 + the largest modulus of the unknowns of the
+        impacts, and 1 + |λ| for a parameter λ.
         """
         sizes = 1 + np.abs(z)
         sizes[:, : self.size] = sizes[:, : self.size].max(axis=1, keepdims=True)
@@ -243,7 +243,7 @@ class OrbitEquations:
         return units
 
     def following(self, x: NDArray) -> NDArray:
-        """The next impact of each impact. After the last one comes the first, m periods later."""
+        """Impact after each impact. The last is followed by the first, m periods later."""
         following = np.concatenate([x[:, 1:], x[:, :1]], axis=1)
         following[:, -1, 0] += 2 * np.pi * np.asarray(self.periods)
         return following
@@ -529,7 +529,7 @@ class OrbitEquations:
         return half, np.concatenate([mean, z[:, self.size :]], axis=1)
 
     def doubled(self, z: NDArray) -> tuple["OrbitEquations", NDArray]:
-        """Return equations of twice the period, and orbits that consist of each orbit twice."""
+        """Return the equations of twice the period, and each orbit repeated once."""
         twice = replace(self, impacts=2 * self.impacts, periods=2 * np.asarray(self.periods))
         return twice, np.concatenate([z[:, : self.size], self.later(z, self.periods)], axis=1)
 
@@ -746,7 +746,7 @@ class PeriodicOrbit:
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Λ, all parameters of ball and table, and those that may change, such as Ω/√(g/a)."""
+        """Λ, the parameters of ball and table, and others along a branch, such as Ω/√(g/a)."""
         values = {"amplitude": self.amplitude, **self.ball.parameters, **self.table.parameters}
         names = [path.name for path in self.equations.along]
         values |= dict(zip(names, self.z[self.equations.size :], strict=True))

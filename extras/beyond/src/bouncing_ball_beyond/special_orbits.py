@@ -160,8 +160,8 @@ def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     """Find the period halving in a step. There the orbits merge with orbits of half the period.
 
     The orbits of half the period double their period at the same point. Newton's method finds this
-    period doubling. Its orbit, repeated twice, is the period halving. Returns None if Newton's
-    method fails, or if the period doubling is far from the step.
+    period doubling. The orbit there, run through twice, is the orbit of the halving. Returns None
+    if Newton's method fails, or if the period doubling is far from the step.
     """
     half, near = equations.halved(ends)
     solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))

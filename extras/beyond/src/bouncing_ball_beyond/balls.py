@@ -96,7 +96,7 @@ class Ball:
 
     @property
     def ends_analytically(self) -> bool:
-        """Whether contacts need integration, and their ends are analytic functions of τ and u."""
+        """Whether contacts must be integrated, but still end analytically in τ and u."""
         return False
 
     @property

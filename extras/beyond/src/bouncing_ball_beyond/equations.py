@@ -317,7 +317,7 @@ class OrbitEquations:
         """Solve the linear equations for two right-hand sides, shape (rows, N, 2).
 
         In the equations of the legs, the first right-hand side is minus the residual, and the
-        second is 0. ``right`` contains the right-hand sides of the other equations, the border.
+        second is 0. The other equations are the border; ``right`` contains their right-hand sides.
         """
         legs = np.zeros((*linear.legs.shape, 2))
         legs[..., 0] = -linear.legs

@@ -348,7 +348,7 @@ def law_thresholds(
     Returns
     -------
     dict
-        ϖ by the names in :data:`QUANTITIES`.
+        Threshold values of ϖ. The keys are the names in :data:`QUANTITIES`.
 
     Examples
     --------

@@ -410,7 +410,7 @@ class ForceLaw(Ball):
 
     @np.errstate(all="ignore")
     def guess(self, u: NDArray, T: NDArray) -> Guess | None:
-        """Return free impacts of one ball as a guess of contacts with the speeds u and lengths T.
+        """Return free impacts as a first guess for contacts with the speeds u and root times T.
 
         The speeds of the free impacts differ from u by a factor of at most √2. The result is None
         if a free impact has no release.
@@ -464,8 +464,9 @@ class ForceLaw(Ball):
     def computed_signature(self, u: Values) -> Signature:
         """Compute :meth:`signature` from free impacts at each speed and parameter.
 
-        The impulse J = u + w + aD under a constant load a gives σ = ∂J/∂a - t_c ∂J/∂u at a = 0.
-        Differences give these derivatives, so u and the parameters may have complex steps.
+        Under a constant load a, the impulse is J = u + w + aD. Then σ = ∂J/∂a - t_c ∂J/∂u, where
+        both derivatives are taken at a = 0. They are differences, so u and the parameters may have
+        complex steps.
         """
         u = np.asarray(u)[..., np.newaxis]
         law = self.at(**{name: np.asarray(x)[..., np.newaxis] for name, x in self.values.items()})

@@ -905,7 +905,7 @@ def orbit_diagram(
     impacts: int = 2000,
     table: Table = SINE,
 ) -> xr.Dataset:
-    """Find the motions on which balls end while Λ or a parameter of the ball varies.
+    """Find the motions on which balls end, for each value of Λ or of a parameter of the ball.
 
     Parameters
     ----------

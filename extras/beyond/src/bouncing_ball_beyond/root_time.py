@@ -20,7 +20,7 @@
 6. Permanent contacts (:meth:`_Contacts.compare_periods`). The motion is compared with the motion
    one period before.
 7. Derivatives (:func:`carried`). They solve the linearised equations of the collocation.
-8. Contacts up to a known end (:func:`integrate_to`). A contact that resembles a free impact of its
+8. Contacts of a given length (:func:`integrate_to`). A contact that resembles a free impact of its
    speed is one panel. The linear equations of the free impact then make each sweep nearly a Newton
    step.
 9. Linear solvers (:func:`by_newton`, :func:`are_solved_directly`). The size of the equations

@@ -95,6 +95,11 @@ class Ball:
     """Whether contacts are replaced by instantaneous impacts below the level of the table."""
 
     @property
+    def unknowns(self) -> int:
+        """Number q of unknowns of an impact: τ, u and, if it has a duration, T."""
+        return 3 if self.has_duration else 2
+
+    @property
     def ends_analytically(self) -> bool:
         """Whether contacts must be integrated, but still end analytically in τ and u."""
         return False

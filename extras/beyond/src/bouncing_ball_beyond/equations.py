@@ -125,17 +125,12 @@ class Flights(NamedTuple):
         return np.fmin(times, self.flight[..., np.newaxis])
 
 
-def unknowns_of(ball: Ball) -> int:
-    """Number q of unknowns of an impact: τ, u and, if it has a duration, T."""
-    return 3 if ball.has_duration else 2
-
-
 def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) -> NDArray:
     """Row z from the unknowns of impacts and the values of the parameters that may change.
 
     T is left out if the impacts have no duration.
     """
-    columns = np.stack([times, speeds, T][: unknowns_of(ball)], axis=-1)
+    columns = np.stack([times, speeds, T][: ball.unknowns], axis=-1)
     return np.append(columns.ravel(), values)
 
 
@@ -177,7 +172,7 @@ class OrbitEquations:
     @cached_property
     def unknowns(self) -> int:
         """Number q of unknowns of an impact."""
-        return unknowns_of(self.ball)
+        return self.ball.unknowns
 
     @cached_property
     def size(self) -> int:

@@ -41,6 +41,12 @@ SUCH = "such as branch.first('period doubling')"
 """What messages propose instead of a wrong orbit."""
 
 
+def check_orbit(orbit: object) -> None:
+    """Raise ValueError unless ``orbit`` is a `PeriodicOrbit`."""
+    if not isinstance(orbit, PeriodicOrbit):
+        raise ValueError(f"orbit = {brief(orbit)}: must be an orbit, {SUCH}")
+
+
 # Normal forms
 
 
@@ -175,8 +181,7 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     >>> form.supercritical, form.opens_upwards, round(form.coefficient, 6)
     (True, True, 1.54243)
     """
-    if not isinstance(orbit, PeriodicOrbit):
-        raise ValueError(f"orbit = {brief(orbit)}: must be an orbit, {SUCH}")
+    check_orbit(orbit)
     if orbit.kind not in MULTIPLIERS:
         raise ValueError(
             f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
@@ -384,8 +389,7 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     Source: A. B. Nordmark, J. Sound Vib. 145, 279 (1991).
     """
-    if not isinstance(orbit, PeriodicOrbit):
-        raise ValueError(f"orbit = {brief(orbit)}: must be an orbit, {SUCH}")
+    check_orbit(orbit)
     # On a curve two parameters change. The form belongs to the first parameter.
     path = orbit.equations.along[0]
     equations, z = orbit.on(path)

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import Ball, H, check_one_ball
 from bouncing_ball_beyond.bounces import Balls, bounce, reduced
 from bouncing_ball_beyond.chains import solved_or_nan
@@ -225,30 +226,30 @@ class RestOrbit(PeriodicOrbit):
         :func:`.one_ball.settling`. If the ball does not come to rest, the duration is negative:
         minus the time between its last impact and the lift-off.
         """
-        lift_off = self.z[self.equations.size - 1] + PERIOD * self.periods
+        lift_off = float(self.z[self.equations.size - 1]) + PERIOD * self.periods
         last = float(self.times[-1])
+        if self.speeds[-1] <= 0:
+            return -abs(lift_off - last)
         turns, phase = reduced(self.times[-1:])
         amplitude = np.array([self.amplitude])
         one = Balls(self.ball, amplitude, turns, phase, self.speeds[-1:], self.table)
-        if self.speeds[-1] <= 0:
-            one = one.take([])
         while one.phase.size and PERIOD * one.turns[0] + one.phase[0] < lift_off:
             record, _, one = bounce(one, BOUNCES_AT_ONCE)
             for turns, phase, u, _, duration, *_ in record[:, :, 0]:
-                tau = PERIOD * turns + phase
+                tau = float(PERIOD * turns + phase)
                 if not tau < lift_off:
                     break
                 last = tau
                 if duration > 0:
-                    return float(lift_off - tau - self._bounces(tau, u))
-        return -abs(float(lift_off) - last)
+                    return lift_off - tau - self._last_bounces(phase, u)
+        return -abs(lift_off - last)
 
-    def _bounces(self, tau: float, u: float) -> float:
-        """Total time of the bounces after an impact at τ with the closing speed u."""
-        w = float(self.ball.contact(tau, u, None, self.amplitude, table=self.table).speed)
-        gravity = 1 + self.amplitude * float(self.table(tau, 2))
-        whole = 2 * w / (gravity * (1 - w / u))
-        return whole * (1 - self.amplitude * float(self.table(tau, 3)) * whole / (3 * gravity))
+    def _last_bounces(self, phase: float, u: float) -> float:
+        """Total time of the bounces after an impact at which the simulation sums them up."""
+        w = float(self.ball.contact(phase, u, None, self.amplitude, table=self.table).speed)
+        _, y, x = self.table.pulls(self.table.waves(phase, self.amplitude))
+        fourth = self.amplitude * self.table.bounds[4]
+        return one_ball.settling(w, w / u, float(x), float(y), fourth)
 
     @cached_property
     def _release(self) -> tuple[NDArray, NDArray]:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
 from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.equations import OrbitEquations, PeriodicOrbit, unknowns_of
+from bouncing_ball_beyond.equations import OrbitEquations, PeriodicOrbit
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
@@ -85,7 +85,7 @@ def guess_of_instants(
                 break
     touch = psi - np.where(known, centroid, 0.0) + ball.elapsed_contact(u)
     free = ball.free(u)
-    impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: unknowns_of(ball)]
+    impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: ball.unknowns]
     return np.stack(np.broadcast_arrays(*impacts, amplitude), axis=-1)
 
 

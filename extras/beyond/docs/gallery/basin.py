@@ -11,8 +11,10 @@ colours = plt.get_cmap("viridis")
 count = max(found.sizes["motion"] - 1, 1)
 for motion in found.motion.values:
     one = found.sel(motion=motion)
-    label = f"{one.kind.item()}: {one.impacts.item()} impacts in {one.periods.item()} periods"
+    label = one.kind.item()
+    if one.impacts > 0:
+        label += f": k = {one.impacts.item()}, m = {one.periods.item()}"
     axes.scatter([], [], color=colours(motion / count), label=label)
 figure.legend(loc="outside lower center", ncols=2)
-axes.set_title("Λ = 0.95, r = 0.85")
+axes.set_title("Λ = 0.95, r = 0.85: k impacts in m periods of the table")
 figure.savefig("basin.png")

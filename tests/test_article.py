@@ -358,6 +358,7 @@ def test_what_the_article_says_of_the_hypotheses(data):
     numbers = found.found[:, found.row.isnull().values]
     own = numbers.sel(hypothesis="equations as they stand")
     assert all((numbers.sel(hypothesis=name) == own).all() for name in given)
+    assert article.others_with_82(found) == ["force release, equal r"]
     assert found.compliant_reproduced.max() < 12 / 2
 
 

@@ -63,14 +63,13 @@ def test_what_the_text_lacks_makes_a_statement_not_testable_only_if_readings_dif
     assert verdicts.of_readings(claim, [])["verdict"] == "not testable"
 
 
-def test_what_is_so_by_construction_is_not_counted_as_reproduced():
-    claim = verdicts.Claim("name", "Eq. 1", "text", {}, list, because="Eq. 1")
-    reason = "it follows by algebra: Eq. 1"
-    assert verdicts.answer(claim, {}) == {
-        "verdict": "not testable",
-        "asked": True,
-        "reason": reason,
-    }
+def test_what_follows_by_algebra_holds_and_gives_its_reason():
+    claim = verdicts.Claim(
+        "name", "Eq. 1", "text", {}, lambda: [verdicts.argued("the limit", True, "by algebra")]
+    )
+    found = verdicts.answer(claim, {})
+    assert (found["verdict"], found["asked"]) == ("reproduced", True)
+    assert found["condition"] == ["yes: the limit (by algebra)"]
 
 
 def test_conditions_take_the_worst_number_and_refuse_a_missing_one():

@@ -58,6 +58,7 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         stiff=paper.STIFF,
         stiff_errors=stiff_errors(datasets),
         other_contacts=other_contacts(datasets["hypotheses"]),
+        others_with_82=others_with_82(datasets["hypotheses"]),
         stable_ranges=measures.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
@@ -163,6 +164,12 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
 def other_contacts(hypotheses: xr.Dataset) -> list[str]:
     """Return the hypotheses with another contact than the restored equations."""
     return sorted({*hypotheses.contact_of.values.tolist()} - {"", "equations as they stand"})
+
+
+def others_with_82(hypotheses: xr.Dataset) -> list[str]:
+    """Return the other contacts that reproduce the printed 82."""
+    agrees = hypotheses.agrees.sel(number="height threshold")
+    return [name for name in other_contacts(hypotheses) if agrees.sel(hypothesis=name)]
 
 
 def stiff_errors(datasets: Datasets) -> xr.DataArray:

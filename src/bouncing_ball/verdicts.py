@@ -11,9 +11,8 @@ not reproduced
     The computed number does not round to the printed one, even if it is within one unit of the last
     digit. Or: the statement holds in no sense.
 not testable
-    The claim follows by algebra from the restored formulas, and a computation would test only our
-    restoration. Or: the text does not say what decides the claim. Or: this run has other parameters
-    than the claim needs, or lacks a dataset; only then `asked` is false.
+    The text does not say what decides the claim. Or: this run has other parameters than the claim
+    needs, or lacks a dataset; only then `asked` is false.
 
 Each sense of a statement is a condition on the datasets, a `Reading`. The first is the literal one.
 """
@@ -147,8 +146,6 @@ class Claim:
         The printed number with its digits.
     missing
         What the text does not say, if that decides among the readings.
-    because
-        Why the claim follows by algebra; then nothing decides it.
     remark
         How we read the claim.
     beside
@@ -162,7 +159,6 @@ class Claim:
     decide: Callable[..., Any]
     printed: str = ""
     missing: str = ""
-    because: str = ""
     remark: str = ""
     beside: str = ""
 
@@ -180,9 +176,6 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
-    if claim.because:
-        reason = f"it follows by algebra: {claim.because}"
-        return {"verdict": "not testable", "asked": True, "reason": reason}
     try:
         decided = claim.decide(*(datasets[name] for name in claim.datasets))
         if claim.printed:

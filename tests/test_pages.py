@@ -191,6 +191,14 @@ def test_formulas_are_mathml(texts, data):
         assert "$" not in page and "\\" not in page
 
 
+def test_only_a_formula_and_its_punctuation_are_kept_on_one_line(texts):
+    """A longer unit would be cut off on a narrow screen, and shrink the printed page."""
+    one = re.compile(r'<span class="math inline">(?:(?!</?span).)*</span>[.,;:)]+</span>')
+    for name in ("paper.html", "supplement.html"):
+        units = texts[name].split('<span class="whole">')[1:]
+        assert units and all(one.match(unit) for unit in units)
+
+
 def test_figures_and_tables_of_the_article_can_be_read_without_sight_and_on_a_telephone(read):
     page = read["paper.html"]
     assert {*page.places["alt"]} == {*CAPTIONS.values()}

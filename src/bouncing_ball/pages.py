@@ -218,7 +218,7 @@ def page_of(markdown: str, name: str, captions: Mapping[str, str]) -> str:
     name_cells(tokens)
     body = parser().renderer.render(tokens, parser().options, {})
     # A formula stays with the punctuation after it.
-    inline = r'(<span class="math inline">.*?</span>[.,;:)]+)'
+    inline = r'(<span class="math inline">(?:(?!</span>).)*</span>[.,;:)]+)'
     body = re.sub(inline, r'<span class="whole">\1</span>', body)
     template = article.environment(article.TEMPLATES).get_template("article.html.j2")
     page = template.render(

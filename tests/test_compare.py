@@ -5,8 +5,10 @@ The project of these tests has one figure, one table of claims and two texts, an
 
 import base64
 import json
+import os
 import shutil
 import subprocess
+import sys
 from functools import partial
 
 import numpy as np
@@ -28,6 +30,21 @@ def make(name, data, folder, form="{:.3g}"):
     numbers = [] if data is None else data.max_height.values
     figure.text(0, 0.5, " ".join(form.format(each) for each in numbers))
     save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
+
+
+@pytest.fixture(autouse=True)
+def git_of_its_own(monkeypatch):
+    """Git without the variables of a hook, and without the configuration of a user or a machine.
+
+    A hook exports the index and the repository of its commit. Tests that used them would commit
+    their own project into the user's repository.
+    """
+    asked = ["git", "rev-parse", "--local-env-vars"]
+    names = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.split()
+    for name in [*names, "GIT_DEFAULT_HASH", "GIT_TEMPLATE_DIR"]:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+    monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
 
 
 @pytest.fixture
@@ -88,6 +105,34 @@ def report(project, names=(), config=CONFIG):
 
 def lines(project, **given):
     return report(project, **given).lines
+
+
+@pytest.mark.parametrize("linked", [False, True])
+def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp_path, linked):
+    """In a checkout git exports GIT_INDEX_FILE to its hooks, in a linked worktree GIT_DIR, too."""
+    top = tmp_path / "of a user"
+    top.mkdir()
+    git(top, "init", "-qb", "main")
+    for name in ("first", "second"):
+        (top / name).write_text("a line\n", "utf-8")
+    commit(top)
+    hook = top / ".git/hooks/pre-commit"
+    test = f"'{sys.executable}' -m pytest -q '{__file__}' -k test_equal_results_agree"
+    # Once: tests that commit into this repository would start its hook again.
+    hook.write_text(f'#!/bin/sh\n[ "$HOOK" ] || HOOK=1 exec {test}\n', "utf-8")
+    hook.chmod(0o755)
+    if linked:
+        git(top, "worktree", "add", "-qb", "branch", str(tmp_path / "linked"))
+        top = tmp_path / "linked"
+    (top / "first").write_text("another line\n", "utf-8")
+    git(top, "commit", "-qam", "another commit")
+    told = ["git", "-C", str(top), "log", "--name-only", "--format=%s", "-2"]
+    answer = subprocess.run(told, check=True, capture_output=True, text=True).stdout.split("\n")
+    assert answer == ["another commit", "", "first", "a commit", "", "first", "second", ""]
+    told = ["git", "-C", str(top), "ls-files"]
+    assert subprocess.check_output(told, text=True).split() == ["first", "second"]
+    told = ["git", "-C", str(top), "config", "core.bare"]
+    assert subprocess.check_output(told, text=True).strip() == "false"
 
 
 def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):

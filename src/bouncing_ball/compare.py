@@ -14,10 +14,12 @@ cause only if the results have it neither as accepted nor as on the main branch.
 
 import base64
 import json
+import os
 import shutil
 import subprocess
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -248,10 +250,16 @@ def stale(new: xr.Dataset, name: str, config: Mapping) -> str:
 
 
 def git(*arguments: str) -> str:
-    """What git answers about the repository; empty without git."""
-    command = ["git", "-C", str(CHECKOUT), *arguments]
+    """What git answers about the repository; empty without git.
+
+    A hook has variables that name the repository and the index of its commit. They are dropped, as
+    git advises for another repository.
+    """
+    run = partial(subprocess.run, capture_output=True, check=True, text=True)
     try:
-        answer = subprocess.run(command, capture_output=True, check=True, text=True)
+        names = run(["git", "rev-parse", "--local-env-vars"]).stdout.split()
+        environment = {name: value for name, value in os.environ.items() if name not in names}
+        answer = run(["git", "-C", str(CHECKOUT), *arguments], env=environment)
     except (OSError, subprocess.CalledProcessError):
         return ""
     return answer.stdout.strip()

@@ -52,6 +52,8 @@ FILES = {
     + "\n".join(
         f"{i},{a:.9E},{b:.9E}" for i, a, b in zip(range(6), FLIGHTS, TIMES[1:], strict=True)
     ),
+    "a stopwatch with times of events": "Event time (s),Interval (s)\n"
+    + "\n".join(f"{b},{a}" for a, b in zip(FLIGHTS, TIMES[1:], strict=True)),
     "tops": '"Height (cm)"\n' + column(100 * G / 8 * FLIGHTS**2),
     "a title and a remark": "Lab 3\n\nDrop height (cm),Rebound height (cm),Remark\n"
     + pairs("{},{},ok"),

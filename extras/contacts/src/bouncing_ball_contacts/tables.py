@@ -24,7 +24,7 @@ from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refu
 Lines = NDArray[np.intp]
 
 NAMES = {
-    "time": "time, t, impact time",
+    "time": "time, t, impact time, event time",
     "interval": "interval, time between, dt, delta t",
     "flight": "flight, flight time, time of flight, air time",
     "drop height": "drop height, drop, initial height, release height, start height, "

@@ -204,10 +204,25 @@ def test_the_threshold_of_matter_is_in_the_answer(typed):
 def test_names_that_an_answer_prints_can_be_typed(name):
     """ "Physics.bounceThreshold=1.1" was refused, beside a list in which it was."""
     engine = BY_NUMBER[name]
-    for each in {*engine.lines, engine.set_by} - {""}:
+    for each in {*engine.lines, engine.set_by} - {"", "step"}:
         is_number = engine.names[as_compared(each)] == "number"
         given = {each: 0.25} | ({} if is_number else {"restitution": 0.25})
         assert diagnose(Bounce(**BALL), name, given, "1/240").parameters[engine.parameter] == 0.25
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [(name, {}) for name in {**ENGINES, **BY_NUMBER}]
+    + [(name, {"penetration": "5 mm"}) for name in ENGINES],
+)
+def test_what_is_pasted_sets_the_time_step(name, given):
+    """MuJoCo's default step is 2 ms: there a contact of 0.5 ms threw the ball up."""
+    bounce = Bounce(mass="50 g", radius="30 mm", drop_height="2 m", restitution=0.7, **given)
+    found = design(bounce, name, time_step=None if given else "1.25 ms")
+    numbers = [float(each) for each in re.findall(r"\d+\.?\d*(?:e-?\d+)?", found.snippet)]
+    # Godot has ticks in a second.
+    step = 1 / found.time_step if name == "godot-jolt" else found.time_step
+    assert pytest.approx(step, rel=1e-5) in numbers
 
 
 def test_two_bodies_are_combined_as_the_engine_does():

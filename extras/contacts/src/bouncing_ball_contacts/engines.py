@@ -555,7 +555,6 @@ _NOT_MUJOCO = (
     "hulls under 600 vertices",
     "heightfield cells under radius/5",
     "tilted capsules or cylinders",
-    "longer steps",
 )
 _MUJOCO = Engine(
     name="mujoco",

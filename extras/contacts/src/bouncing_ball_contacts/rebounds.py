@@ -85,8 +85,8 @@ class ByNumber:
     set_by : str
         Name of the threshold; empty if it has none.
     lines : mapping
-        Lines to paste, by the names of the number, the threshold and the settings. A threshold
-        without a line is a constant.
+        Lines to paste, by the names of the number, the threshold, the settings, and "step" in s. A
+        threshold without a line is a constant.
     settings : mapping
         Other parameters that change r, with their defaults.
     designed : tuple of mappings
@@ -188,6 +188,7 @@ _JOLT = ByNumber(
         "PhysicsSettings::mMinVelocityForRestitution": "physicsSettings.mMinVelocityForRestitution "
         "= {value}f;",
         "mLinearDamping": "bodySettings.mLinearDamping = {value}f;",
+        "step": "physicsSystem.Update({value}f, 1, &allocator, &jobs);",
     },
     settings={"mLinearDamping": 0.05},
     designed=({"mLinearDamping": 0.0},),
@@ -205,6 +206,7 @@ _PHYSX = ByNumber(
     lines={
         "restitution": "material->setRestitution({value}f);  // of {bodies}",
         "bounceThresholdVelocity": "sceneDesc.bounceThresholdVelocity = {value}f;",
+        "step": "scene->simulate({value}f);",
     },
     springs="physx",
     is_physx=True,
@@ -215,7 +217,10 @@ _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
     ran="Box2D 2.3.10 of Python",
-    lines={"restitution": "fixtureDef.restitution = {value}f;  // of {bodies}"},
+    lines={
+        "restitution": "fixtureDef.restitution = {value}f;  // of {bodies}",
+        "step": "world.Step({value}f, 8, 3);",
+    },
     pair=LARGER,
     threshold=1.0,
     is_restless=True,
@@ -226,7 +231,10 @@ _DART = ByNumber(
     name="dart",
     rule=step_rules.dart,
     ran="DART 6.20 (dartpy)",
-    lines={"restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}"},
+    lines={
+        "restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}",
+        "step": "world->setTimeStep({value});",
+    },
     pair=PRODUCT,
     threshold=0.1,
     is_of_rebound=True,
@@ -237,7 +245,10 @@ _RAPIER = ByNumber(
     name="rapier",
     rule=step_rules.rapier,
     ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
-    lines={"restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}"},
+    lines={
+        "restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}",
+        "step": "integration_parameters.dt = {value};",
+    },
     sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
     remembers=2000,
     notes=("Before 0.35 Rapier had another rule",),
@@ -259,6 +270,7 @@ BY_NUMBER = {
                 "bounce": "physics_material.bounce = {value}  # of {bodies}",
                 _GODOT: f"{_GODOT}={{value}}  # project setting",
                 "default_linear_damp": "physics/3d/default_linear_damp={value}  # project setting",
+                "step": "physics/common/physics_ticks_per_second={rate}  # project setting",
             },
             settings={"default_linear_damp": 0.1},
             designed=({"default_linear_damp": 0.0},),
@@ -275,6 +287,7 @@ BY_NUMBER = {
             lines={
                 "bounciness": "material.bounciness = {value}f;  // of {bodies}",
                 "Physics.bounceThreshold": "Physics.bounceThreshold = {value}f;",
+                "step": "Time.fixedDeltaTime = {value}f;",
             },
             springs="",
             notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
@@ -289,6 +302,7 @@ BY_NUMBER = {
                 "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}",
                 "PhysxCfg.bounce_threshold_velocity": "PhysxCfg(bounce_threshold_velocity={value})"
                 "  # of SimulationCfg(physx=…)",
+                "step": "SimulationCfg(dt={value})",
             },
             notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD),
         ),
@@ -301,6 +315,7 @@ BY_NUMBER = {
             lines={
                 "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}",
                 "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
+                "step": "World(physics_dt={value})",
             },
             notes=(
                 "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold",
@@ -318,6 +333,7 @@ BY_NUMBER = {
             lines={
                 "restitution": "shapeDef.material.restitution = {value}f;  // of {bodies}",
                 "b2WorldDef.restitutionThreshold": "worldDef.restitutionThreshold = {value}f;",
+                "step": f"b2World_Step(world, {{value}}f, {step_rules.SUBSTEPS});",
             },
             sinks=_RAPIER.sinks,
             notes=("Box2D 2 has another rule: --engine box2d-2",),
@@ -332,6 +348,7 @@ BY_NUMBER = {
                 "restitution": "body.createFixture({{shape, restitution: {value}}})"
                 "  // of {bodies}",
                 "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
+                "step": "world.step({value});",
             },
             notes=(),
             # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
@@ -342,7 +359,10 @@ BY_NUMBER = {
             rule=step_rules.chipmunk,
             ran="Chipmunk 7 (pymunk 7.3.1)",
             parameter="elasticity",
-            lines={"elasticity": "shape.elasticity = {value}  # of {bodies}"},
+            lines={
+                "elasticity": "shape.elasticity = {value}  # of {bodies}",
+                "step": "space.step({value})",
+            },
             pair=PRODUCT,
             sinks=0.0,
         ),
@@ -353,7 +373,8 @@ BY_NUMBER = {
             parameter="restitution_coefficient",
             lines={
                 "restitution_coefficient": "<bounce><restitution_coefficient>{value}"
-                "</restitution_coefficient></bounce>  <!-- of {bodies} -->"
+                "</restitution_coefficient></bounce>  <!-- of {bodies} -->",
+                "step": "<physics><max_step_size>{value}</max_step_size></physics>",
             },
             ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
             notes=(
@@ -373,6 +394,7 @@ BY_NUMBER = {
                 "  // of {bodies}",
                 "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
                 "frictionAir": "body.frictionAir = {value};",
+                "step": "Matter.Engine.update(engine, 1000 * {value});",
             },
             pixels=_PIXELS / STANDARD_GRAVITY,
             settings={"frictionAir": 0.01},
@@ -401,6 +423,7 @@ BY_NUMBER = {
                 "contactERP": _OF_BULLET,
                 "contactSlop": _OF_BULLET,
                 "restitutionVelocityThreshold": _OF_BULLET,
+                "step": "pybullet.setPhysicsEngineParameter(fixedTimeStep={value}, numSubSteps=1)",
             },
             settings={
                 "linearDamping": 0.04,
@@ -435,6 +458,7 @@ BY_NUMBER = {
                 "contact.surface.bounce = {value};",
                 "bounce_vel": "contact.surface.bounce_vel = {value};",
                 "soft_cfm": "contact.surface.soft_cfm = {value};",
+                "step": "dWorldStep(world, {value});",
             },
             settings={"soft_cfm": 1e-10, "soft_erp": 0.2},
             designed=({"soft_cfm": 1e-10},),
@@ -458,6 +482,7 @@ BY_NUMBER = {
                 "contact_max_correcting_vel": "<physics><ode><constraints>"
                 "<contact_max_correcting_vel>{value}</contact_max_correcting_vel>"
                 "</constraints></ode></physics>",
+                "step": "<physics><max_step_size>{value}</max_step_size></physics>",
             },
             settings={"kp": 1e12, "kd": 1.0, "max_vel": 0.01, "contact_max_correcting_vel": 100.0},
             # With such a damper the default spring takes nothing of the penetration back.
@@ -471,7 +496,8 @@ BY_NUMBER = {
             ran="Newton 1.8.0",
             lines={
                 "restitution": "ShapeConfig(restitution={value})  # SolverXPBD(model, "
-                "enable_restitution=True)"
+                "enable_restitution=True)",
+                "step": "solver.step(state, following, control, contacts, {value})",
             },
         ),
         ByNumber(
@@ -484,6 +510,7 @@ BY_NUMBER = {
                 "{value}}});",
                 "contactEquationRelaxation": "contact.contactEquationRelaxation = {value};",
                 "linearDamping": "body.linearDamping = {value};",
+                "step": "world.step({value});",
             },
             settings={"contactEquationRelaxation": 3.0, "linearDamping": 0.01},
             designed=tuple({"contactEquationRelaxation": steps} for steps in (10.0, 50.0)),
@@ -677,7 +704,7 @@ def _number(value: float) -> str:
 
 
 def _snippet(case: "Case", number: float) -> str:
-    """Return the lines to paste: the number, and each setting that differs from its default."""
+    """Return the lines to paste: the number, the step, and settings that differ from defaults."""
     row = case.engine
     own = BY_NUMBER[row.name]
     alike = "one of both bodies" if row.pair is LARGER else "both bodies"
@@ -686,10 +713,11 @@ def _snippet(case: "Case", number: float) -> str:
     changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
     if case.threshold != row.threshold:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
-    values = {row.parameter: float(f"{number:.4g}"), **changed}
+    step = float(f"{case.step:.6g}")
+    values = {row.parameter: float(f"{number:.4g}"), **changed, "step": step}
     # In the order of the lines.
     return "\n".join(
-        line.format(name=name, value=_number(values[name]), bodies=bodies)
+        line.format(name=name, value=_number(values[name]), bodies=bodies, rate=round(1 / step))
         for name, line in row.lines.items()
         if name in values
     )

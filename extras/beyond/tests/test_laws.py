@@ -403,7 +403,7 @@ SOFT_AND_HARD = {"soft": 20.0, "hard": 400.0, "depth": 0.3, "damping": 0.0}
 
 class TestKinks:
     def test_undeclared_kink_is_refused(self):
-        with pytest.raises(ValueError, match=r"kink or a jump near p = 0\.3, v") as error:
+        with pytest.raises(ValueError, match=r"kink near p = 0\.3, v") as error:
             ForceLaw(bilinear, SOFT_AND_HARD)
         one_line(error)
 
@@ -650,13 +650,102 @@ class TestUnits:
         one_line(error)
 
 
+def on_the_way_out(p, v, k, share):
+    return np.where(np.real(v) > 0, k * p, share * k * p)
+
+
+def dropped(p, v, k, drop):
+    return np.where(np.real(p) < 0.05, k * p, k * p - drop)
+
+
+def oblique(p, v, k, rise):
+    return np.where(np.real(p - 0.1 * v) < 0.1, k * p, k * p + rise)
+
+
+class TestJumps:
+    """A ball may slide along the surface of a jump, and no derivative passes it without a term."""
+
+    @pytest.mark.parametrize("declared", [True, False])
+    @pytest.mark.parametrize(
+        ("force", "surface", "size"),
+        [
+            (on_the_way_out, lambda p, v, k, size: v, 0.4),
+            (dropped, lambda p, v, k, size: p - 0.05, 10.0),
+            (oblique, lambda p, v, k, size: p - 0.1 * v - 0.1, 10.0),
+            (dropped, lambda p, v, k, size: p - 0.05, 1e-3),
+        ],
+    )
+    def test_a_force_with_a_jump_is_refused(self, force, surface, size, declared):
+        values = {"k": 400.0, force.__code__.co_varnames[3]: size}
+        kinks = (lambda p, v, **values: surface(p, v, *values.values()),) if declared else ()
+        with pytest.raises(ValueError, match=r"jumps by .*must be continuous; replace") as error:
+            ForceLaw(force, values, kinks=kinks)
+        one_line(error)
+        if force is not on_the_way_out:
+            assert f"jumps by {size:.3g} near" in str(error.value)
+
+    def test_a_smooth_step_in_its_place_conserves_the_product_of_the_multipliers(self):
+        """An elastic ball with a force that drops by 10 within a small range of depth."""
+
+        def force(p, v, k, drop, width):
+            return k * p - drop * (1 + np.tanh((p - 0.05) / width)) / 2
+
+        law = ForceLaw(force, {"k": 400.0, "drop": 10.0, "width": 1e-3})
+        one = orbit(law, amplitude=0.3)
+        # Panels are accepted if the last coefficients of v are below 1e-7.
+        assert abs(np.prod(one.multipliers) - 1) < 1e-7
+
+    def test_the_answers_with_smooth_steps_tend_to_that_with_the_jump(self):
+        """r to the root of the share of the force, as the work of both springs is equal."""
+
+        def force(p, v, k, share, width):
+            return k * p * (share + (1 - share) * (1 + np.tanh(v / width)) / 2)
+
+        widths = np.array([0.02, 0.01])
+        law = ForceLaw(force, {"k": 400.0, "share": 0.4, "width": widths})
+        wide, narrow = law.signature(3.0).restitution - np.sqrt(0.4)
+        # The error is of the second order in the width.
+        assert 3.0 < wide / narrow < 5.0
+
+    def test_a_row_is_not_one_law_because_the_force_is_equal_at_most_points(self):
+        """The widths of a row of steps are not lost, nor is a stiffness that acts at a depth."""
+
+        def force(p, v, k, width):
+            return k * p * (1.4 + 0.6 * np.tanh(v / width)) / 2
+
+        def deep(p, v, k, more):
+            return k * p + more * p * np.exp(-((p / 0.15 - 1) ** 2) * 200)
+
+        for law, name in ((force, "width"), (deep, "more")):
+            values = {"k": 400.0, name: np.array([0.02, 0.4])}
+            row = ForceLaw(law, values).signature(3.0)
+            for i in range(2):
+                one = ForceLaw(law, values | {name: values[name][i]}).signature(3.0)
+                np.testing.assert_allclose([x[i] for x in row], one, rtol=1e-10, atol=1e-11)
+
+    def test_the_signature_of_a_law_with_a_step_is_that_of_its_free_impacts(self):
+        """As a function of the speed it has no polynomial of a low degree."""
+
+        def force(p, v, k, more, width):
+            return k * p * (1 + more * np.tanh((p - 0.1) / width))
+
+        law = ForceLaw(force, {"k": 400.0, "more": 0.5, "width": 5e-3})
+        for u in (1.5, 2.1, 3.0):
+            duration, _, _ = integrated(law, 0.0, u, 0.0, gravity=0.0)
+            assert abs(law.signature(u).duration - duration) < CLOSE
+
+
 class TestRefusedForces:
     @pytest.mark.parametrize(
         ("force", "reason"),
         [
             (lambda p, v, k: k * p * (1 + 0.1 * np.abs(v)), "not analytic in v"),
             (lambda p, v, k: k * np.real(p) + 0 * v, "not analytic in p"),
-            (lambda p, v, k: k * p + 3 * np.maximum(v, 0), r"kink or a jump near p = .*, v = 0\.0"),
+            (lambda p, v, k: k * p + 3 * np.maximum(v, 0), r"kink near p = .*, v = 0; give kinks"),
+            (
+                lambda p, v, k: np.maximum(0, k * p + 9 * v),
+                'write the force without this limit and give release="force"',
+            ),
             (lambda p, v, k: k * p**1.5, "give root=2"),
             (lambda p, v, k: k * p**1.5 + p**0.25 * v, "give root=4"),
             (lambda p, v, k: k * float(p), "arrays of complex numbers: write np.where"),

@@ -82,18 +82,24 @@ SPARE = 1e-9
 """Limit of the last Legendre coefficients of v of a free impact, divided by its closing speed. If
 they are smaller, fewer Gauss nodes are enough. At half and at twice: no effect."""
 
-FEW_KINKS = 8
-"""Maximum number of intervals that fail a check and count as kinks.
-
-If more intervals fail, the force is not analytic.
-
-At half, 1 of 11 wrong laws gets the other message. At twice: no effect.
-"""
-
 ALIKE = 1e-11
 """Largest relative difference of two forces that are equal within rounding.
 
 At half and at twice: no effect.
+"""
+
+SMALLEST_JUMP = 1e-6
+"""Smallest jump of the force that is refused, divided by the force.
+
+Square roots change by 1e-7 of the force on the shortest segments of the check.
+"""
+
+HALVINGS_TO_KINK, HALVINGS_TO_JUMP, MOST_SEGMENTS = 12, 40, 4000
+"""Numbers of halvings after which a segment of the check contains a kink or a jump, and maximum
+number of segments.
+
+A smooth step as narrow as 1/1000 of a segment is accepted. After 40 halvings, the change of the
+force at a kink is a rounding error. If there are more segments, the force is not analytic.
 """
 
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
@@ -118,7 +124,8 @@ class ForceLaw(Ball):
         Force per mass ``force(p, v, **values)`` at the penetration p and its rate v = p′. p and v
         are real or complex numpy arrays, because derivatives are computed by complex steps. The
         function must be analytic, so write it without ``abs`` and ``real``. ``np.where`` may join
-        analytic pieces if ``kinks`` declares the kinks between them.
+        analytic pieces if the force is continuous there, and ``kinks`` declares the kinks between
+        them. A force that jumps must be replaced by a smooth force (docs/laws.md).
     values : mapping
         Parameters of the force by name. They are numbers, or arrays for a row of balls.
     root : int
@@ -129,7 +136,8 @@ class ForceLaw(Ball):
     lag : callable, optional
         Function ``lag(**values)`` that returns κ. Give it if the force vanishes where p + κp′ = 0.
     kinks : tuple of callables
-        Functions ``kink(p, v, **values)`` that change their sign where the force has a kink.
+        Functions ``kink(p, v, **values)`` that change their sign where the force has a kink: it is
+        continuous, but its derivatives jump.
     needs : tuple of str
         Additional keyword arguments of the force: "start_speed" is the closing speed at the
         start of the contact, and "load" is the load a = 1 + w″.
@@ -227,7 +235,8 @@ class ForceLaw(Ball):
         """Units of length and time in which the force equals the force of `_origin`.
 
         If possible, both units change by the same factor, and speeds then keep their values. The
-        result is None if there are no such units.
+        result is None if there are no such units. They follow from the units of the parameters; the
+        force is compared because these may be wrong.
         """
         origin = self._origin
         if self is origin:
@@ -244,6 +253,9 @@ class ForceLaw(Ball):
         given = dict(zip(self.values, values[..., np.newaxis], strict=True))
         for change in (np.ones((2, 1)), np.eye(2)):
             found = change @ np.linalg.pinv(powers @ change)
+            explained = np.tensordot(powers @ found, logarithms, 1)
+            if not np.allclose(explained, logarithms, ALIKE, ALIKE):
+                continue
             scales = np.exp(np.tensordot(found, logarithms, 1))
             length, time = scales[..., np.newaxis]
             speed = length / time
@@ -398,15 +410,18 @@ class ForceLaw(Ball):
     def _range(self, number: float) -> NDArray | None:
         """Find the polynomials of :meth:`known_signature` for one range of speeds.
 
-        The result is None if a free impact at an end of the range has no release.
+        The result is None if a free impact at an end of the range has no release, or if the
+        polynomials of r, D and t_c do not converge, for example because the force has a steep step.
         """
         points = chebyshev.chebpts1(SIGNATURE_DEGREE + 1)
         speeds = SIGNATURE_FACTOR ** (number + (points + 1) / 2)
         if np.isnan(self._followed(0.0, speeds[[0, -1]], 0.0, 0.0)[0]).any():
             return None
-        return np.linalg.solve(
+        polynomials = np.linalg.solve(
             chebyshev.chebvander(points, SIGNATURE_DEGREE), self._computed(speeds).T
         )
+        sizes = np.abs(polynomials[:, :3])
+        return polynomials if np.all(sizes[-2:] < ALIKE * sizes.max(axis=0)) else None
 
     @np.errstate(all="ignore")
     def guess(self, u: NDArray, T: NDArray) -> Guess | None:
@@ -637,12 +652,12 @@ def _check_one(law: ForceLaw, given: dict) -> None:
     depth = _depth_of_one(law)
     depths = depth * np.geomspace(1e-3, 30.0, 321)
     rates = np.linspace(-3.003, 3.0, 241)
-    some_depths = depth * np.array([[0.02], [0.3], [1.1], [8.0]])
-    some_rates = np.array([[-1.9], [-0.4], [0.3], [1.7]])
     given["u"] = 1.0
     with np.errstate(all="ignore"):
-        _check_line(law, given, "p", depths, lambda p: (p + 0 * some_rates, some_rates + 0 * p))
-        _check_line(law, given, "v", rates, lambda v: (some_depths + 0 * v, v + 0 * some_depths))
+        along_p = np.broadcast_arrays(depths, [[-1.9], [-0.4], [0.3], [1.7]])
+        along_v = np.broadcast_arrays(depth * np.array([[0.02], [0.3], [1.1], [8.0]]), rates)
+        for name, points in (("p", along_p), ("v", along_v)):
+            _check_lines(law, given, name, np.array(points))
         _check_root(law, given, depth)
 
 
@@ -667,37 +682,94 @@ def _depth_of_one(law: ForceLaw) -> float:
     return depth
 
 
-def _check_line(law: ForceLaw, given: Mapping, name: str, x: NDArray, place: Callable) -> None:
-    """Check that changes of the force between points x of lines are integrals of its slope."""
+def _force(law: ForceLaw, given: Mapping, point: NDArray) -> NDArray:
+    """Force at points (p, v) of a ball under the load 1."""
+    p, v = point
+    return law.force_at(p, v, 1.0, given)
+
+
+def _defect(law: ForceLaw, given: Mapping, start: NDArray, end: NDArray) -> tuple:
+    """Change of the force on straight segments, and the integral of its derivative.
+
+    ``start`` and ``end`` are the points (p, v) of the segments, shape (2, ...). The derivative
+    along a segment comes from complex steps.
+    """
     nodes, weights = legendre.leggauss(4)
-    width = np.diff(x)
-    inner = x[:-1, np.newaxis] + width[:, np.newaxis] * (nodes + 1) / 2
-    p, v = place(inner.ravel() + 1j * H)
-    slopes = law.force_at(p, v, 1.0, given).imag / H
-    expected = slopes.reshape(-1, *inner.shape) @ weights / 2 * width
-    points = place(x)
-    p, v = points
-    values = law.force_at(p, v, 1.0, given)
-    change = np.diff(values)
-    # The quadrature of p^{1/4} between neighbours has a relative error of 1e-11.
-    wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * np.abs(values[:, 1:])
-    for kink in law.kinks:
-        side = np.sign(kink(*points, **law.own(given)))
-        wrong &= side[:, 1:] * side[:, :-1] > 0
-    if not wrong.any():
-        return
-    line, at = np.argwhere(wrong)[0]
-    p, v = (each[line, at : at + 2].mean() for each in points)
-    where = f"p = {p:.2g}, v = {v:.2g}"
-    if np.count_nonzero(wrong) <= FEW_KINKS:
+    along = (end - start)[..., np.newaxis]
+    inner = start[..., np.newaxis] + along * ((nodes + 1) / 2 + 1j * H)
+    slopes = _force(law, given, inner.reshape(2, -1)).imag / H
+    expected = slopes.reshape(inner.shape[1:]) @ weights / 2
+    return _force(law, given, end) - _force(law, given, start), expected
+
+
+def _check_lines(law: ForceLaw, given: Mapping, name: str, points: NDArray) -> None:
+    """Check the force on lines of points (p, v), shape (2, lines, points).
+
+    The change of the force on a segment between neighbouring points must be the integral of its
+    derivative. Segments on which it is not are halved again and again. A smooth force then passes,
+    a kink remains until the change of the force is a rounding error, and a jump remains.
+    """
+    segments: Any = np.stack([points[..., :-1], points[..., 1:]]).reshape(2, 2, -1)
+    whole, broken = segments, (segments, segments)
+    for halving in range(HALVINGS_TO_JUMP):
+        here = segments[0]
+        change, expected = _defect(law, given, *segments)
+        # The quadrature of p^{1/4} between neighbours has a relative error of 1e-11.
+        size = np.abs([_force(law, given, each) for each in whole]).max(axis=0)
+        wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * size
+        segments, whole = segments[..., wrong], whole[..., wrong]
+        if halving <= HALVINGS_TO_KINK:
+            broken = whole, segments
+        if not wrong.any():
+            break
+        if segments.shape[2] > MOST_SEGMENTS:
+            width = np.ptp(segments[..., 0], axis=0).max()
+            slopes = change[wrong][0] / width, expected[wrong][0] / width
+            raise ValueError(
+                f"force: is not analytic in {name} at {_where(*segments[0, :, 0])}: its derivative"
+                f" is {slopes[0]:.4g} by a difference and {slopes[1]:.4g} by a complex step; write"
+                " it without abs, real, sign"
+            )
+        middle = segments.mean(axis=0)
+        halves = np.stack([segments[0], middle]), np.stack([middle, segments[1]])
+        segments = np.concatenate(halves, axis=2)
+        whole = np.concatenate([whole, whole], axis=2)
+    jumps = np.flatnonzero(wrong & (np.abs(change) > SMALLEST_JUMP * size))
+    if jumps.size:
+        jump = np.abs(change[jumps[0]])
         raise ValueError(
-            f"force: has a kink or a jump near {where}; give kinks a function that is zero there"
+            f"force: jumps by {jump:.3g} near {_where(*here[:, jumps[0]])}, but must be continuous;"
+            " replace the jump by a smooth step, such as (1 + np.tanh(x / width)) / 2 with a small"
+            " width"
         )
-    raise ValueError(
-        f"force: is not analytic in {name} at {where}: its derivative is"
-        f" {change[line, at] / width[at]:.4g} by a difference and"
-        f" {expected[line, at] / width[at]:.4g} by a complex step; write it without abs, real, sign"
-    )
+    _check_kinks(law, given, *broken)
+
+
+def _check_kinks(law: ForceLaw, given: Mapping, whole: NDArray, segments: NDArray) -> None:
+    """Raise ValueError if there is a kink on segments, and the law does not declare it.
+
+    The segments are parts of the ``whole`` segments.
+    """
+    own = law.own(given)
+    declared = np.zeros(segments.shape[2], bool)
+    for kink in law.kinks:
+        side = [np.sign(kink(*points, **own)) for points in segments]
+        declared |= side[0] * side[1] <= 0
+    if declared.all():
+        return
+    k = np.flatnonzero(~declared)[0]
+    remedy = "give kinks=(function,), where function(p, v, **values) changes its sign there"
+    if np.any(_force(law, given, whole[..., k].T) == 0):
+        remedy = (
+            "if the contact ends where the force vanishes, write the force without this limit and"
+            ' give release="force"; otherwise ' + remedy
+        )
+    raise ValueError(f"force: has a kink near {_where(*segments[0, :, k])}; {remedy}")
+
+
+def _where(p: float, v: float) -> str:
+    """Text of a point. Rates are rounded, because those of a kink at v = 0 are not quite zero."""
+    return f"p = {p:.2g}, v = {round(v, 4) + 0.0:.2g}"
 
 
 def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:

@@ -90,11 +90,21 @@ def test_counts_of_readme_are_those_of_the_datasets():
     assert f"ϖ = {article.fixed(needed, 0)}" in readme
 
 
-@pytest.mark.parametrize("file", ["CITATION.cff", "metadata.yaml"])
-def test_abstracts_are_that_of_the_article(file):
-    abstract = words("paper.md").partition("## Abstract ")[2].partition(" ## ")[0]
-    plain = re.sub(r"\$([^$]*)\$", r"\1", abstract.replace(r"\varpi", "ϖ"))
-    assert yaml.safe_load(text(file))["abstract"].strip() == plain
+def test_the_journal_accepts_the_metadata():
+    """Its converter measures addresses, LaTeX reads the texts, and an abstract has 250 words."""
+    metadata = yaml.safe_load(text("metadata.yaml"))
+    assert all(isinstance(each["address"], str) for each in metadata["affiliations"])
+    assert re.findall(r"(?<!\\)[%&#]", " ".join(map(str, metadata.values()))) == []
+    article = words("paper.md").partition("## Abstract ")[2].partition(" ## ")[0]
+    assert len(article.split()) <= 250 and "Section" not in article
+    tex = {"%": r"\%", "ϖ": r"$\varpi$", "Λ": r"$\Lambda$", "≈": r"$\approx$"}
+    assert metadata["abstract"].strip() == re.sub("[%ϖΛ≈]", lambda each: tex[each[0]], article)
+
+
+def test_the_authors_are_the_same_everywhere():
+    names = [author["name"] for author in yaml.safe_load(text("metadata.yaml"))["authors"]]
+    assert [each["name"] for each in yaml.safe_load(text("CITATION.cff"))["authors"]] == names
+    assert f"\n\n{article.listed(names)}.\n" in text("paper.md")
 
 
 @pytest.mark.parametrize("folder", ["", "extras/beyond/", "extras/contacts/"])

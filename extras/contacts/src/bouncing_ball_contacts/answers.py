@@ -139,17 +139,20 @@ class Answer:
         """Return the lines of the answer with so many warnings, and the others behind them."""
         not_for = [f"Not for: {', '.join(self.not_for)}."] * bool(self.not_for)
         change = self.change
-        also = [
-            f"Also good: {each.gives or show(each.time_step, 's')}"
-            + (f" sinks {show(each.outcome.depth[1], 'm')}." if not each.gives else ".")
-            for each in self.also
-        ]
+        paste = [change.snippet if change else self.snippet]
+        also = []
+        for each in self.also:
+            depth = show(each.outcome.depth[1], "m")
+            does = f"gives r = {each.outcome.restitution}" if each.gives else f"sinks {depth}"
+            step = show(each.time_step, "s").replace(" ", "")
+            also.append(f"Also good: --time-step {step} {does}.")
+            # Another step has lines of its own, which are shown if this one has none.
+            also.append("" if any(paste) else each.snippet)
         least = [f"Least change: {change.gives}."] if change else []
         warnings = [f"! {each}" for each in self.warnings]
         first = [*warnings[: most - bool(not_for)], *not_for]
         more = [*warnings[most - bool(not_for) :], *(f"{each}." for each in self.remarks)]
-        paste = [change.snippet if change else self.snippet]
-        return [self.result, *least, *filter(None, paste), *also, *first, *more]
+        return [self.result, *least, *filter(None, [*paste, *also]), *first, *more]
 
     @property
     def explained(self) -> str:

@@ -60,6 +60,9 @@ _CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda
 INSTANTS = 24
 """Of the impact within a step, in a search; a sixth of them in short steps, where r hardly depends
 on them."""
+SHORTEST_STEP = 1e-4
+"""Step in s below which no other step is tried: at shorter ones an answer takes minutes, and few
+users run so many steps."""
 MOST_INSTANTS = 96
 """Of the impact within a step, in an answer."""
 # Where a body flies freely: no engine finds its contact farther away, in m.
@@ -107,6 +110,9 @@ class ByNumber:
         a body come to rest; and a setting with which it comes to rest.
     pixels : float
         Number of pixels in a metre, of an engine whose lengths are pixels.
+    skin : float
+        Height in m above the surface at which a ball touches. A ball lies there, so heights are
+        counted from it.
     """
 
     name: str
@@ -131,6 +137,7 @@ class ByNumber:
     is_restless: bool = False
     calmed_by: str = ""
     pixels: float = 0.0
+    skin: float = 0.0
     notes: tuple[str, ...] = ()
     not_for: tuple[str, ...] = ()
 
@@ -213,6 +220,10 @@ _PHYSX = ByNumber(
     is_restless=True,
 )
 _AHEAD = "The contact offset is taken as longer than the way of the body in a step"
+_HAS_A_SKIN = (
+    "Heights are counted from where a ball lies, which is up to "
+    f"{1000 * step_rules.SKIN:g} mm above the surface, because there is a skin around polygons"
+)
 _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
@@ -225,7 +236,8 @@ _BOX2D_2 = ByNumber(
     threshold=1.0,
     is_restless=True,
     set_by="b2_velocityThreshold",
-    notes=(_CONSTANT,),
+    skin=step_rules.SKIN,
+    notes=(_CONSTANT, _HAS_A_SKIN),
 )
 _DART = ByNumber(
     name="dart",
@@ -350,7 +362,7 @@ BY_NUMBER = {
                 "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
                 "step": "world.step({value});",
             },
-            notes=(),
+            notes=(_HAS_A_SKIN,),
             # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
             not_for=("three touching bodies",),
         ),
@@ -674,16 +686,16 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
         ]
     )
     heights = height + way * (np.arange(instants) / instants - 0.5)
-    z = heights
+    z = engine.skin + heights
     v = np.full(instants, -speed)
     near = _REACH + 4 * way
     if at.gravity:
         # Down to where a contact may be found the ball flies freely, longer if it is damped.
         longest = 2 * math.sqrt(2 * height / at.gravity) / at.step
         ways, speeds = _flight(engine, at, np.zeros(1), longest)
-        n = np.argmax(ways < near - heights[:, None], axis=1) - 1 - engine.remembers
+        n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
         n = np.maximum(n, 0)
-        z = heights + ways[n]
+        z = z + ways[n]
         v = speeds[n]
     most = 2000 + math.ceil(6 * near / way)
     after = [
@@ -695,7 +707,7 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
         return v / speed
     # And so it flies up to its top.
     ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
-    return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
+    return np.sqrt(np.maximum(z + ways.max(axis=1) - engine.skin, 0.0) / heights)
 
 
 def _number(value: float) -> str:
@@ -806,6 +818,12 @@ class Case(NamedTuple):
     def deviation(self, written: float) -> float:
         """Return the largest distance of r from the wanted one."""
         return self.range(written).deviation(self.bounce.restitution)
+
+    def does_it(self, written: float) -> bool:
+        """Whether the mean of r is the wanted one, and the ball bounces at every instant."""
+        wanted = self.bounce.restitution
+        r = self.range(written)
+        return abs(r.mean - wanted) <= TOLERANCE and r.low >= wanted / 2
 
     def with_threshold(self) -> "tuple[Case, float]":
         """Return the case and the nearest number, with another threshold if r needs it.
@@ -1031,7 +1049,11 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
     warnings = (*found.warnings, *holding([(step != asked, far)]))
     also = _shorter(best, number)
-    return replace(found, asked_step=asked, warnings=warnings, also=also)
+    found = replace(found, asked_step=asked, warnings=warnings, also=also)
+    if best.does_it(number):
+        return found
+    nothing = f"at {show(best.step, 's')} no number gives this r: nothing is written to paste"
+    return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 
 
 def _shorter(case: Case, number: float) -> tuple[Answer, ...]:
@@ -1039,7 +1061,10 @@ def _shorter(case: Case, number: float) -> tuple[Answer, ...]:
     if case.deviation(number) <= TOLERANCE:
         return ()
     for halvings in range(1, 8):
-        best, number = case._replace(step=case.step / 2**halvings).wanted()
+        step = case.step / 2**halvings
+        if step < SHORTEST_STEP:
+            break
+        best, number = case._replace(step=step).wanted()
         if best.deviation(number) <= TOLERANCE:
             return (best.answer(number),)
     return ()
@@ -1103,8 +1128,9 @@ def diagnose_number(
         # The number of one body may not be enough.
         tried = (best, number), case._replace(other=None).wanted()
         best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
-    # What is given already is no change.
-    change = best.answer(number) if (best, number) != (case, given.get("number")) else None
+    # What is given already is no change, nor is what does not do it.
+    is_change = (best, number) != (case, given.get("number")) and best.does_it(number)
+    change = best.answer(number) if is_change else None
     if change and best.other is None and other is not None:
         change = replace(change, gives=f"{change.gives} (of both bodies)")
     is_beyond = best.deviation(number) > TOLERANCE

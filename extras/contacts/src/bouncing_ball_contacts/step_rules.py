@@ -195,14 +195,14 @@ def rapier(at: Fall, z: float, v: float) -> Steps:
         yield z, v
 
 
-# Box2D 2 and planck have a skin around polygons.
-_SKIN = 2 * _SLOP
+SKIN = 2 * _SLOP
+"""Thickness in m of the skin that Box2D 2 and planck have around polygons."""
 
 
 def _out(z: float) -> float:
     """Return the height of a ball after the iterations at the time of its impact."""
     for _ in range(20):
-        apart = z - _SKIN
+        apart = z - SKIN
         z += min(max(-0.75 * (apart + _SLOP), 0.0), 0.2)
         if apart >= -1.5 * _SLOP:
             break
@@ -223,7 +223,7 @@ def box2d_2(at: Fall, z: float, v: float) -> Steps:
         elif touches:
             z += at.step * v
             for _ in range(3):
-                apart = z - _SKIN
+                apart = z - SKIN
                 z += min(max(-0.2 * (apart + _SLOP), 0.0), 0.2)
                 if apart >= -3 * _SLOP:
                     break
@@ -233,7 +233,7 @@ def box2d_2(at: Fall, z: float, v: float) -> Steps:
         else:
             v = u
             z += at.step * v
-        touches = z < _SKIN
+        touches = z < SKIN
         yield z, v
 
 

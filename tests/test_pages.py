@@ -133,7 +133,7 @@ def test_the_exceptions_are_those_of_the_map(data):
     other["failing_up_to"][:] = float("nan")
     other["failing_up_to"].loc["bounce_velocity", 2] = 0.31
     other["stiff_error"].loc["max_height"] = 0.0042
-    other["doubled_share"][:] = 0.25
+    other["doubled_mean"][:] = 0.25
     assert pages.exceptions(other)[1:3] == [
         ["maximum height", "0.42 %", "no n"],
         ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31"],

@@ -4,6 +4,9 @@ The orbits of `tests.independent` come from the closed form by the duration of t
 motions from an integration. `make replication` compares whole datasets with the reference.
 """
 
+import json
+from functools import cache
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,7 +14,8 @@ from scipy.optimize import brentq, minimize_scalar
 from tests import independent
 from tests.reference import CONFIG, printed_rows, reference, stage, table_with_another_row
 
-from bouncing_ball import claims
+from bouncing_ball import article, claims, pages
+from bouncing_ball.figures import share_text
 from bouncing_ball.spring_damper import RELEASES
 from bouncing_ball.verdicts import against_print
 
@@ -585,20 +589,81 @@ def test_the_curves_of_the_validity_map_are_those_of_the_figures_along_the_frequ
     assert [curve for curve in MAP["curves"] if curve not in expected] == []
 
 
+def test_shares_of_linear_functions():
+    place = np.array([0.0, 0.25, 1.0])
+    share = stage("validity").positive_share
+    # Positive from 0 to 0.125, and from 0.625 on.
+    assert share(np.array([1.0, -1.0, 1.0]), place) == pytest.approx(0.5)
+    assert share(np.array([0.0, 0.0, 1.0]), place) == pytest.approx(0.75)
+    assert share(np.array([1.0, 1.0, 1.0]), place) == 1
+    r = np.array([0.2, 0.3, 0.7])
+    area = stage("validity").positive_area
+    column = r[:, np.newaxis]
+    # The edge crosses r at 0.45 for the place 0 and at 0.4 for the place 1.
+    assert area(0.45 - column - 0.05 * place, r, place) == pytest.approx(0.45)
+    assert area(column + 0.05 * place - 0.45, r, place) == pytest.approx(0.55)
+    assert area(column + 0 * place, r, place) == 1
+    assert area(-column + 0 * place, r, place) == 0
+    last = stage("validity").last_positive
+    assert last(np.array([1.0, -1.0, -3.0]), r) == pytest.approx(0.25)
+    assert last(np.array([-1.0, 1.0, -3.0]), r) == pytest.approx(0.4)
+    assert last(np.array([-1.0, -1.0, 0.1]), r) == 0.7
+    assert np.isnan(last(np.array([-1.0, 0.0, -1.0]), r))
+
+
+def test_the_failures_of_known_errors():
+    """One quantity exceeds 0.01 below a line in r and √place, another one has an unknown error."""
+    r = np.linspace(0.1, 0.8, 15)
+    place = np.linspace(0, 1, 26) ** 3
+    log = np.log(r)[:, np.newaxis]
+    one = -0.01 * (1 - log + np.log(0.3) - np.sqrt(place))
+    errors = np.stack([one, one + 0.02])[:, np.newaxis, ..., np.newaxis] * [1.0, 0.5]
+    errors[1, 0, 3, 2, 1] = np.nan
+    share, mean, up_to = stage("validity").failures(errors, r, place, 0.01)
+    # |error| > 0.01 where √place < ln(0.3/r): up to r = 0.3 for the place 0.
+    assert up_to[0, 0] == pytest.approx(0.3, abs=1e-5)
+    exact = np.minimum(np.maximum(np.log(0.3 / r), 0) ** 2, 1)
+    assert share[0, 0] == pytest.approx(exact, abs=1e-4)
+    # The integral of ln²(0.3/r) from 0.3/e to 0.3, and 1 below.
+    assert mean[0, 0] == pytest.approx((0.3 * (2 - 5 / np.e) + 0.3 / np.e - 0.1) / 0.7, abs=1e-4)
+    assert np.isnan(share[1]).all() and np.isnan(mean[1]) and np.isnan(up_to[1])
+
+
 def test_the_shares_of_the_validity_map_are_those_of_its_errors():
     data = stage("validity").validity_map(few(), "displacement")
-    share = stage("validity").positive_share
-    # Positive from 0 to 0.25 and from 0.75 on.
-    place = np.array([0.0, 0.5, 1.0])
-    assert share(np.array([1.0, -1.0, 1.0]), place) == pytest.approx(0.5)
-    assert share(np.array([0.0, 0.0, 1.0]), place) == pytest.approx(0.5)
-    assert np.isnan(share(np.array([0.0, np.nan, 1.0]), place))
     fails = (data.stiff_error > 0.01).any("place")
-    assert ((data.failing_share > 0) == fails).all()
+    assert (data.failing_share > 0).where(fails, True).all()
     # At the advised ratio or above an error exceeds the tolerance if more than it is needed.
     clear = abs(data.stiff_error - 0.01) > 1e-6
     assert ((data.stiff_error > 0.01) == (data.enough_from > 100)).where(clear, True).all()
     assert (data.not_reached == 0).all()
+
+
+@cache
+def printed_shares(**finer):
+    """What pages and panels print of the validity map, with finer grids."""
+    given = MAP | {key: each for key, each in finer.items() if key == "places"}
+    for key in {"restitution", "frequency_ratio"} & {*finer}:
+        given[key] = MAP[key] | {"samples": finer[key]}
+    data = stage("validity").validity_map(given, "displacement")
+    data.attrs["parameters"] = json.dumps(given)
+    # A share that is printed at r = 0.05.
+    first = data.failing_share.sel(quantity="apparent_restitution")[:, 0].values
+    return [
+        pages.exceptions(data),
+        [share_text(mean) for mean in data.failing_mean.values.ravel()],
+        [article.percent(share) for share in first],
+    ]
+
+
+@pytest.mark.parametrize(
+    "finer", [{"restitution": 61}, {"places": 51}, {"frequency_ratio": 61}], ids=str
+)
+def test_each_printed_digit_of_the_validity_map_stays_when_a_grid_is_halved(finer):
+    (axis, count) = next(iter(finer.items()))
+    now = MAP[axis] if axis == "places" else MAP[axis]["samples"]
+    assert count == 2 * now - 1
+    assert printed_shares(**finer) == printed_shares()
 
 
 def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():

@@ -45,9 +45,13 @@ def numbers_of_readme() -> set[str]:
             article.fixed(100 * error, 2)
             for error in found.stiff_error.max(["n", "restitution", "place"])
         ),
-        *(article.fixed(100 * share, 1) for share in found.doubled_share.mean("restitution")),
+        *(article.fixed(100 * share, 1) for share in found.doubled_mean),
         *(article.fixed(r, 2) for r in failing),
-        *(article.fixed(100 * mean, 1) for mean in found.failing_mean.values.ravel() if mean > 0),
+        *(
+            figures.share_text(mean).strip("< %")
+            for mean in found.failing_mean.values.ravel()
+            if mean > 0
+        ),
         f"{found.restitution.min():g}",
         f"{found.restitution.max():g}",
     }

@@ -25,8 +25,9 @@ Datasets = Mapping[str, xr.Dataset]
 """Datasets by the names of their figures and tables."""
 
 
-def grid(limits: Mapping) -> np.ndarray:
-    """Return the values of a range of the configuration, at equal steps of their logarithm.
+def grid(limits: Mapping, spaced: Callable[..., np.ndarray] = np.geomspace) -> np.ndarray:
+    """Return the values of a range of the configuration, by default at equal steps of their
+    logarithm.
 
     Raises ValueError if the range is empty.
 
@@ -35,7 +36,7 @@ def grid(limits: Mapping) -> np.ndarray:
     """
     if not limits["min"] < limits["max"]:
         raise ValueError(f"min = {limits['min']:g} must be less than max = {limits['max']:g}")
-    return np.geomspace(limits["min"], limits["max"], limits["samples"])
+    return spaced(limits["min"], limits["max"], limits["samples"])
 
 
 def save(

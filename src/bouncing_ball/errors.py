@@ -260,19 +260,19 @@ COMPARED = ("max_height", "bounce_velocity", "apparent_restitution", "phase_in_p
 def errors_of_orbits(family: Family, y: NDArray, r: Numbers, amplitude: Numbers) -> NDArray:
     """Errors of the quantities `COMPARED` on orbits y at amplitudes Λ, shape (4, ...).
 
-    The errors are relative to the restitution model with r, except the error of the phase. The
-    error of the phase is a fraction of the period of the table. The maximum height is taken in the
-    flight only.
+    An error is negative if the value of the restitution model is larger. The errors are relative to
+    the restitution model with r, except the error of the phase. The error of the phase is a
+    fraction of the period of the table. The maximum height is taken in the flight only.
     """
     n = family.n
-    phase = restitution.impact_phase(n, r, amplitude)
-    errors = (
-        relative_error(family.summit(y), restitution.max_height(n, r, amplitude)),
-        relative_error(family.bounce_velocity(y), restitution.bounce_velocity(n)),
-        relative_error(family.apparent_restitution(y), r),
-        np.abs(y[1] - phase) / (2 * np.pi),
+    pairs = (
+        (family.summit(y), restitution.max_height(n, r, amplitude)),
+        (family.bounce_velocity(y), restitution.bounce_velocity(n)),
+        (family.apparent_restitution(y), r),
     )
-    return np.stack(np.broadcast_arrays(*errors))
+    errors = [(value - limit) / limit for value, limit in pairs]
+    turn = y[1] - restitution.impact_phase(n, r, amplitude)
+    return np.stack(np.broadcast_arrays(*errors, turn / (2 * np.pi)))
 
 
 def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
@@ -328,7 +328,7 @@ def enough_from(
     ratios = np.asarray(family.contact.frequency_ratio)
     n = np.asarray(family.n)
     zeta = np.asarray(family.contact.damping_ratio)
-    values = errors_of_orbits(family, orbits, r, amplitude)
+    values = np.abs(errors_of_orbits(family, orbits, r, amplitude))
 
     def between(ratio, below, curve):
         quantity, orbit = np.unravel_index(curve, values.shape[:2])
@@ -338,7 +338,7 @@ def enough_from(
         one = Family(n[orbit, 0], contact)
         at = amplitude[orbit, 0]
         found = errors_of_orbits(one, correct(one, guess, at_amplitude(at)), r[orbit, 0], at)
-        return found[quantity, np.arange(quantity.size)]
+        return np.abs(found[quantity, np.arange(quantity.size)])
 
     found = threshold(ratios, Error(values, between), tolerance)
     return np.where(found.status == "within", ratios[0], found.ratio)

@@ -179,7 +179,7 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
         of = " of a period" if quantity == "phase_in_periods" else ""
         where = article.failing(validity_map, quantity)
         rows.append([name, article.percent(error, 2) + of, where])
-    shares = validity_map.doubled_share.mean("restitution")
+    shares = validity_map.doubled_mean
     families = article.listed(shares.n.values)
     parts = article.listed([article.percent(share, 1) for share in shares])
     where = f"the last {parts} of the range for n = {families}, on average over r"

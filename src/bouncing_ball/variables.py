@@ -181,6 +181,7 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
             "frequency ratio",
             tolerance=1e-6,
         ),
+        "doubled_mean": Variable("mean of this fraction over r", tolerance=1e-6),
         "curve_n": Variable("family of the curve", "n"),
         "curve_restitution": Variable("restitution coefficient of the curve", "r"),
         "curve_amplitude": Variable("excitation amplitude of the curve", "Λ"),

@@ -175,7 +175,8 @@ FOUND = {
 @pytest.mark.parametrize("name", FOUND)
 def test_the_numbers_that_decide_a_statement(judged, name):
     condition = " ".join(judged["condition"].values[judged["claim"].values == name][0])
-    numbers = re.findall(r"\((-?[\d.e-]+)( %)?, (?:at |positive|0 within)", condition)
+    condition = condition.replace("·10", "e").translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789"))
+    numbers = re.findall(r"\((-?[\d.e-]+)( %)?, (?:at |positive|none|0 within)", condition)
     shares = [float(number) / (100 if percent else 1) for number, percent in numbers]
     assert shares == pytest.approx(FOUND[name])
 

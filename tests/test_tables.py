@@ -95,9 +95,15 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
             "tolerance": [0.1, 0.01, 0.005],
             "frequency_ratio": [20.0, 50.0, 100.0],
         },
+        {"parameters": json.dumps({"n": 1, "restitution": 0.65, "amplitude": 1.0})},
     )
     assert tables.thresholds(data) == [
-        ["quantity", "10 %", "1 %", "0.5 %"],
+        [
+            "relative error, for n = 1, r = 0.65, Λ = 1",
+            "within 10 %",
+            "within 1 %",
+            "within 0.5 %",
+        ],
         ["maximum height", "< 20", "82.177", "> 100"],
     ]
 
@@ -119,7 +125,8 @@ def test_hypotheses_have_their_distances_and_counts():
             "number": ["a saddle-node", "a period doubling", "another", "height"],
         },
     )
-    heads = ["Table 1, ϖ = 2", "Table 1, ϖ = 10000", "rms, compliant rows", "82", "reproduced"]
+    heads = ["Table 1, ϖ = 2", "Table 1, ϖ = 10000", "root mean square distance, compliant rows"]
+    heads += ["height, printed 82", "reproduced"]
     assert tables.hypotheses(data) == [
         ["hypothesis", *heads],
         ["equations as they stand", "1 of 2", "1 of 1", "2.88", "82.18 (+0.18)", "3 of 4"],

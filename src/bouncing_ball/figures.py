@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 from matplotlib.ticker import MultipleLocator
+from numpy.typing import NDArray
 
 from bouncing_ball import paper
 from bouncing_ball.datasets import parameters
@@ -588,7 +589,7 @@ CURVES: Look = {
 def validity_map(data: xr.Dataset) -> Figure:
     """Orbits for which the advised ϖ is not enough, with a panel for each quantity and each n.
 
-    Both axes are linear, so the dark share of a panel is the mean of `failing_share` over r.
+    The vertical axis is stretched at both ends, where the orbits that fail are.
     """
     given = parameters(data)
     shape: Look = {"rows": data.sizes["quantity"], "columns": data.sizes["n"], "squeeze": False}
@@ -601,20 +602,42 @@ def validity_map(data: xr.Dataset) -> Figure:
         row[0].set_ylabel(COMPARED[quantity])
     for axes, n in zip(grid[0], data.n.values, strict=True):
         axes.set(title=label(n=n), xlim=data.restitution[[0, -1]], ylim=(0, 1))
-        axes.set_yticks([0, 0.5, 1], ["0 %", "50 %", "100 %"])
+        axes.set_yscale("function", functions=(stretched, compressed))
+        axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
         axes.xaxis.set_major_locator(MultipleLocator(0.4))
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
-    figure.supylabel(r"$\Lambda$ from saddle-node (0 %) to period doubling (100 %)", y=0.56)
+    figure.supylabel(
+        "$\\Lambda$ from saddle-node (0 %) to period doubling (100 %)\nof the restitution model",
+        y=0.56,
+        multialignment="center",
+    )
     advised = rf"$\varpi={latex_number(given['advised'])}$"
     entries: dict[str, Patch | Line2D] = {
-        f"{advised} is not enough: share of the panel in %": Patch(facecolor=CONTACT),
-        f"the period has doubled at {advised}": Patch(**DOUBLED),
+        f"{advised} is not enough: on this share of the orbits": Patch(facecolor=CONTACT),
+        f"the contact of {advised} has doubled the period": Patch(**DOUBLED),
         "curves of the paper": sample(**CURVES),
     }
     legend_below(figure, entries, columns=1)
     return figure
+
+
+def stretched(position: NDArray) -> NDArray:
+    """Stretch both ends of the range from 0 to 1: the ratio to 1 - position becomes its cube root.
+
+    Examples
+    --------
+    >>> stretched(np.array([0.0, 0.002, 0.5, 1.0])).round(3).tolist()
+    [0.0, 0.112, 0.5, 1.0]
+    """
+    below, above = np.cbrt(position), np.cbrt(1 - position)
+    return below / (below + above)
+
+
+def compressed(height: NDArray) -> NDArray:
+    """Invert `stretched`."""
+    return height**3 / (height**3 + (1 - height) ** 3)
 
 
 def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
@@ -632,7 +655,7 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], "x", color="black")
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
-    axes.text(0.5, 0.3, share_text(float(data.failing_mean)), **share)
+    axes.text(0.41, 0.4, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
 
 

@@ -19,7 +19,7 @@ STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 QUANTITIES = {
     "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of impact",
+    "phase": "phase of the impact, relative to its value",
     "apparent_restitution": "apparent restitution coefficient",
     "saddle_node": "Λ of the saddle-node",
     "period_doubling": "Λ of the period doubling",

@@ -11,6 +11,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.datasets import parameters
 from bouncing_ball.measures import QUANTITIES, ROUNDING
 from bouncing_ball.paper import PARAMETERS, other_parameters
 from bouncing_ball.verdicts import VERDICTS, against_print
@@ -87,7 +88,10 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     """
     lowest, highest = data["frequency_ratio"].values[[0, -1]]
     outside = {"within": f"< {lowest:g}", "outside": f"> {highest:g}"}
-    rows = [["quantity", *(f"{100 * tolerance:g} %" for tolerance in data["tolerance"].values)]]
+    given = parameters(data)
+    orbit = f"n = {given['n']}, r = {given['restitution']:g}, Λ = {given['amplitude']:g}"
+    tolerances = [f"within {100 * tolerance:g} %" for tolerance in data["tolerance"].values]
+    rows = [[f"relative error, for {orbit}", *tolerances]]
     for line in each(data, "quantity"):
         status = line["threshold_status"].values
         ratios = line["error_threshold"].values
@@ -105,7 +109,7 @@ def hypotheses(data: xr.Dataset) -> list[list[str]]:
     The columns are:
 
     - for each row of Table 1, the number of its ends that are reproduced;
-    - the root mean square (rms) distance of the compliant rows, in units of the last printed digit;
+    - the root mean square distance of the compliant rows, in units of the last printed digit;
     - the other numbers, each with its distance in these units.
     """
     row = data["row"].values
@@ -113,7 +117,9 @@ def hypotheses(data: xr.Dataset) -> list[list[str]]:
     single = data["number"].values[np.isnan(row)]
     printed = data["printed_text"].sel(number=single).values.tolist()
     heads = [f"Table 1, ϖ = {ratio:g}" for ratio in rows]
-    found = [["hypothesis", *heads, "rms, compliant rows", *printed, "reproduced"]]
+    names = [f"{name}, printed {text}" for name, text in zip(single, printed, strict=True)]
+    mean = "root mean square distance, compliant rows"
+    found = [["hypothesis", *heads, mean, *names, "reproduced"]]
     for line in each(data, "hypothesis"):
         agrees = line["agrees"].values
         ends = [agrees[row == ratio] for ratio in rows]

@@ -99,7 +99,8 @@ def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
     largest = float(complete(values).max())
     if bound == LIMIT:
         return Reading(name, largest <= bound, largest, f"at most {100 * LIMIT:g} %", True)
-    required = "0 within rounding" if bound == ROUNDING else f"at most {bound:.3g}"
+    words = {0: "none allowed", ROUNDING: "0 within rounding"}
+    required = words.get(bound, f"at most {three_digits(bound)}")
     return Reading(name, largest <= bound, largest, required)
 
 
@@ -108,7 +109,7 @@ def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     smallest = float(complete(values).min())
     if bound == LIMIT:
         return Reading(name, smallest >= bound, smallest, f"at least {100 * LIMIT:g} %", True)
-    return Reading(name, smallest >= bound, smallest, f"at least {bound:.3g}")
+    return Reading(name, smallest >= bound, smallest, f"at least {three_digits(bound)}")
 
 
 def above(name: str, values: ArrayLike) -> Reading:
@@ -239,5 +240,20 @@ def rounded(reading: Reading) -> str:
     if abs(reading.found) <= ROUNDING:
         return "0"
     if reading.is_share:
-        return f"{100 * reading.found:.3g} %"
-    return f"{reading.found:.3g}"
+        return f"{three_digits(100 * reading.found)} %"
+    return three_digits(reading.found)
+
+
+def three_digits(value: float) -> str:
+    """Print a number with three digits, and all digits of a larger one.
+
+    >>> three_digits(0.0297), three_digits(2975.3), three_digits(-7.318e-5)
+    ('0.0297', '2975', '-7.32·10⁻⁵')
+    """
+    if abs(value) >= 1000:
+        return f"{value:.0f}"
+    digits, _, exponent = f"{value:.3g}".partition("e")
+    if not exponent:
+        return digits
+    power = str(int(exponent)).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
+    return f"{digits}·10{power}"

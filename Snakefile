@@ -103,7 +103,7 @@ MODELS = modules("restitution", "spring_damper", "orbits", "continuation", "erro
 PAPER = modules("paper")
 DRAWING = modules("figures", "drawing", "paper", "datasets")
 JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
-WRITING = JUDGING + modules("article", "pages")
+WRITING = JUDGING + modules("article", "pages", "drawing")
 TEMPLATES = ["paper.md", "supplement.md", "article.html", "figures.md", "figures.html"]
 
 

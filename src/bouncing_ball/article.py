@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball import measures, paper, restitution, spring_damper, tables
 from bouncing_ball.datasets import Datasets, parameters
+from bouncing_ball.drawing import share_text
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
 CHOICES = TEMPLATES.parent / "studies" / "choices.csv"
@@ -37,7 +38,8 @@ def environment(templates: Path) -> jinja2.Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    found.filters.update(fixed=fixed, percent=percent, short=short, listed=listed, at=at, zip=zip)
+    found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
+    found.filters.update(listed=listed, at=at, zip=zip)
     return found
 
 

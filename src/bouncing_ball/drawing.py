@@ -387,6 +387,24 @@ def branch_legend(figure: Figure, both_phases: bool) -> None:
     legend_below(figure, phases | lines | marks)
 
 
+# Numbers as text
+
+
+def share_text(share: float) -> str:
+    """Return a share in percent with one decimal, or as "< 0.1 %" instead of "0.0 %".
+
+    Examples
+    --------
+    >>> share_text(0.1222), share_text(0.0004), share_text(0.0), share_text(float("nan"))
+    ('12.2 %', '< 0.1 %', 'none', 'unknown')
+    """
+    if np.isnan(share):
+        return "unknown"
+    if share == 0:
+        return "none"
+    return f"{100 * share:.1f} %" if share >= 0.0005 else "< 0.1 %"
+
+
 # Labels next to curves. They are added last, because their positions depend on the layout.
 
 POINTS = 72

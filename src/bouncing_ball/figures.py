@@ -45,6 +45,7 @@ from bouncing_ball.drawing import (
     restitution_branch,
     right_end,
     sample,
+    share_text,
     spring_damper_branch,
     style,
     title,
@@ -655,23 +656,8 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], "x", color="black")
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
-    axes.text(0.41, 0.4, share_text(float(data.failing_mean)), **share)
+    axes.text(0.44, 0.4, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
-
-
-def share_text(share: float) -> str:
-    """Return a share in percent with one decimal, or as "< 0.1 %" if it is smaller.
-
-    Examples
-    --------
-    >>> share_text(0.1222), share_text(0.0004), share_text(0.0), share_text(float("nan"))
-    ('12.2 %', '< 0.1 %', 'none', 'unknown')
-    """
-    if np.isnan(share):
-        return "unknown"
-    if share == 0:
-        return "none"
-    return f"{100 * share:.1f} %" if share >= 0.001 else "< 0.1 %"
 
 
 SCHEMATICS: Mapping[str, Callable[[], Figure]] = {"fig01": fig01, "fig04": fig04}

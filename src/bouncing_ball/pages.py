@@ -19,6 +19,7 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 from bouncing_ball import article, tables
 from bouncing_ball.claims import CLAIMS
 from bouncing_ball.datasets import Datasets, parameters
+from bouncing_ball.drawing import share_text
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
@@ -97,6 +98,7 @@ def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **m
         datasets,
         kind,
         markdown=tables.markdown,
+        formula=convert,
         counts=tables.counts(claims),
         unasked=int((~claims.asked).sum()),
         exceptions=exceptions(datasets["validity_map"]),
@@ -107,7 +109,16 @@ def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **m
         general=[part for part in found if not part.files],
         **more,
     )
-    return unbroken(text) if kind == "html" else text
+    return with_subscripts(unbroken(text)) if kind == "html" else text
+
+
+def with_subscripts(page: str) -> str:
+    """Set the indices of symbols below the line, in texts and not in tags.
+
+    >>> with_subscripts('<td title="τ_b">φ + τ_b, r_a</td>')
+    '<td title="τ_b">φ + τ<sub>b</sub>, r<sub>a</sub></td>'
+    """
+    return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
 
 
 def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
@@ -165,25 +176,37 @@ MAPPED = {
     "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
     "apparent_restitution": "apparent restitution",
-    "phase_in_periods": "phase of the impact",
+    "phase_in_periods": "phase",
 }
 """Names of the quantities of the validity map."""
 
 
 def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
-    """Where the advised frequency ratio is not enough, as rows of texts, the header first."""
-    advised = article.short(parameters(validity_map)["advised"])
-    rows = [["quantity", f"largest error at ϖ ≥ {advised}", "where"]]
+    """Where the advised frequency ratio is not enough, as rows of texts, the header first.
+
+    The last columns have the share of the range of Λ for each n, on average over r.
+    """
+    given = parameters(validity_map)
+    advised = article.short(given["advised"])
+    limit = article.percent(given["tolerance"])
+    families = [f"n = {n}" for n in validity_map.n.values]
+    heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
+    rows = [[*heads, f"share of these Λ: {families[0]}", *families[1:]]]
     for quantity, name in MAPPED.items():
         error = validity_map.stiff_error.sel(quantity=quantity).max()
         of = " of a period" if quantity == "phase_in_periods" else ""
         where = article.failing(validity_map, quantity)
-        rows.append([name, article.percent(error, 2) + of, where])
-    shares = validity_map.doubled_mean
-    families = article.listed(shares.n.values)
-    parts = article.listed([article.percent(share, 1) for share in shares])
-    where = f"the last {parts} of the range for n = {families}, on average over r"
-    rows.append(["period", f"doubled at ϖ = {advised}", where])
+        shares = map(share_text, validity_map.failing_mean.sel(quantity=quantity).values)
+        rows.append([name, article.percent(error, 2) + of, where, *shares])
+    where = "every r, next to the period doubling"
+    rows.append(
+        [
+            "period",
+            f"doubled at ϖ = {advised}",
+            where,
+            *map(share_text, validity_map.doubled_mean.values),
+        ]
+    )
     return rows
 
 

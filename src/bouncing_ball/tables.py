@@ -90,8 +90,8 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     outside = {"within": f"< {lowest:g}", "outside": f"> {highest:g}"}
     given = parameters(data)
     orbit = f"n = {given['n']}, r = {given['restitution']:g}, Λ = {given['amplitude']:g}"
-    tolerances = [f"within {100 * tolerance:g} %" for tolerance in data["tolerance"].values]
-    rows = [[f"relative error, for {orbit}", *tolerances]]
+    tolerances = [f"{100 * tolerance:g} %" for tolerance in data["tolerance"].values]
+    rows = [[f"relative error of an orbit with {orbit}", *tolerances]]
     for line in each(data, "quantity"):
         status = line["threshold_status"].values
         ratios = line["error_threshold"].values

@@ -50,7 +50,7 @@ def printed_rows(table1: xr.Dataset) -> xr.Dataset:
 def table_with_another_row() -> xr.Dataset:
     """Table 1 computed with a row that the paper does not print, between those that it prints."""
     given = CONFIG["continuation"]["table1"] | {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}
-    found = stage("continuation").table1(given, CONFIG["release"], CONFIG["largest_step"])
+    found = stage("continuation").table1(given, CONFIG["release"])
     return found.assign_attrs(
         title=ENTRIES["table1"]["title"],
         parameters=json.dumps(given | {"release": CONFIG["release"]}),

@@ -266,7 +266,7 @@ def bounded(data: dict[str, xr.Dataset]) -> dict[str, float]:
         ),
         "saddle-node": thresholds.sel({"quantity": "saddle_node", "tolerance": 0.01}),
         "largest n": data["validity_map"].n.max(),
-        "needed": data["validity_map"].enough_from.sel(quantity="max_height").max(),
+        "needed": data["validity_map"].enough_from.sel(quantity="summit").max(),
         "doubled": 100 * data["validity_map"].doubled_share[0].max(),
         "moves at 10": 100 * abs(rows[1] / rows[0] - 1).max(),
         "moves at 2": 100 * abs(rows[2] / rows[0] - 1).max(),
@@ -367,7 +367,7 @@ def test_what_the_article_says_of_the_map(data):
     assert found.not_reached.sum() == 0
     fails = found.stiff_error > LIMIT
     # Beside the saddle-node, nowhere for n = 3, and for a whole range.
-    for quantity in ("max_height", "phase_in_periods"):
+    for quantity in ("summit", "phase_in_periods"):
         one = fails.sel(quantity=quantity)
         assert (one.cumprod("place").sum("place") == one.sum("place")).all()
         assert not one.sel(n=3).any() and one.sel(n=2).any()
@@ -377,7 +377,7 @@ def test_what_the_article_says_of_the_map(data):
     apparent = fails.sel(quantity="apparent_restitution")
     assert apparent.isel(place=[0, -1]).any(["restitution", "place"]).all()
     assert not apparent.sel(place=0.2, method="nearest").isel(restitution=slice(3, None)).any()
-    needed = found.enough_from.sel(quantity="max_height")
+    needed = found.enough_from.sel(quantity="summit")
     assert needed.argmax(["n", "restitution", "place"]) == {"n": 0, "restitution": 0, "place": 0}
 
 

@@ -6,7 +6,7 @@ from tests import independent
 
 from bouncing_ball import continuation, restitution
 from bouncing_ball.continuation import MERGES, NoOrbit
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
@@ -217,7 +217,7 @@ def test_orbits_tend_to_the_restitution_model_to_first_order_in_the_stiffness():
     }
     ratios = np.array([2e4, 4e4])
     y = continuation.stable_orbits(n, r, amplitude, ratios)[:, 0]
-    observed = Family(n, Contact(ratios, zeta)).observables(y)
+    observed = Family(n, Contact(ratios, zeta)).observables(y, OBSERVABLES)
     observed["saddle_node"] = continuation.bifurcations(n, "saddle-node", Contact(ratios, zeta))[
         0, 0
     ]

@@ -91,16 +91,22 @@ def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settin
         assert release == "force"
         return xr.Dataset(coords={"n": np.arange(given["n"])})
 
+    def branches(given, release, largest_step):
+        return orbits(given, release)
+
     entries = {name: {"title": name.upper(), "n": n} for n, name in enumerate(("fig02", "fig03"))}
+    settings = {"release": "force", "largest_step": 0.1}
     snakemake = SimpleNamespace(
         input=SimpleNamespace(code=[__file__]),
         output={name: str(tmp_path / f"{name}.nc") for name in entries},
-        params=SimpleNamespace(entries=entries, settings={"release": "force"}),
+        params=SimpleNamespace(entries=entries, settings=settings),
     )
-    datasets.save_stage({"fig02": orbits, "fig03": orbits}, snakemake)
+    datasets.save_stage({"fig02": orbits, "fig03": branches}, snakemake)
     for n, name in enumerate(entries):
         data = datasets.read(tmp_path / f"{name}.nc")
         assert data.sizes["n"] == n
         assert data.attrs["title"] == name.upper()
-        assert datasets.parameters(data) == {"n": n, "release": "force"}
+        # A setting that a function does not have has no effect on its dataset.
+        has = {"largest_step": 0.1} if name == "fig03" else {}
+        assert datasets.parameters(data) == {"n": n, "release": "force"} | has
         assert [*json.loads(data.attrs["code"])] == ["tests/test_datasets.py"]

@@ -134,11 +134,11 @@ def test_the_exceptions_are_those_of_the_map(data):
     other = data["validity_map"].copy(deep=True)
     other["failing_up_to"][:] = float("nan")
     other["failing_up_to"].loc["bounce_velocity", 2] = 0.31
-    other["stiff_error"].loc["max_height"] = 0.0042
-    other["failing_mean"].loc["max_height"] = [0.2, 0.0004, 0.0]
+    other["stiff_error"].loc["summit"] = 0.0042
+    other["failing_mean"].loc["summit"] = [0.2, 0.0004, 0.0]
     other["doubled_mean"][:] = 0.25
     assert pages.exceptions(other)[1:3] == [
-        ["maximum height", "0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
+        ["maximum height in flight", "0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
         ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
     ]
     assert pages.exceptions(other)[-1][-3:] == ["25.0 %", "25.0 %", "25.0 %"]

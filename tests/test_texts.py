@@ -91,7 +91,7 @@ def test_counts_of_readme_are_those_of_the_datasets():
         if not re.search(rf"\b{count} (?:[a-z]+ ){{0,3}}{word}\b", readme)
     ]
     assert missing == []
-    needed = data["validity_map"].enough_from.sel(quantity="max_height")
+    needed = data["validity_map"].enough_from.sel(quantity="summit")
     assert f"ϖ = {article.fixed(needed.max(), 0)}" in readme
     assert f"a grid of {needed.size} n-T orbits" in readme
 

@@ -8,6 +8,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -112,12 +113,14 @@ def save_stage(
     """Compute and save the datasets of a stage, for the job of its rule.
 
     `stage` has the function of each dataset. A function takes the parameters of its entry in the
-    configuration, and the settings of the run as keywords.
+    configuration, and as keywords those settings of the run that are among its arguments. A dataset
+    records only these.
     """
-    settings = snakemake.params.settings
     for name, path in snakemake.output.items():
         entry = dict(snakemake.params.entries[name])
         title = entry.pop("title")
+        arguments = signature(stage[name]).parameters
+        settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = stage[name](entry, **settings)
         save(dataset, path, title, entry | settings, snakemake.input.code, describe)
 

@@ -253,7 +253,7 @@ def errors(
     return {name: known[name] for name in quantities}
 
 
-COMPARED = ("max_height", "bounce_velocity", "apparent_restitution", "phase_in_periods")
+COMPARED = ("summit", "bounce_velocity", "apparent_restitution", "phase_in_periods")
 """Quantities of an orbit, along the first axis of `errors_of_orbits`."""
 
 

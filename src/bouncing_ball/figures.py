@@ -7,6 +7,7 @@ module `drawing` explains line styles, widths and marks.
 
 from collections.abc import Callable, Mapping
 from itertools import cycle
+from textwrap import fill
 
 import numpy as np
 import xarray as xr
@@ -569,14 +570,6 @@ def mark_printed(axes: Axes, claim: str) -> None:
 
 # Where the frequency ratio of the paper is enough
 
-COMPARED: Mapping[str, str] = {
-    "max_height": "maximum\nheight",
-    "bounce_velocity": "bouncing-off\nvelocity",
-    "apparent_restitution": "apparent\nrestitution",
-    "phase_in_periods": "phase",
-}
-"""Label of each quantity of `validity_map`."""
-
 DOUBLED: Look = {"facecolor": pale(COLOURS[2]), "edgecolor": COLOURS[2], "linewidth": 0.8}
 CURVES: Look = {
     "marker": "o",
@@ -600,7 +593,7 @@ def validity_map(data: xr.Dataset) -> Figure:
             draw_failures(axes, data.sel(quantity=quantity, n=n), given["tolerance"])
             curves = data.where(data.curve_n == n)
             axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
-        row[0].set_ylabel(COMPARED[quantity])
+        row[0].set_ylabel(fill(paper.QUANTITIES[quantity], 14))
     for axes, n in zip(grid[0], data.n.values, strict=True):
         axes.set(title=label(n=n), xlim=data.restitution[[0, -1]], ylim=(0, 1))
         axes.set_yscale("function", functions=(stretched, compressed))

@@ -16,17 +16,6 @@ ROUNDING = 1e-9
 STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios of at least `STIFF`."""
 
-QUANTITIES = {
-    "max_height": "maximum height",
-    "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of the impact, relative to its value",
-    "apparent_restitution": "apparent restitution coefficient",
-    "saddle_node": "Λ of the saddle-node",
-    "period_doubling": "Λ of the period doubling",
-    "permanent_contact": "Λ of permanent contact",
-}
-"""Names of the quantities whose error is scanned."""
-
 
 def complete(values: ArrayLike) -> NDArray:
     """Return numbers as an array; raise ValueError if there are none, or if one is NaN."""

@@ -12,6 +12,7 @@ Eqs. 12 and 13 are eliminated. Three equations remain for the four unknowns of y
 family form curves. Arrays of orbits have the shape (4, ...).
 """
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -361,21 +362,28 @@ class Family:
         inside = np.minimum(_least(in_contact, shape), _least(in_flight, shape, samples))
         return np.minimum(inside, np.minimum(-u, end.gap_velocity + lag * end.gap_acceleration))
 
-    def observables(self, y: NDArray) -> dict[str, NDArray]:
-        """Quantities of orbits, by the names of their variables in datasets."""
-        duration = y[3] / self.contact.frequency_ratio
-        return {
-            "amplitude": y[0],
-            "phase": y[1],
-            "contact_duration": duration,
-            "release_phase": y[1] + duration,
-            "impact_velocity": y[2],
-            "bounce_velocity": self.bounce_velocity(y),
-            "apparent_restitution": self.apparent_restitution(y),
-            "max_height": self.max_height(y),
-            "stable": is_stable(*self.trace_and_determinant(y)),
-            "admissible": self.clearance(y) > 0,
-        }
+    def contact_duration(self, y: NDArray) -> NDArray:
+        """Duration τ_b of the contact (Eq. 23)."""
+        return y[3] / self.contact.frequency_ratio
+
+    def observables(self, y: NDArray, names: Iterable[str]) -> dict[str, NDArray]:
+        """Quantities of orbits by name, any of `OBSERVABLES`."""
+        return {name: OBSERVABLES[name](self, y) for name in names}
+
+
+OBSERVABLES: Mapping[str, Callable[[Family, NDArray], NDArray]] = {
+    "amplitude": lambda family, y: y[0],
+    "phase": lambda family, y: y[1],
+    "contact_duration": Family.contact_duration,
+    "release_phase": lambda family, y: y[1] + family.contact_duration(y),
+    "impact_velocity": lambda family, y: y[2],
+    "bounce_velocity": Family.bounce_velocity,
+    "apparent_restitution": Family.apparent_restitution,
+    "max_height": Family.max_height,
+    "stable": lambda family, y: is_stable(*family.trace_and_determinant(y)),
+    "admissible": lambda family, y: family.clearance(y) > 0,
+}
+"""Quantities of an orbit, by the names of their variables in datasets."""
 
 
 def _least(function, shape: tuple[int, ...], samples: int = 33) -> NDArray:

@@ -20,6 +20,7 @@ from bouncing_ball import article, tables
 from bouncing_ball.claims import CLAIMS
 from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.drawing import share_text
+from bouncing_ball.paper import QUANTITIES
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
@@ -172,15 +173,6 @@ def row(claim: Mapping) -> Row:
     )
 
 
-MAPPED = {
-    "max_height": "maximum height",
-    "bounce_velocity": "bouncing-off velocity",
-    "apparent_restitution": "apparent restitution",
-    "phase_in_periods": "phase",
-}
-"""Names of the quantities of the validity map."""
-
-
 def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     """Where the advised frequency ratio is not enough, as rows of texts, the header first.
 
@@ -192,12 +184,12 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     families = [f"n = {n}" for n in validity_map.n.values]
     heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
     rows = [[*heads, f"share of these Λ: {families[0]}", *families[1:]]]
-    for quantity, name in MAPPED.items():
+    for quantity in validity_map["quantity"].values:
         error = validity_map.stiff_error.sel(quantity=quantity).max()
         of = " of a period" if quantity == "phase_in_periods" else ""
         where = article.failing(validity_map, quantity)
         shares = map(share_text, validity_map.failing_mean.sel(quantity=quantity).values)
-        rows.append([name, article.percent(error, 2) + of, where, *shares])
+        rows.append([QUANTITIES[quantity], article.percent(error, 2) + of, where, *shares])
     where = "every r, next to the period doubling"
     rows.append(
         [

@@ -101,6 +101,22 @@ cannot be read, the ends of the ranges to which the conditions refer. The three 
 """
 
 
+QUANTITIES = {
+    "max_height": "maximum height",
+    "summit": "maximum height in flight",
+    "bounce_velocity": "bouncing-off velocity",
+    "phase": "phase of the impact, relative to its value",
+    "phase_in_periods": "phase of the impact",
+    "apparent_restitution": "apparent restitution coefficient",
+    "saddle_node": "Λ of the saddle-node",
+    "period_doubling": "Λ of the period doubling",
+    "permanent_contact": "Λ of permanent contact",
+}
+"""Names of the quantities that both models have (Eqs. 37 and 38), for texts and figures. The
+maximum height is that of a whole cycle: the table can lift the ball higher than it flies.
+"""
+
+
 def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
     """Name the parameters of a dataset that differ from the needed ones; empty if none does."""
     given = parameters(data)

@@ -12,8 +12,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.datasets import parameters
-from bouncing_ball.measures import QUANTITIES, ROUNDING
-from bouncing_ball.paper import PARAMETERS, other_parameters
+from bouncing_ball.measures import ROUNDING
+from bouncing_ball.paper import PARAMETERS, QUANTITIES, other_parameters
 from bouncing_ball.verdicts import VERDICTS, against_print
 
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}

@@ -3,6 +3,7 @@
 """
 
 import sys
+from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
@@ -13,14 +14,31 @@ from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
+QUANTITIES = (
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "max_height",
+    "stable",
+    "admissible",
+)
+"""Quantities of every orbit. A figure that needs more of them adds their names."""
+
 
 def along_frequency_ratio(
-    n: int, r: np.ndarray, amplitude: np.ndarray, ratios: np.ndarray, release: str
+    n: int,
+    r: np.ndarray,
+    amplitude: np.ndarray,
+    ratios: np.ndarray,
+    release: str,
+    names: Iterable[str] = QUANTITIES,
 ) -> xr.Dataset:
-    """The quantities of the orbits, shape (case, ϖ), NaN where there is none."""
+    """The named quantities of the orbits, shape (case, ϖ), NaN where there is none."""
     family = Family(n, Contact(ratios, damping_ratio(r)[:, np.newaxis], release))
-    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release))
-    del quantities["amplitude"]
+    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), names)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]
     return xr.Dataset(
@@ -42,7 +60,9 @@ def cases(parameters: dict, release: str) -> xr.Dataset:
     return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
 
 
-def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset:
+def amplitudes(
+    parameters: dict, ratios: np.ndarray, release: str, names: Iterable[str] = QUANTITIES
+) -> xr.Dataset:
     """One r and several Λ, with the limits of a stiff contact: phase and velocities of the
     restitution model.
     """
@@ -50,7 +70,7 @@ def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
     velocity = float(restitution.bounce_velocity(n))
-    return along_frequency_ratio(n, r, amplitude, ratios, release).assign(
+    return along_frequency_ratio(n, r, amplitude, ratios, release, names).assign(
         restitution_phase=("case", restitution.impact_phase(n, r, amplitude)),
         restitution_bounce_velocity=velocity,
         restitution_impact_velocity=-velocity,

@@ -13,6 +13,19 @@ from bouncing_ball.orbits import Family
 from bouncing_ball.paper import printed_table
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
+QUANTITIES = (
+    "amplitude",
+    "phase",
+    "contact_duration",
+    "release_phase",
+    "impact_velocity",
+    "bounce_velocity",
+    "apparent_restitution",
+    "stable",
+    "admissible",
+)
+"""Quantities of the orbits of a branch."""
+
 
 def followed(family: Family, parameters: dict, largest_step: float) -> Branch:
     """The branch of a family; if it cannot be followed, NaN, with the reason at its ends."""
@@ -44,8 +57,7 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     count = max(len(each.special) for each in found)
     rows = []
     for family, each in zip(families, found, strict=True):
-        quantities = family.observables(each.orbits)
-        del quantities["max_height"]
+        quantities = family.observables(each.orbits, QUANTITIES)
         multipliers = family.multipliers(each.orbits).T
         ratio = family.contact.frequency_ratio
         special = each.special
@@ -102,7 +114,7 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     )
 
 
-def table1(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+def table1(parameters: dict, release: str) -> xr.Dataset:
     """Ranges of Λ with stable orbits: computed, printed, and of both maps of the restitution model.
 
     An end beyond the largest amplitude is NaN, and so is a printed end of a row that the paper does
@@ -142,7 +154,7 @@ def table1(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     )
 
 
-def lowest_doubling(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
+def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
     """The ϖ at which the period doubling of each family is lowest, and its Λ there."""
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"])

@@ -20,13 +20,13 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     ratios = grid(parameters["frequency_ratio"])
     family = Family(n, Contact(ratios, damping_ratio(r), release))
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-    quantities = family.observables(orbits)
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
+    quantities = family.observables(orbits, names)
     error = orbit_errors(family, orbits, r, amplitude)["max_height"]
     found = threshold(ratios, error, parameters["tolerance"])
     return xr.Dataset(
         {
-            **{name: ("frequency_ratio", quantities[name]) for name in names},
+            **{name: ("frequency_ratio", each) for name, each in quantities.items()},
             "restitution_max_height": float(restitution.max_height(n, r, amplitude)),
             "relative_error": ("frequency_ratio", error.values),
             "error_threshold": found.ratio,

@@ -26,7 +26,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
     ratio = parameters["frequency_ratio"]
     family = Family(n, Contact(ratio, damping_ratio(r), release))
     y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
-    orbit = family.observables(y)
+    orbit = family.observables(y, STATE)
     half = parameters["samples"] // 2
     during = np.linspace(0, orbit["contact_duration"], half)
     # The last sample of the contact is its end, and that of the flight the next start.
@@ -59,7 +59,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     period = 2 * np.pi * n
     families = [Family(n, Contact(ratio, damping_ratio(r), release)) for ratio in ratios]
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-    rows = [each.observables(y) for each, y in zip(families, orbits.T, strict=True)]
+    rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}
     phase = float(restitution.impact_phase(n, r, amplitude))
     corners = np.concatenate([[phase], state["phase"], state["phase"] + state["contact_duration"]])

@@ -8,7 +8,7 @@ import pytest
 from integrated import around, contact
 
 from bouncing_ball.continuation import stable_orbits
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond import root_time
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
@@ -67,7 +67,7 @@ def test_the_orbits_of_the_replication_from_half_on(n, release):
         contact = Contact(ratios, zeta, release)
         family = Family(n, contact)
         seen = np.isfinite(y[0]) & (family.clearance(y) > 0)
-        quantities = {name: np.broadcast_to(v, 5) for name, v in family.observables(y).items()}
+        quantities = {name: np.broadcast_to(v, 5) for name, v in family.observables(y, OBSERVABLES).items()}
         for i in np.flatnonzero(seen):
             ball = SpringDamper(ratios[i], damping_ratio=zeta, release=release)
             every = orbits(ball, amplitude=amplitude, periods=n)

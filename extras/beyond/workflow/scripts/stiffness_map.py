@@ -44,7 +44,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
     family = Family(n_all, contact)
     orbits = orbits_along(family, amplitude_all)
     enough = enough_from(family, orbits, r_all, amplitude_all, tolerance)
-    height = COMPARED.index("max_height")
+    height = COMPARED.index("summit")
     unit = SpringDamper(1.0, restitution=r_all[:, 0])
     # Rounding must not put Λ below the saddle-node.
     inside = amplitude_all[:, 0] * (1 + NEXT)

@@ -126,7 +126,12 @@ LABELS = {
     "fig16": [r"$\varpi_{PC,1\%}=9.812$", "printed: 6", r"restitution, $\Lambda_{CR}$"],
     "validity_map": [
         *(f"$n={n}$" for n in (1, 2, 3)),
-        *("maximum\nheight", "bouncing-off\nvelocity", "apparent\nrestitution", "phase"),
+        *(
+            "maximum height\nin flight",
+            "bouncing-off\nvelocity",
+            "apparent\nrestitution\ncoefficient",
+            "phase of\nimpact",
+        ),
     ],
 }
 

@@ -308,7 +308,7 @@ def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
 
 def test_an_end_of_table_1_beyond_the_largest_amplitude_is_missing():
     given = registered("continuation", "table1", frequency_ratio=[10.0], amplitude_max=1.1)
-    data = stage("continuation").STAGE["table1"](given, "displacement", 0.2)
+    data = stage("continuation").STAGE["table1"](given, "displacement")
     missing = data.computed.isnull().isel(frequency_ratio=0)
     # The period doublings of n = 2 and 3, at 1.13 and 1.27.
     assert missing.values.tolist() == [[False, False], [False, True], [False, True]]

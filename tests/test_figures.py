@@ -130,7 +130,7 @@ LABELS = {
             "maximum height\nin flight",
             "bouncing-off\nvelocity",
             "apparent\nrestitution\ncoefficient",
-            "phase of\nimpact",
+            "phase of the\nimpact",
         ),
     ],
 }

@@ -15,6 +15,7 @@ from bouncing_ball_beyond.balls import Corrected, H, Rigid, SpringDamper
 from bouncing_ball_beyond.continuation import follow as path_follow
 from bouncing_ball_beyond.error_law import error_thresholds, law_thresholds
 from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.motions import motion_of
 from bouncing_ball_beyond.named_laws import (
     adams_impact,
     hunt_crossley,
@@ -733,6 +734,188 @@ class TestJumps:
         for u in (1.5, 2.1, 3.0):
             duration, _, _ = integrated(law, 0.0, u, 0.0, gravity=0.0)
             assert abs(law.signature(u).duration - duration) < CLOSE
+
+
+def hard_core(p, v, k, c, h, d):
+    """Spring, damper and a force that tends to infinity at the depth d."""
+    return k * p + c * v + h * (p / (d - p)) ** 3
+
+
+def poeschel(p, v, k, a):
+    """Hertz' contact with the damping of Brilliantov and Pöschel."""
+    return k * (p * np.sqrt(p) + a * v * np.sqrt(p))
+
+
+TABLE = np.polynomial.Polynomial([0.0, 150.0, 900.0, -400.0, 3000.0])
+
+# Laws as they are written in particle codes, engines and notebooks, with their arguments.
+WRITTEN = {
+    "hard core": (hard_core, {"k": 20.0, "c": 0.5, "h": 5.0, "d": 0.3}, {}),
+    "even pole": (
+        lambda p, v, k, h, d: k * p + h * (p / (d - p)) ** 2,
+        {"k": 20.0, "h": 2.0, "d": 0.3},
+        {},
+    ),
+    "extensible chain": (
+        lambda p, v, k, d: k * p / (1 - (p / d) ** 2),
+        {"k": 400.0, "d": 0.2},
+        {},
+    ),
+    "wall of Lennard and Jones": (
+        lambda p, v, e, d: e * ((1 - p / d) ** -13 - 1),
+        {"e": 1.0, "d": 0.3},
+        {},
+    ),
+    "steep exponential": (lambda p, v, k: k * (np.exp(200 * p) - 1), {"k": 2.0}, {}),
+    "exponential": (lambda p, v, k: k * np.exp(8 * p), {"k": 3.0}, {}),
+    "exponential spring of Simbody": (
+        lambda p, v, k, b, c: k * np.exp(b * p) * (1 + c * v),
+        {"k": 0.5, "b": 100.0, "c": 0.1},
+        {},
+    ),
+    "logarithmic force": (
+        lambda p, v, k, d: -k * np.log(1 - p / d),
+        {"k": 300.0, "d": 0.2},
+        {},
+    ),
+    "logarithmic barrier": (
+        lambda p, v, k, d: k * (-2 * p * np.log(1 - p / d) + p * p / (d - p)),
+        {"k": 100.0, "d": 0.2},
+        {},
+    ),
+    "no tension": (
+        lambda p, v, k, c: k * p + c * v,
+        {"k": 400.0, "c": 4.0},
+        {"release": "force"},
+    ),
+    "no tension of Hertz' contact": (
+        poeschel,
+        {"k": 1000.0, "a": 0.01},
+        {"root": 2, "release": "force", "lag": lambda k, a: a},
+    ),
+    "damping of the penetration": (lambda p, v, k, c: (k + c * v) * p, {"k": 1e3, "c": 100.0}, {}),
+    "damping of its square": (
+        lambda p, v, k, c: k * p + c * p**2 * v,
+        {"k": 400.0, "c": 500.0},
+        {},
+    ),
+    "quadratic damping": (
+        lambda p, v, k, c: k * p + c * p * np.where(v.real > 0, v * v, -v * v),
+        {"k": 400.0, "c": 20.0},
+        {"kinks": (lambda p, v, k, c: v,)},
+    ),
+    "measured, as a polynomial": (lambda p, v: TABLE(p) + 0 * v, {}, {}),
+    "saturating": (
+        lambda p, v, k: k * np.tanh(30 * p) * (1 + 0.05 * v),
+        {"k": 100.0},
+        {},
+    ),
+    "sine": (lambda p, v, k: k * np.sin(p), {"k": 100.0}, {}),
+    "adhesion": (lambda p, v, k, a: k * p - a * np.sqrt(p), {"k": 400.0, "a": 1.0}, {"root": 2}),
+    "fifth power": (lambda p, v, k: k * p**5, {"k": 1e4}, {}),
+}
+
+NO_TENSION = 'write the force without this limit and give release="force"'
+REFUSED = {
+    "no tension by maximum": (
+        lambda p, v, k, c: np.maximum(0, k * p + c * v),
+        {"k": 400.0, "c": 4.0},
+        {},
+        NO_TENSION,
+    ),
+    "no tension by where": (
+        lambda p, v, k, a: np.where(poeschel(p, v, k, a).real > 0, poeschel(p, v, k, a), 0),
+        {"k": 1000.0, "a": 0.01},
+        {"root": 2},
+        NO_TENSION,
+    ),
+    "limited damper": (
+        lambda p, v, k, c: k * p + np.clip(c * v, -1, 1),
+        {"k": 400.0, "c": 4.0},
+        {},
+        r"kink near p = .*, v = .*; give kinks=\(kink,\)",
+    ),
+    "dry friction": (
+        lambda p, v, k, m: k * p + m * np.sign(v.real),
+        {"k": 400.0, "m": 2.0},
+        {},
+        "jumps by 4 near p = .*, v = 0, but must be continuous",
+    ),
+    "table": (
+        lambda p, v: np.interp(p, [0, 0.1, 0.2], [0, 30, 100]),
+        {},
+        {},
+        "a polynomial instead of a table",
+    ),
+    "a third of a power": (lambda p, v, k: k * p ** (4 / 3), {"k": 300.0}, {}, "give root=6"),
+    "sign of the damping": (
+        lambda p, v, k: k * p - 5 * v,
+        {"k": 400.0},
+        {},
+        "a ball with the closing speed 0.5 leaves with 0.7428: check the sign of the damping",
+    ),
+    "list": (lambda p, v, k: [k * x for x in p], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
+    "first entry": (lambda p, v, k: k * p[0], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
+    "one kink": (lambda p, v, k: k * p, {"k": 1.0}, {"kinks": np.sign}, r"kinks=\(kink,\), not"),
+    "wrong kink": (
+        lambda p, v, k: k * p,
+        {"k": 1.0},
+        {"kinks": (lambda p, v: p,)},
+        r"kinks\[0\]: must accept its parameters by name",
+    ),
+}
+
+
+@pytest.mark.filterwarnings("error")
+class TestLawsAsTheyAreWritten:
+    @pytest.mark.parametrize("name", WRITTEN)
+    @pytest.mark.parametrize("u", [0.4, 2.5, 6.0])
+    def test_accepted(self, name, u):
+        """The ball leaves when and as fast as by an integrator in plain time."""
+        force, values, more = WRITTEN[name]
+        law = ForceLaw(force, values, **more)
+        impact = law.first_impact(1.0, u, 0.9)[1]
+        duration, _, w = integrated(law, 1.0, u, 0.9)
+        # Next to a wall the force changes by a factor in the rounding errors of the depth.
+        assert abs(impact.duration - duration) < CLOSE
+        assert abs(impact.speed - w) < 100 * CLOSE
+
+    @pytest.mark.parametrize("name", REFUSED)
+    def test_refused(self, name):
+        force, values, more, reason = REFUSED[name]
+        with pytest.raises(ValueError, match=reason) as error:
+            ForceLaw(force, values, **more)
+        one_line(error)
+
+    def test_a_ball_that_is_not_stopped_is_refused_at_once(self):
+        law = ForceLaw(lambda p, v, k: k * np.sin(p), {"k": 100.0})
+        assert abs(law.signature(19.0).restitution - 1) < CLOSE
+        for question in (
+            lambda: law.signature(100.0),
+            lambda: motion_of(law, amplitude=1.0, velocity=-100.0),
+        ):
+            with pytest.raises(ValueError, match="stops balls with closing speeds up to 20, but"):
+                question()
+        assert np.isnan(law.first_release(0.0, 100.0, 1.0))
+
+    def test_a_force_is_checked_where_faster_balls_come(self):
+        """A spring with a kink at a depth that no ball reaches at first."""
+        law = ForceLaw(
+            lambda p, v, k: np.where(p.real < 9, k * p, 9 * k + 2 * k * (p - 9)), {"k": 4.0}
+        )
+        assert abs(law.first_impact(0.0, 2.0, 0.0, 0.0)[1].speed - 2) < CLOSE
+        with pytest.raises(ValueError, match="has a kink near p = 9, v"):
+            law.first_impact(0.0, 19.0, 0.0)
+
+    def test_depth_is_that_of_the_energy(self):
+        law = ForceLaw(WRITTEN["steep exponential"][0], {"k": np.array([2.0, 7.0])})
+        u = np.array([[0.3], [4.0]])
+        depth = law.depth(u)
+        assert depth.shape == (2, 2)
+        energy = law.values["k"] * (np.expm1(200 * depth) / 200 - depth)
+        # Steps are a tenth of the depth, or half of f/f′.
+        np.testing.assert_allclose(np.sqrt(2 * energy), np.broadcast_to(u, (2, 2)), rtol=0.2)
+        assert np.isnan(ForceLaw(WRITTEN["sine"][0], {"k": 100.0}).depth(21.0))
 
 
 class TestRefusedForces:

@@ -8,6 +8,7 @@ import xarray as xr
 
 from bouncing_ball_beyond import (
     Corrected,
+    ForceLaw,
     Rigid,
     SpringDamper,
     Table,
@@ -282,3 +283,22 @@ def test_a_stable_cascade_has_no_unstable_lines():
         "4 impacts in 4 T",
         "8 impacts in 8 T",
     ]
+
+
+def test_a_branch_of_another_force_is_refused_by_its_defect():
+    """The parameters of both forces have the same names."""
+
+    def force(p, v, k, c):
+        return k * p * (1 + c * v)
+
+    def other(p, v, k, c):
+        return k * p + 20 * c * v
+
+    values = {"k": 400.0, "c": 0.05}
+    data = to_dataset(follow(orbit(ForceLaw(force, values), amplitude=1.0), to=1.01))
+    assert len(read_orbits(data, ball=ForceLaw(force, values)).z) > 1
+    with pytest.raises(
+        ValueError, match=r"does not follow the orbits.*residual.*is 0\.\d"
+    ) as error:
+        read_orbits(data, ball=ForceLaw(other, values))
+    assert "\n" not in str(error.value)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball_beyond import named_laws
-from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper, brief
 from bouncing_ball_beyond.branches import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.laws import ForceLaw
@@ -62,6 +62,9 @@ PARAMETERS = {
 """Parameters. The long name of a parameter of a law is its name."""
 
 BALLS: dict[str, Any] = {each.__name__: each for each in (Rigid, SpringDamper, Corrected, ForceLaw)}
+
+LARGEST_DEFECT = 1e-6
+"""Largest residual of a restored orbit. Orbits are found with residuals below 1e-7."""
 
 Found = PeriodicOrbit | FollowedBranch | Sequence
 """Objects that datasets store: an orbit, a branch, a curve, or a list of orbits."""
@@ -216,8 +219,8 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
     Raises
     ------
     ValueError
-        If the dataset contains no orbits, if a required ball is missing, or if the ball does not
-        have the parameters of the dataset.
+        If the dataset contains no orbits, if a required ball is missing, if the ball does not have
+        the parameters of the dataset, or if the orbits are not orbits of the ball.
 
     Examples
     --------
@@ -249,6 +252,12 @@ def read_orbits(source: Any, *, ball: Ball | None = None) -> Found:
     paths = [path_of(each, ball, table) for each in json.loads(data.attrs["along"])]
     numbers = range(data.sizes["point"])
     orbits = [_orbit_at(data.isel(point=i), ball, table, paths) for i in numbers]
+    for each in orbits:
+        if not each.defect < LARGEST_DEFECT:
+            raise ValueError(
+                f"{name}ball: {brief(ball)} does not follow the orbits of the dataset: the residual"
+                f" of their equations is {each.defect:.3g}; give the ball of the orbits as ball="
+            )
     form = data.attrs["form"]
     if form in ("PeriodicOrbit", "RestOrbit"):
         return orbits[0]

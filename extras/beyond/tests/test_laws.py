@@ -898,6 +898,16 @@ class TestLawsAsTheyAreWritten:
                 question()
         assert np.isnan(law.first_release(0.0, 100.0, 1.0))
 
+    def test_a_soft_chain_is_a_law_for_balls_that_keep_their_distance(self):
+        """Its energy grows with the logarithm of the distance from its full length."""
+        law = ForceLaw(WRITTEN["extensible chain"][0], {"k": 9.0, "d": 0.2})
+        duration, _, w = integrated(law, 1.0, 1.0, 0.9)
+        np.testing.assert_allclose(law.first_impact(1.0, 1.0, 0.9)[1][::2], [duration, w], 1e-10)
+        with pytest.raises(
+            ValueError, match=r"up to 2\.64 without coming nearer to a pole than 1e-09"
+        ):
+            law.signature(4.0)
+
     def test_a_force_is_checked_where_faster_balls_come(self):
         """A spring with a kink at a depth that no ball reaches at first."""
         law = ForceLaw(

@@ -60,6 +60,10 @@ which they begin and end, and their maximum number.
 The energies belong to speeds of 1e-13 and 1e6.
 """
 
+NEAREST = 1e-9
+"""Smallest relative distance from a pole of the force. Half of the digits of the force are lost
+there: a ball that comes nearer is not computed."""
+
 USUAL_SPEED, USUAL_LOAD = 8.0, 4.0
 """Closing speed and load up to which a new law is judged. Others are judged when they occur."""
 
@@ -552,10 +556,12 @@ class ForceLaw(Ball):
         u = np.real(u)
         missed = np.isnan(self.depth(u)) & (u < np.inf)
         if np.any(missed):
-            fastest = np.sqrt(2 * self._energies[1].max())
+            p, energy = self._energies
+            near = f" without coming nearer to a pole than {NEAREST:g} of its depth"
             raise ValueError(
-                f"force: without damping, f(p, 0) stops balls with closing speeds up to"
-                f" {fastest:.3g}, but this ball has {np.max(u, where=missed, initial=0.0):.4g}"
+                "force: without damping, f(p, 0) stops balls with closing speeds up to"
+                f" {np.sqrt(2 * energy.max()):.3g}{near if np.all(p[-1] == p[-2]) else ''}, but"
+                f" this ball has {np.max(u, where=missed, initial=0.0):.4g}"
             )
 
     @cached_property
@@ -599,8 +605,8 @@ class ForceLaw(Ball):
             there = here + step
             after, bend = force(there)
             total = energies[-1] + step * (f + after) / 2 + step * step * (slope - bend) / 12
-            # The force has no value beyond a wall, and there are no digits next to it.
-            inside = np.isfinite(total) & (there > here) & (energies[-1] < HIGHEST)
+            # The force has no value beyond a wall, and few digits next to it.
+            inside = np.isfinite(total) & (step > NEAREST * here) & (energies[-1] < HIGHEST)
             here, f, slope = (
                 np.where(inside, *each) for each in ((there, here), (after, f), (bend, slope))
             )

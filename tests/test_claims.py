@@ -113,7 +113,7 @@ READINGS = {
     "safe above 100": (
         ["the maximum height on Figs. 5, 6, 10", "permanent contact"],
         [
-            "the maximum height on all orbits",
+            "the maximum height on the orbits of the map",
             "the bouncing-off velocity",
             "the apparent restitution",
         ],

@@ -115,9 +115,9 @@ def compliant_divergence(thresholds):
     "Introduction",
     "periodic, subharmonic and chaotic motions can be observed",
     "three_balls",
-    remark="of three balls that start alike in the restitution model, one must repeat after each "
-    "impact, one after several impacts and periods, and one never, without sticking to the table "
-    "and with a Lyapunov exponent that is positive by five standard errors",
+    remark="three balls start alike in the restitution model: one must repeat after each impact, "
+    "and one after several impacts and periods; the third must never repeat, must not stick to "
+    "the table, and must have a Lyapunov exponent that is positive by five standard errors",
 )
 def kinds_of_motion(balls):
     periodic = (balls["impacts"] == 1) & (balls["periods"] > 0)
@@ -141,7 +141,7 @@ def chaotic(balls: xr.Dataset) -> xr.DataArray:
     "Introduction",
     "the flights are high against the excitation",
     "fig05 fig06 fig10",
-    missing="the ratio of both from which on a flight is high",
+    missing="how many times higher than the excitation a high flight is",
     remark="at the largest ϖ the lowest ratio is that of r = 0.1, Λ = 2.6; the neglect of the "
     "excitation shows in the period doubling of Eq. 8",
 )
@@ -210,7 +210,7 @@ def no_assumptions(fig08):
     "the n-T orbits of the spring-damper model have no analytical solution, and need numerical "
     "continuation",
     remark="at a given Λ the duration of the contact is the root of one transcendental equation; "
-    "that it has no formula is not shown in the paper, and we know of none",
+    "the paper does not show that this root has no formula, and we know none",
 )
 def no_analytical_solution():
     linear = "at a given duration of the contact Eqs. 21-26 are linear, so that it has a formula"
@@ -303,8 +303,8 @@ def period_doubling(fig03):
     "Fig. 3, Figs. 8 and 9, Table 1",
     "the stable orbits of a family are those from its saddle-node to its period doubling",
     "fig08 fig09",
-    remark="in the restitution model it is algebra of Eq. 5; at ϖ = 2 the branch of n = 1 is "
-    "stable twice more, at its long contacts, once up to its end in permanent contact",
+    remark="in the restitution model it follows from Eq. 5 by algebra; at ϖ = 2 the branch of n "
+    "= 1 has two further stable ranges with long contacts, one of which ends in permanent contact",
     beside="table1",
 )
 def stability_range(*figures):
@@ -415,7 +415,8 @@ def table_velocities(*figures):
     "after Fig. 5",
     "the higher the frequency ratio, the closer the apparent restitution coefficient is to r",
     "fig05",
-    remark="the damped curves pass r and come back to it from below; that of r = 1 is r everywhere",
+    remark="the curves with damping cross r and return to it from below; the curve of r = 1 "
+    "equals r everywhere",
 )
 def closer_with_stiffness(fig05):
     off = abs(fig05["apparent_restitution"] - fig05["restitution"])
@@ -451,8 +452,7 @@ def depends_on_amplitude(fig06):
     "decreases slightly",
     "fig06",
     remark="a dip must be deeper than the width of a line, 1 % of the axis; the curve of Λ = 0.7 "
-    "has one; the labels stand in rising order from the top, the curves in falling order, so that "
-    "the labels may be swapped",
+    "has one; the labels ascend from the top and the curves descend, so the labels may be swapped",
 )
 def dip_at_12(fig06):
     curves = fig06["apparent_restitution"]
@@ -466,8 +466,8 @@ def dip_at_12(fig06):
     "before Fig. 6",
     "at Λ = 1.2 the apparent restitution coefficient tends to this value at ϖ = 1",
     "fig06",
-    remark="the two other curves have the same digits there, so that the number says little on the "
-    "amplitude",
+    remark="the two other curves round to the same digits there, so the number says little about "
+    "the amplitude",
 )
 def compliant_end(fig06):
     return fig06["apparent_restitution"].isel(case=-1).sel(frequency_ratio=1.0)
@@ -585,8 +585,8 @@ def apart_when_compliant(*figures):
     "as the frequency ratio falls the saddle-node moves to lower amplitudes, and the period "
     "doubling to higher ones",
     "table1 lowest_doubling",
-    remark="in the printed table the doubling rises at once, from a stiffest row that is that of "
-    "Eq. 8; the moves are called slight",
+    remark="in the printed table the period doubling rises from the first row on, which agrees "
+    "with Eq. 8; the paper calls the moves slight",
 )
 def bifurcations_move(table1, lowest):
     move = from_the_stiffest(table1)["computed"].diff("frequency_ratio")
@@ -606,7 +606,7 @@ def bifurcations_move(table1, lowest):
     "after Fig. 9, Table 1",
     "as the frequency ratio falls the stability range is extended",
     "table1",
-    remark="the range of Table 1; *stable between* has further ones at ϖ = 2",
+    remark="the range of Table 1; at ϖ = 2 there are further stable ranges",
 )
 def range_widens(table1):
     width = from_the_stiffest(table1)["computed"].diff("bound")
@@ -661,7 +661,7 @@ def no_longer_nπ(fig10):
     "after Fig. 10",
     "the bouncing-off velocity starts to depart from nπ below ϖ = 100",
     "fig10",
-    missing="the departure that counts as a start",
+    missing="which departure counts as a start",
     remark="the departure falls as the inverse of the frequency ratio, without a step",
 )
 def departs_below_100(fig10):
@@ -732,7 +732,7 @@ def resonant_threshold():
     "lowest threshold",
     "Eq. 36, Fig. 11",
     "permanent contact remains stable at every frequency ratio up to Λ = 2ζ√(1 - ζ²)",
-    remark="that large disturbances decay, too, is not shown",
+    remark="we did not show that large disturbances decay",
     beside="fig11",
 )
 def lowest_threshold():
@@ -828,7 +828,7 @@ def threshold_ensures(fig14):
     "after Fig. 15",
     "the restitution model remains representative, with a small error on the stability range",
     "fig15 table1",
-    missing="the error that counts as small",
+    missing="which error counts as small",
 )
 def representative(fig15, table1):
     (branch,) = branches(fig15)
@@ -850,7 +850,7 @@ def representative(fig15, table1):
 @claim(
     "permanent contact threshold",
     "Fig. 16 and after it",
-    "frequency ratio below which the thresholds of permanent contact differ, by 1 %",
+    "frequency ratio below which the thresholds of permanent contact differ by more than 1 %",
     "fig16",
 )
 def permanent_contact_threshold(fig16):
@@ -879,7 +879,8 @@ def different_below_6_only(fig16):
     "Conclusion",
     "the restitution model leads quickly to analytical solutions, which give maps of phase and "
     "velocity easily",
-    remark="*direct map* judges the map alone",
+    remark="this claim is about the maps of phase and velocity; the direct map is a claim of its "
+    "own",
 )
 def easy_maps():
     return [
@@ -894,9 +895,9 @@ def easy_maps():
     "Conclusion",
     "the restitution model is good above a frequency ratio of 100",
     "validity_map fig16 fig05 fig06 fig10 thresholds",
-    remark="the paper sets the limit of 1 % for the maximum height and for permanent contact; the "
-    "orbits are the stable ones of the restitution model with n = 1, 2, 3 and r = 0.05 to 0.95, "
-    "the ends of their range those of n = 1, r = 0.65",
+    remark="the paper sets the limit of 1 % for the maximum height and for permanent contact; "
+    "the orbits are a grid of stable orbits of the restitution model with n = 1, 2, 3 and r = "
+    "0.05 to 0.95; the ends of the stable range are those of n = 1, r = 0.65",
 )
 def safe_above_100(validity_map, fig16, fig05, fig06, fig10, thresholds):
     orbits = validity_map["stiff_error"]
@@ -904,7 +905,9 @@ def safe_above_100(validity_map, fig16, fig05, fig06, fig10, thresholds):
     contact = fig16["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     ends = thresholds["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     return [
-        at_most("the maximum height on all orbits", orbits.sel(quantity="summit"), LIMIT),
+        at_most(
+            "the maximum height on the orbits of the map", orbits.sel(quantity="summit"), LIMIT
+        ),
         at_most("the bouncing-off velocity", orbits.sel(quantity="bounce_velocity"), LIMIT),
         at_most("the apparent restitution", orbits.sel(quantity="apparent_restitution"), LIMIT),
         at_most("the phase in periods", orbits.sel(quantity="phase_in_periods"), LIMIT),
@@ -920,7 +923,8 @@ def safe_above_100(validity_map, fig16, fig05, fig06, fig10, thresholds):
     "other problems",
     "Conclusion",
     "a frequency ratio above 100 is enough for bouncing-ball-like problems",
-    missing="a computation of any motion but n-T orbits with one impact and permanent contact",
+    missing="whether it computed other motions than n-T orbits with one impact and permanent "
+    "contact",
     remark="the paper says itself that it studies only these two",
 )
 def other_problems():

@@ -82,7 +82,7 @@ for stage in STAGES:
         }
         for file in [file for file, is_needed in needed.items() if is_needed]:
             if f'"{name}":' not in (TOP / file).read_text("utf-8"):
-                sys.exit(f"configuration: {stage}.{name}: {file} has no function for it")
+                sys.exit(f"configuration: {stage}.{name}: {file} needs a function for it")
 
 
 # The code of the rules. A change of one of these files runs a rule again; a test compares the lists

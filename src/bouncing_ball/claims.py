@@ -103,7 +103,7 @@ def compliant_divergence(thresholds):
     return [
         above("every quantity from the stiffest contact to the most compliant", growth),
         at_most(
-            f"each step to a more compliant contact, in errors that fall on the way{passing}",
+            f"every step to a more compliant contact; errors that fall at a step{passing}",
             len(falling),
             0,
         ),

@@ -857,6 +857,22 @@ REFUSED = {
     "list": (lambda p, v, k: [k * x for x in p], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
     "first entry": (lambda p, v, k: k * p[0], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
     "one kink": (lambda p, v, k: k * p, {"k": 1.0}, {"kinks": np.sign}, r"kinks=\(kink,\), not"),
+    "a maximum besides the release": (
+        lambda p, v, k, c: np.maximum(0, k * p + c * v),
+        {"k": 400.0, "c": 4.0},
+        {"release": "force", "kinks": (lambda p, v, k, c: k * p + c * v,)},
+        "is zero on a part of the contact",
+    ),
+    "jump of the load": (
+        lambda p, v, k, load: k * p * np.where(load.real > 0.5, 1.0, 0.8),
+        {"k": 400.0},
+        {"needs": ("load",)},
+        r"jumps by .* near p = .*, v = .*, load = 0\.5",
+    ),
+    "text": (lambda p, v, k, load: k * p, {"k": 1.0}, {"needs": "load"}, "needs = 'load': must be"),
+    "no values": (lambda p, v, k: k * p, [400.0], {}, r"values = \[400.0\]: must be a dict"),
+    "no number": (lambda p, v, k: k * p, {"k": np.nan}, {}, "k = nan: must be in"),
+    "no lag": (lambda p, v, k: k * p, {"k": 1.0}, {"lag": 0.1}, "lag = 0.1: must be a function"),
     "wrong kink": (
         lambda p, v, k: k * p,
         {"k": 1.0},
@@ -916,6 +932,11 @@ class TestLawsAsTheyAreWritten:
         assert abs(law.first_impact(0.0, 2.0, 0.0, 0.0)[1].speed - 2) < CLOSE
         with pytest.raises(ValueError, match="has a kink near p = 9, v"):
             law.first_impact(0.0, 19.0, 0.0)
+
+    def test_signatures_are_of_approaching_balls(self):
+        law = ForceLaw(lambda p, v, k: k * p, {"k": 400.0})
+        r = law.signature(np.array([-1.0, 0.0, 2.0])).restitution
+        np.testing.assert_allclose(r, [np.nan, np.nan, 1.0], rtol=CLOSE)
 
     def test_depth_is_that_of_the_energy(self):
         law = ForceLaw(WRITTEN["steep exponential"][0], {"k": np.array([2.0, 7.0])})

@@ -67,7 +67,9 @@ def test_the_orbits_of_the_replication_from_half_on(n, release):
         contact = Contact(ratios, zeta, release)
         family = Family(n, contact)
         seen = np.isfinite(y[0]) & (family.clearance(y) > 0)
-        quantities = {name: np.broadcast_to(v, 5) for name, v in family.observables(y, OBSERVABLES).items()}
+        quantities = {
+            name: np.broadcast_to(v, 5) for name, v in family.observables(y, OBSERVABLES).items()
+        }
         for i in np.flatnonzero(seen):
             ball = SpringDamper(ratios[i], damping_ratio=zeta, release=release)
             every = orbits(ball, amplitude=amplitude, periods=n)

@@ -25,6 +25,7 @@ from bouncing_ball_beyond.balls import (
     Signature,
     brief,
     broadcast_named,
+    checked,
     slopes_at_release,
 )
 from bouncing_ball_beyond.one_ball import SLOWEST
@@ -194,6 +195,17 @@ class ForceLaw(Ball):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
         if self.root != 1 and (self.root < 1 or self.root % 2):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number, 2, 4, 6, ...")
+        for name, each in (("force", self.force), ("lag", self.lag)):
+            if not (callable(each) or (name == "lag" and each is None)):
+                raise ValueError(f"{name} = {brief(each)}: must be a function")
+        if not isinstance(self.values, Mapping):
+            raise ValueError(f"values = {brief(self.values)}: must be a dict of numbers by name")
+        for name, value in self.values.items():
+            checked(name, value, -np.inf, np.inf, low_allowed=False)
+        if not (isinstance(self.needs, tuple) and {*self.needs} <= {"load", "start_speed"}):
+            raise ValueError(
+                f"needs = {self.needs!r}: must be ('load',), ('start_speed',) or both in one tuple"
+            )
         for name in self.units.keys() - self.values.keys():
             known = ", ".join(self.values)
             raise ValueError(f"units: {name} is not a parameter of the law: use {known}")
@@ -389,11 +401,11 @@ class ForceLaw(Ball):
         return time * length ** (1 / self.root - 1) * scaled_duration
 
     def signature(self, u: Values) -> Signature:
-        """r, D, t_c and σ of free impacts.
+        """r, D, t_c and σ of free impacts with the closing speeds u > 0; NaN for other u.
 
         The computation is shared by laws that differ only in the units of length and time.
         """
-        u = np.asarray(u)
+        u = np.where(np.real(u) > 0, u, np.nan)
         self.check_stops(u)
         if self._scales is None or not np.all(u.real > 0):
             return self.computed_signature(u)
@@ -789,13 +801,13 @@ def check_force(law: ForceLaw) -> None:
 
 def _check_one(law: ForceLaw, speed: float, load: float) -> None:
     """Check a force where a ball can be whose energy is that of a closing speed under a load."""
-    if np.isnan(law.depth(1.0)):
-        raise ValueError(
-            "force: stops no ball of the speed 1 at any depth; f(p, 0) must be positive: check its"
-            " sign"
-        )
-    given = {**law.values, "u": 1.0}
     energies = law._energies[1]
+    if energies.max() < LOWEST:
+        raise ValueError(
+            "force: stops no ball; f(p, 0) must be positive at positive p: check its sign"
+        )
+    law.check_stops(1.0)
+    given = {**law.values, "u": 1.0}
     speed = min(speed, 0.999 * np.sqrt(2 * energies.max()))
     with np.errstate(all="ignore"):
         rates = speed * np.array([[-0.63], [-0.13], [0.1], [0.57]])
@@ -803,15 +815,26 @@ def _check_one(law: ForceLaw, speed: float, load: float) -> None:
         # Next to a wall, the depths of equal ratios of the speed are close to each other.
         deepest = np.fmax(law.depth(speeds[:, -1:]), law.depth(speeds[:, -1:], load))
         depths = np.hstack([deepest * np.geomspace(1e-3, 1.0, 121), law.depth(speeds)])
-        along_p = np.broadcast_arrays(np.sort(depths), rates)
+        along_p = np.broadcast_arrays(np.sort(depths), rates, 1.0)
         speeds = speed * np.array([[0.03], [0.3], [0.7], [0.95]])
         rates = np.sqrt(speed**2 - speeds**2) * np.linspace(-1.001, 1.0, 241)
         loaded = np.fmax(law.depth(speeds[2:]), law.depth(speeds[2:], load))
-        along_v = np.broadcast_arrays(np.concatenate([law.depth(speeds[:2]), loaded]), rates)
+        depths = np.concatenate([law.depth(speeds[:2]), loaded])
+        along_v = np.broadcast_arrays(depths, rates, 1.0)
         _check_lines(law, given, "p", np.array(along_p))
         _check_lines(law, given, "v", np.array(along_v))
+        if "load" in law.needs:
+            along_load = np.broadcast_arrays(
+                depths, 0.3 * speed, load * np.linspace(-1, 1.001, 241)
+            )
+            _check_lines(law, given, "load", np.array(along_load))
         _check_root(law, given, law.depth(1.0))
         _check_losses(law, given, np.array(along_v))
+        if law.release == "force" and np.any(_force(law, given, np.array(along_v)) == 0):
+            raise ValueError(
+                "force: is zero on a part of the contact, but release='force' ends it where the"
+                " force changes its sign: write the force without this limit"
+            )
 
 
 def _check_losses(law: ForceLaw, given: Mapping, points: NDArray) -> None:
@@ -819,8 +842,8 @@ def _check_losses(law: ForceLaw, given: Mapping, points: NDArray) -> None:
 
     A force that opposes the rate everywhere cannot. Of other forces, free impacts are computed.
     """
-    p, v = points
-    damping = _force(law, given, points) - law.force_at(p, 0 * v, 1.0, given)
+    p, v, load = points
+    damping = _force(law, given, points) - law.force_at(p, 0 * v, load, given)
     if np.all(damping * v >= -ALIKE * np.abs(v) * (1 + np.abs(damping))):
         return
     speeds = np.array([0.5, 1.0, 2.0])
@@ -862,32 +885,32 @@ def _check_call(law: ForceLaw) -> None:
 
 
 def _force(law: ForceLaw, given: Mapping, point: NDArray) -> NDArray:
-    """Force at points (p, v) of a ball under the load 1."""
-    p, v = point
-    return law.force_at(p, v, 1.0, given)
+    """Force at points (p, v, load)."""
+    p, v, load = point
+    return law.force_at(p, v, load, given)
 
 
 def _defect(law: ForceLaw, given: Mapping, start: NDArray, end: NDArray) -> tuple:
     """Change of the force on straight segments, and the integral of its derivative.
 
-    ``start`` and ``end`` are the points (p, v) of the segments, shape (2, ...). The derivative
-    along a segment comes from complex steps.
+    ``start`` and ``end`` are the points (p, v, load) of the segments, shape (3, ...). The
+    derivative along a segment comes from complex steps.
     """
     along = (end - start)[..., np.newaxis]
     inner = start[..., np.newaxis] + along * (FOUR + 1j * H)
-    slopes = _force(law, given, inner.reshape(2, -1)).imag / H
+    slopes = _force(law, given, inner.reshape(3, -1)).imag / H
     expected = slopes.reshape(inner.shape[1:]) @ WEIGHTS_OF_FOUR
     return _force(law, given, end) - _force(law, given, start), expected
 
 
 def _check_lines(law: ForceLaw, given: Mapping, name: str, points: NDArray) -> None:
-    """Check the force on lines of points (p, v), shape (2, lines, points).
+    """Check the force on lines of points (p, v, load), shape (3, lines, points).
 
     The change of the force on a segment between neighbouring points must be the integral of its
     derivative. Segments on which it is not are divided again and again. A smooth force then passes,
     a kink remains until the change of the force is a rounding error, and a jump remains.
     """
-    segments: Any = np.stack([points[..., :-1], points[..., 1:]]).reshape(2, 2, -1)
+    segments: Any = np.stack([points[..., :-1], points[..., 1:]]).reshape(2, 3, -1)
     whole, broken = segments, (segments, segments)
     for division in range(TO_JUMP + 1):
         here = segments[0]
@@ -909,7 +932,7 @@ def _check_lines(law: ForceLaw, given: Mapping, name: str, points: NDArray) -> N
                 " it without abs, real, sign"
             )
         ends = np.linspace(segments[0], segments[1], PARTS + 1, axis=-1)
-        segments = np.stack([ends[..., :-1], ends[..., 1:]]).reshape(2, 2, -1)
+        segments = np.stack([ends[..., :-1], ends[..., 1:]]).reshape(2, 3, -1)
         whole = np.repeat(whole, PARTS, axis=2)
     jumps = np.flatnonzero(wrong & (np.abs(change) > SMALLEST_JUMP * size))
     if jumps.size:
@@ -930,7 +953,7 @@ def _check_kinks(law: ForceLaw, given: Mapping, whole: NDArray, segments: NDArra
     own = law.own(given)
     declared = np.zeros(segments.shape[2], bool)
     for kink in law.kinks:
-        side = [np.sign(kink(*points, **own)) for points in segments]
+        side = [np.sign(kink(p, v, **own)) for p, v, _ in segments]
         declared |= side[0] * side[1] <= 0
     if declared.all():
         return
@@ -944,9 +967,10 @@ def _check_kinks(law: ForceLaw, given: Mapping, whole: NDArray, segments: NDArra
     raise ValueError(f"force: has a kink near {_where(*segments[0, :, k])}; {remedy}")
 
 
-def _where(p: float, v: float) -> str:
+def _where(p: float, v: float, load: float) -> str:
     """Text of a point. Rates are rounded, because those of a kink at v = 0 are not quite zero."""
-    return f"p = {p:.2g}, v = {round(v, 4) + 0.0:.2g}"
+    at = f"p = {p:.2g}, v = {round(v, 4) + 0.0:.2g}"
+    return at if load == 1 else f"{at}, load = {round(load, 4) + 0.0:.2g}"
 
 
 def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:

@@ -21,7 +21,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup develop test test-processors lint diff replication choices accept report newest lowest lock clean
+.PHONY: all setup develop test test-processors lint diff replication accept report newest lowest lock clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
@@ -61,10 +61,6 @@ replication: clean diff
 
 report: all
 	$(RUN) snakemake --report results/report.html
-
-# The study of what cannot be read in the paper; about a minute.
-choices: setup
-	PYTHONPATH=src:workflow/scripts $(VENV)/bin/python workflow/studies/choices.py
 
 # From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
 test-processors: develop

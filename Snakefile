@@ -104,6 +104,14 @@ PAPER = modules("paper")
 DRAWING = modules("figures", "drawing", "paper", "datasets")
 JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
 WRITING = JUDGING + modules("article", "pages", "drawing")
+VARIED = [
+    "restitution_model",
+    "apparent_restitution",
+    "continuation",
+    "permanent_contact",
+    "error_thresholds",
+    "time_histories",
+]
 TEMPLATES = ["paper.md", "supplement.md", "article.html", "figures.md", "figures.html"]
 
 
@@ -114,6 +122,7 @@ rule all:
     input:
         [files(name) for name in ENTRIES],
         "results/figures/claims.nc",
+        "results/figures/choices.nc",
         "results/index.html",
 
 
@@ -320,14 +329,28 @@ rule claims:
         "workflow/scripts/claims.py"
 
 
+rule choices:
+    """Judge the claims again, with other choices of what cannot be read in the paper"""
+    input:
+        data=expand("results/figures/{name}.nc", name=DATASETS),
+        code=checkout(*(f"workflow/scripts/{name}.py" for name in ["choices", *VARIED])) + JUDGING,
+    output:
+        nc="results/figures/choices.nc",
+    log:
+        "results/logs/choices.log",
+    conda:
+        "workflow/envs/environment.yaml"
+    script:
+        "workflow/scripts/choices.py"
+
+
 rule article:
     """Write the article, its supplement, the list of figures and results/index.html"""
     input:
-        data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims"]),
+        data=expand("results/figures/{name}.nc", name=[*DATASETS, "claims", "choices"]),
         code=checkout(
             "workflow/scripts/article.py",
             *(f"workflow/templates/{name}.j2" for name in TEMPLATES),
-            "workflow/studies/choices.csv",
         )
         + WRITING,
     output:

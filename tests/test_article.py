@@ -77,8 +77,9 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers |= {article.percent(move, 1).removesuffix(" %") for move in moves.values}
     parameters = "".join(each.attrs["parameters"] for each in data.values())
     numbers |= set(re.findall(r"\d+\.\d+", parameters))
-    # The study of other choices is saved with the texts.
-    numbers |= set(re.findall(r"\d+\.\d+", article.CHOICES.read_text("utf-8")))
+    # The study of other choices has texts.
+    texts = [*data["choices"].instead.values, *data["choices"].changes.values]
+    numbers |= set(re.findall(r"\d+\.\d+", " ".join(texts)))
     # The reading of the printed damping is off by nothing.
     numbers |= {"0.00"}
     # What the claims require: half a printed unit, and the move of Table 1 that is called slight.

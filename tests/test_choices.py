@@ -1,29 +1,26 @@
-"""The study of the choices: how it judges, and what its result in the repository has.
+"""The study of the choices: how it judges, and what its result has."""
 
-`make choices` writes the result again, and git shows whether it has changed.
-"""
-
-import csv
 import importlib
+import json
 import sys
 
 import numpy as np
 import pytest
 from tests.reference import ROOT, reference
 
+from bouncing_ball import claims
 from bouncing_ball.claims import CLAIMS
 
 
 @pytest.fixture(scope="module")
 def study():
     """The study as a module; it imports the scripts of the stages."""
-    folders = [str(ROOT / "workflow" / name) for name in ("studies", "scripts")]
-    sys.path[:0] = folders
+    folder = str(ROOT / "workflow/scripts")
+    sys.path.insert(0, folder)
     try:
         yield importlib.import_module("choices")
     finally:
-        for folder in folders:
-            sys.path.remove(folder)
+        sys.path.remove(folder)
 
 
 def test_the_parameters_of_a_figure_change_no_verdict(study):
@@ -68,7 +65,42 @@ def test_another_exponent_of_the_largest_frequency_ratio_judges_the_same_printed
 
 
 def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):
-    rows = list(csv.DictReader(study.RESULT.read_text("utf-8").splitlines()))
-    assert not any("dip at 1.2" in row["changes"] for row in rows)
-    grazing = [row["choice"] for row in rows if "one impact per period" in row["changes"]]
+    result = reference()["choices"]
+    pairs = list(zip(result.choice.values, result.changes.values, strict=True))
+    assert not any("dip at 1.2" in changes for _, changes in pairs)
+    grazing = [choice for choice, changes in pairs if "one impact per period" in changes]
     assert grazing == ["axis of Fig. 3", "axis of Fig. 8"]
+    assert study.NOT_TRIED not in result.changes.values
+
+
+def with_parameters(data, **changed):
+    """A dataset as if it were computed with other parameters."""
+    given = json.loads(data.attrs["parameters"]) | changed
+    return data.assign_attrs(parameters=json.dumps(given))
+
+
+def test_a_choice_is_not_tried_if_its_claims_have_other_parameters(study, monkeypatch):
+    data = reference()
+    assert all(study.can_try(data, name) for name in study.ALONG_RATIO)
+    # Claims of Fig. 13 need Fig. 12, too.
+    other = data | {"fig12": with_parameters(data["fig12"], n=2)}
+    names = {name for name in ("fig12", "fig13", "fig10") if study.can_try(other, name)}
+    assert names == {"fig10"}
+    every = {name: with_parameters(each, release="force") for name, each in data.items()}
+    monkeypatch.setattr(study, "ALONG_AMPLITUDE", {"fig08": study.ALONG_AMPLITUDE["fig08"]})
+    found = study.changed_verdicts(every)
+    assert {*found.changes.values} == {study.NOT_TRIED}
+    assert {*found.instead.values} == {""}
+    assert "exponent of the largest ϖ" in found.choice.values
+
+
+def test_a_changed_limit_changes_the_result(study, monkeypatch):
+    """The dip of Fig. 6 counts if it need not be deeper than a line is wide."""
+    for name in ("ALONG_AMPLITUDE", "PERMANENT_CONTACT"):
+        monkeypatch.setattr(study, name, {})
+    for name in ("ratios_of_fig_12", "exponents"):
+        monkeypatch.setattr(study, name, lambda data: ())
+    monkeypatch.setattr(study, "ALONG_RATIO", {"fig06": study.ALONG_RATIO["fig06"]})
+    before = study.changed_verdicts(reference())
+    monkeypatch.setattr(claims, "LINE", 0.0)
+    assert (study.changed_verdicts(reference()).changes != before.changes).any()

@@ -130,18 +130,21 @@ def test_hypotheses_have_their_distances_and_counts():
 
 
 def test_the_choices_are_listed_with_the_verdicts_that_they_change():
-    text = (
-        "choice,instead,changes\n"
-        "axis,from 1,\n"
-        "axis,from 2,dip: reproduced → contradicted\n"
-        'exponent,3,"one: a → b; two: c → d"\n'
-        "ratios,5,\n"
-    )
-    assert tables.choices(text) == [
+    rows = [
+        ("axis", "from 1", ""),
+        ("axis", "from 2", "dip: reproduced → contradicted"),
+        ("exponent", "3", "one: a → b; two: c → d"),
+        ("ratios", "5", ""),
+        ("range", "", "not tried in this run"),
+    ]
+    columns = zip(("choice", "instead", "changes"), zip(*rows, strict=True), strict=True)
+    data = xr.Dataset({name: ("alternative", list(texts)) for name, texts in columns})
+    assert tables.choices(data) == [
         ["choice", "instead", "verdicts that depend on it"],
         ["axis", "from 1; from 2", "from 2: dip: reproduced → contradicted"],
         ["exponent", "3", "3: one: a → b; two: c → d"],
         ["ratios", "5", "none"],
+        ["range", "–", "not tried in this run"],
     ]
 
 

@@ -23,8 +23,8 @@ ENTRIES = {
 }
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
-TEXTS = {"claims", "article"}
-NO_NUMBER = {"variables.py", "provenance.py"}
+TEXTS = {"claims", "choices", "article"}
+NO_NUMBER = {"bouncing_ball/variables.py", "bouncing_ball/provenance.py"}
 """Modules that decide no number: they are in no list of code."""
 
 
@@ -97,6 +97,8 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
             "impacts: 1000",
             {"restitution_model", "fig02", "fig03", *TEXTS},
         ),
+        # Which limit a claim has decides which choices change its verdict.
+        ("src/bouncing_ball/claims.py", "LINE = 0.01", "LINE = 0.02", {*TABLES, *TEXTS}),
         (
             "config/config.yaml",
             "step: 0.2",
@@ -104,7 +106,6 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
             {"continuation", "fig08", "fig09", "fig15", "table1", *TEXTS},
         ),
         ("src/bouncing_ball/figures.py", "import", "import  ", FIGURES),
-        ("src/bouncing_ball/claims.py", "import", "import  ", {*TABLES, *TEXTS}),
         ("src/bouncing_ball/variables.py", "import", "import  ", set()),
         ("src/bouncing_ball/compare.py", "import", "import  ", set()),
         ("workflow/templates/paper.md.j2", "the", "a", {"article"}),
@@ -119,11 +120,18 @@ def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
 
 
 def modules_of(script: Path) -> set[str]:
-    """The modules of the package that a script imports, directly or by another module."""
-    found = ModuleFinder(path=[str(ROOT / "src")])
+    """The modules of the package and the scripts that a script imports, directly or by another
+    module, each with its folder.
+    """
+    found = ModuleFinder(path=[str(ROOT / "src"), str(ROOT / "workflow/scripts")])
     found.run_script(str(script))
     files = {Path(each.__file__) for each in found.modules.values() if each.__file__}
-    return {path.name for path in files if path.name != "__init__.py"}
+    return {in_folder(path) for path in files if path.name != "__init__.py"}
+
+
+def in_folder(path: Path) -> str:
+    """The name of a file with that of its folder: scripts and modules share some names."""
+    return f"{path.parent.name}/{path.name}"
 
 
 def test_rules_list_the_modules_that_their_scripts_import(stubs):
@@ -133,12 +141,12 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
     for block in printed.split("\nrule ")[1:]:
         rule = block.partition(":")[0]
         files = block.partition("output:")[0].split(", ")
-        inputs[scripts.get(rule, rule)] = {Path(file.strip()).name for file in files}
+        inputs[scripts.get(rule, rule)] = {in_folder(Path(file.strip())) for file in files}
     del inputs["all"]
     assert inputs.keys() == {*COMPUTED, "draw", "tables", *TEXTS}
     for name, files in inputs.items():
         script = ROOT / f"workflow/scripts/{name}.py"
-        assert script.name in files
+        assert in_folder(script) in files
         assert modules_of(script) - NO_NUMBER <= files, name
 
 

@@ -20,8 +20,6 @@ from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.drawing import share_text
 
 TEMPLATES = Path(__file__).parents[2] / "workflow" / "templates"
-CHOICES = TEMPLATES.parent / "studies" / "choices.csv"
-"""The verdicts that depend on what cannot be read, from workflow/studies/choices.py."""
 
 STIFF_CURVES = ("fig05", "fig06", "fig10")
 """The figures along ϖ on whose curves the errors of the restitution model are compared."""
@@ -70,7 +68,6 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
-        choices=tables.markdown(tables.choices(CHOICES.read_text("utf-8"))),
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
         **more,

@@ -143,23 +143,21 @@ def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:
     return parts
 
 
-TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses}
-"""The tables by name."""
-
-
-def choices(text: str) -> list[list[str]]:
-    """Our choices, the alternatives that were tried, and the verdicts that change.
-
-    `text` is the CSV of the study `workflow/studies/choices.py`.
-    """
-    rows = list(csv.DictReader(io.StringIO(text)))
+def choices(data: xr.Dataset) -> list[list[str]]:
+    """Our choices, the alternatives that were tried, and the verdicts that change."""
     found = [["choice", "instead", "verdicts that depend on it"]]
-    for choice in dict.fromkeys(row["choice"] for row in rows):
-        tried = [row for row in rows if row["choice"] == choice]
-        changes = [f"{row['instead']}: {row['changes']}" for row in tried if row["changes"]]
-        instead = "; ".join(row["instead"] for row in tried)
-        found.append([choice, instead, "<br>".join(changes) or "none"])
+    for choice in dict.fromkeys(data["choice"].values.tolist()):
+        tried = data.isel(alternative=data["choice"].values == choice)
+        pairs = list(zip(tried["instead"].values, tried["changes"].values, strict=True))
+        # A choice that was not tried has no alternative.
+        changes = [": ".join(filter(None, pair)) for pair in pairs if pair[1]]
+        instead = "; ".join(instead for instead, _ in pairs)
+        found.append([choice, instead or "–", "<br>".join(changes) or "none"])
     return found
+
+
+TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses, "choices": choices}
+"""The tables by name."""
 
 
 # Claims

@@ -250,6 +250,11 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         "found": Variable("the number found"),
         "deviation_units": Variable("deviation in units of the last printed digit", tolerance=1e-6),
     },
+    "choices": {
+        "choice": Variable("what cannot be read in the paper"),
+        "instead": Variable("what was chosen instead; empty if nothing was tried"),
+        "changes": Variable("verdicts that change"),
+    },
     "claims": {
         "claim": Variable("claim of the paper"),
         "verdict": Variable("verdict on the claim"),

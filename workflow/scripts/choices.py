@@ -2,14 +2,13 @@
 
 Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12, and the exponent
 of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
-with the other datasets of the reference. Datasets of other choices have fewer points than those of
-the figures. The study changes no figure, and is no stage of the workflow: `make choices` writes its
-result, choices.csv, which the supplement shows.
+with the other datasets of the run. Datasets of other choices have fewer points than those of the
+figures. A choice is not tried if these claims have datasets with other parameters than the paper's.
 """
 
-import csv
 import json
-from collections.abc import Callable, Iterator, Mapping, Set
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -24,12 +23,9 @@ import time_histories
 import xarray as xr
 
 from bouncing_ball import claims
-from bouncing_ball.datasets import Datasets, parameters, read, whole
-from bouncing_ball.paper import TABLE_1, printed_table
-from bouncing_ball.verdicts import answer
-
-ROOT = Path(__file__).parents[2]
-RESULT = Path(__file__).with_suffix(".csv")
+from bouncing_ball.datasets import Datasets, parameters, read, save
+from bouncing_ball.paper import TABLE_1, other_parameters, printed_table
+from bouncing_ball.verdicts import Claim, answer
 
 ALONG_RATIO = {
     "fig05": apparent_restitution.cases,
@@ -39,8 +35,14 @@ ALONG_RATIO = {
     "fig14": error_thresholds.fig14,
 }
 PERMANENT_CONTACT = {"fig11": permanent_contact.fig11, "fig16": permanent_contact.fig16}
-ALONG_AMPLITUDE = {"fig03": [1.5, 4], "fig08": [1.2, 3], "fig09": [1.2, 3], "fig15": [1.8, 3]}
-"""Other ends of the axes of Λ."""
+BRANCH_SETTINGS = ("release", "largest_step")
+ALONG_AMPLITUDE: Mapping[str, tuple[Callable, Sequence[str], Sequence[float]]] = {
+    "fig03": (restitution_model.fig03, (), [1.5, 4]),
+    "fig08": (continuation.branches, BRANCH_SETTINGS, [1.2, 3]),
+    "fig09": (continuation.branches, BRANCH_SETTINGS, [1.2, 3]),
+    "fig15": (continuation.fig15, BRANCH_SETTINGS, [1.8, 3]),
+}
+"""Functions of figures along Λ, their settings, and other ends of their axes."""
 EXPONENTS = (2, 3, 6)
 """Other exponents of the largest frequency ratio."""
 RATIOS_OF_FIG_12 = ([1.0, 2.0, 10.0, 100.0], [2.0, 10.0, 100.0, 1e3], [5.0, 10.0, 100.0, 1e4])
@@ -48,18 +50,35 @@ PER_DECADE = 20
 """Points of an axis of ϖ, of which 1, 10 and 100 are some."""
 POINTS = 201
 """Points of a branch."""
+NOT_TRIED = "not tried in this run"
+"""What is said instead of the changed verdicts if this run has other parameters."""
 
 
 class Choice(NamedTuple):
     """Another choice: what is chosen, what it is instead, and the datasets that it changes.
 
-    `table` is the printed Table 1 with other frequency ratios.
+    A choice that is not tried has none. `table` is the printed Table 1 with other frequency ratios.
     """
 
     item: str
     instead: str
     datasets: Datasets
     table: Mapping = TABLE_1
+
+
+def decided_by(names: Set[str], table: Mapping = TABLE_1) -> list[Claim]:
+    """The claims that some named datasets decide."""
+    decided = [claim for claim in claims.CLAIMS if names & claim.datasets.keys()]
+    return decided + claims.table1_ends(table) if "table1" in names else decided
+
+
+def can_try(datasets: Datasets, *names: str) -> bool:
+    """Whether the claims that some named datasets decide have the parameters that they need."""
+    return not any(
+        other_parameters(name, datasets[name], needed)
+        for claim in decided_by({*names})
+        for name, needed in claim.datasets.items()
+    )
 
 
 def verdicts(
@@ -69,10 +88,10 @@ def verdicts(
 
     If an axis does not reach what the claim is about, it is "beyond the axis".
     """
-    decided = [claim for claim in claims.CLAIMS if names & claim.datasets.keys()]
-    if "table1" in names:
-        decided += claims.table1_ends(table)
-    asked = [replace(claim, datasets={name: {} for name in claim.datasets}) for claim in decided]
+    asked = [
+        replace(claim, datasets={name: {} for name in claim.datasets})
+        for claim in decided_by(names, table)
+    ]
     found = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
     return [(name, verdict.replace("not computed", "beyond the axis")) for name, verdict in found]
 
@@ -109,39 +128,61 @@ def other_axes(
 
 
 def choices(data: Datasets) -> Iterator[Choice]:
-    """All other choices."""
-    printed = printed_table()
-    for name, compute in ALONG_RATIO.items():
-        for axis, other in other_axes(data[name], compute, [0.5, 2, 5], [100, 200, 1e4]):
-            yield Choice(axis_of(name), axis, {name: other})
-    for name, compute in PERMANENT_CONTACT.items():
-        for axis, other in other_axes(data[name], compute, [0.1, 1, 2], [10, 20, 1e3]):
-            yield Choice(axis_of(name), axis, {name: other})
-    branches = {name: (continuation.branches, "release", "largest_step") for name in data}
-    branches["fig15"] = (continuation.fig15, "release", "largest_step")
-    branches["fig03"] = (restitution_model.fig03,)
-    for name, ends in ALONG_AMPLITUDE.items():
-        compute, *settings = branches[name]
+    """All other choices. One that is not tried has no other datasets."""
+    axes = (
+        (ALONG_RATIO, [0.5, 2, 5], [100, 200, 1e4]),
+        (PERMANENT_CONTACT, [0.1, 1, 2], [10, 20, 1e3]),
+    )
+    for functions, left, right in axes:
+        for name, compute in functions.items():
+            if not can_try(data, name):
+                yield Choice(axis_of(name), "", {})
+                continue
+            for axis, other in other_axes(data[name], compute, left, right):
+                yield Choice(axis_of(name), axis, {name: other})
+    for name, (compute, settings, ends) in ALONG_AMPLITUDE.items():
+        if not can_try(data, name):
+            yield Choice(axis_of(name), "", {})
+            continue
         for end in ends:
             changes = {"amplitude_max": end, "points": POINTS}
             other = recomputed(data[name], compute, changes, *settings)
             yield Choice(axis_of(name), f"Λ from 0 to {end:g}", {name: other})
+    yield from ratios_of_fig_12(data)
+    yield from exponents(data)
+
+
+def ratios_of_fig_12(data: Datasets) -> Iterator[Choice]:
+    """Other frequency ratios of Fig. 12."""
+    item = "ratios of Fig. 12"
+    if not can_try(data, "fig12"):
+        yield Choice(item, "", {})
+        return
     for ratios in RATIOS_OF_FIG_12:
         changes = {"frequency_ratio": ratios}
         other = recomputed(data["fig12"], time_histories.fig12, changes, "release")
-        instead = ", ".join(f"{ratio:g}" for ratio in ratios)
-        yield Choice("ratios of Fig. 12", f"ϖ = {instead}", {"fig12": other})
-    # All exponents at once: the compliant contacts are the same.
+        yield Choice(item, "ϖ = " + ", ".join(f"{ratio:g}" for ratio in ratios), {"fig12": other})
+
+
+def exponents(data: Datasets) -> Iterator[Choice]:
+    """Other exponents of the largest frequency ratio, in Figs. 8 and 9 and Table 1.
+
+    All are computed at once, because the compliant contacts are the same.
+    """
+    item = "exponent of the largest ϖ"
+    if not can_try(data, "fig08", "fig09", "table1"):
+        yield Choice(item, "", {})
+        return
+    printed = printed_table()
     compliant = printed.frequency_ratio.values[1:].tolist()
     every = {"frequency_ratio": [*(10.0**exponent for exponent in EXPONENTS), *compliant]}
     wide = {
-        name: recomputed(data[name], compute, every | {"points": POINTS}, *settings)
-        for name, (compute, *settings) in branches.items()
-        if name in ("fig08", "fig09")
+        name: recomputed(
+            data[name], continuation.branches, every | {"points": POINTS}, *BRANCH_SETTINGS
+        )
+        for name in ("fig08", "fig09")
     }
-    given = {**parameters(data["table1"]), **every}
-    ends = continuation.table1(given, given["release"], given["largest_step"])
-    wide["table1"] = ends.assign_attrs(parameters=json.dumps(given))
+    wide["table1"] = recomputed(data["table1"], continuation.table1, every, "release")
     for exponent in EXPONENTS:
         ratios = [10.0**exponent, *compliant]
         other_table = printed.assign_coords(frequency_ratio=ratios)
@@ -151,14 +192,17 @@ def choices(data: Datasets) -> Iterator[Choice]:
             (10.0**exponent if ratio == max(TABLE_1)[0] else ratio, n): texts
             for (ratio, n), texts in TABLE_1.items()
         }
-        yield Choice("exponent of the largest ϖ", str(exponent), others, table)
+        yield Choice(item, str(exponent), others, table)
 
 
-def changed_verdicts(data: Datasets) -> list[dict[str, str]]:
+def changed_verdicts(data: Datasets) -> xr.Dataset:
     """Each other choice with the verdicts that it changes, as texts."""
     rows = []
     here: dict[frozenset[str], list[tuple[str, str]]] = {}
     for item, instead, datasets, table in choices(data):
+        if not datasets:
+            rows.append((item, instead, NOT_TRIED))
+            continue
         names = frozenset(datasets)
         if names not in here:
             here[names] = verdicts(data, names)
@@ -168,14 +212,13 @@ def changed_verdicts(data: Datasets) -> list[dict[str, str]]:
             for (name, before), (_, after) in zip(here[names], there, strict=True)
             if before != after
         ]
-        rows.append({"choice": item, "instead": instead, "changes": "; ".join(changes)})
-    return rows
+        rows.append((item, instead, "; ".join(changes)))
+    columns = zip(("choice", "instead", "changes"), zip(*rows, strict=True), strict=True)
+    return xr.Dataset({name: ("alternative", list(texts)) for name, texts in columns})
 
 
 if __name__ == "__main__":
-    reference = {path.stem: read(path) for path in (ROOT / "figures").glob("*.nc")}
-    found = changed_verdicts(reference)
-    with whole(RESULT) as unfinished, open(unfinished, "w", encoding="utf-8", newline="") as file:
-        writer = csv.DictWriter(file, found[0], lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(found)
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
+    title = "Verdicts that depend on what cannot be read in the paper"
+    save(found, snakemake.output.nc, title, {}, snakemake.input.code)

@@ -54,6 +54,7 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         given={key: parameters(data) for key, data in datasets.items()},
         judged=judged,
         claim={row["claim"]: row for row in judged},
+        of_paper=partial(of_paper, datasets),
         error_limit=paper.LIMIT,
         stiff=paper.STIFF,
         stiff_errors=stiff_errors(datasets),
@@ -158,6 +159,13 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
         elif np.isfinite(up_to):
             parts.append(f"n = {up_to.n.item()} up to r ≈ {fixed(up_to, 2)}")
     return listed(parts) if parts else "no n"
+
+
+def of_paper(datasets: Datasets, *names: str) -> bool:
+    """Whether datasets have the parameters of the paper, as sentences on its results need."""
+    return not any(
+        paper.other_parameters(name, datasets[name], paper.PARAMETERS[name]) for name in names
+    )
 
 
 def other_contacts(hypotheses: xr.Dataset) -> list[str]:

@@ -1023,7 +1023,6 @@ NOTHING = {
     "deviation_units": np.nan,
     "deviation": np.nan,
     "verdict": "",
-    "asked": True,
     "own_sense": "",
     "condition": [],
     "reason": "",

@@ -21,6 +21,7 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
     >>> list(mistakes({"relese": "force"}, schema))
     ['relese: unknown key, did you mean release?']
     """
+    yield from reversed_ranges(config)
     described = schema.get("$defs", {}).get("described", {}).get("properties", {})
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
@@ -35,6 +36,16 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield f"{where}: unknown key{meant(name, known)} ({error.schema['description']})"
         else:
             yield f"{where}: {error.message}{reason(error)}"
+
+
+def reversed_ranges(value: object, where: str = "") -> Iterator[str]:
+    """Yield a line for each range whose ends are equal or reversed."""
+    if isinstance(value, Mapping):
+        low, high = value.get("min"), value.get("max")
+        if isinstance(low, int | float) and isinstance(high, int | float) and low >= high:
+            yield f"{where}: min = {low:g} must be less than max = {high:g}"
+        for key, part in value.items():
+            yield from reversed_ranges(part, f"{where}.{key}".removeprefix("."))
 
 
 def meant(key: str, known: Collection[str]) -> str:

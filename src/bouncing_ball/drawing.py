@@ -253,13 +253,16 @@ def pieces(kinds: np.ndarray) -> list[slice]:
 def curve(
     axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
 ) -> None:
-    """Draw a line with dotted inadmissible parts. Only the first part has the label."""
+    """Draw a line with dotted inadmissible parts. The first admissible part has the label, or the
+    first of all if none is admissible.
+    """
     inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
-    for part in pieces(admissible.values):
+    parts = pieces(admissible.values)
+    named = next((part for part in parts if admissible.values[part.start]), parts[0])
+    for part in parts:
         chosen = look if admissible.values[part.start] else inadmissible
-        axes.plot(x.values[part], y.values[part], **chosen)
-        look.pop("label", None)
-        inadmissible.pop("label", None)
+        label_of_part = chosen.get("label") if part == named else None
+        axes.plot(x.values[part], y.values[part], **(chosen | {"label": label_of_part}))
 
 
 # Branches of orbits. A branch is a dataset with two dimensions:

@@ -40,10 +40,13 @@ class Error(NamedTuple):
     between
         ``between(ratio, below, curve)`` returns the errors at frequency ratios between those of the
         scan with the indices ``below`` and ``below + 1``, on the curves with these flat indices.
+    admissible
+        Whether a ball follows the orbits at the frequency ratios of the scan.
     """
 
     values: NDArray
     between: Callable[[NDArray, NDArray, NDArray], NDArray]
+    admissible: NDArray | bool = True
 
 
 class Threshold(NamedTuple):
@@ -54,9 +57,13 @@ class Threshold(NamedTuple):
     ratio
         Shape (...); NaN if it is not found.
     status
-        ``found``; ``within`` if the error is within the tolerance at every ratio of the scan;
-        ``outside`` if it exceeds the tolerance at the largest ratio, or if there is no orbit at the
-        ratio below the first that is enough.
+        One of
+
+        - ``found``;
+        - ``within``: the error is within the tolerance at every ratio of the scan;
+        - ``exceeded``: it exceeds the tolerance at the largest ratio;
+        - ``first orbit``: it is within the tolerance from the first ratio with an orbit on;
+        - ``no orbit``: there is no orbit at the largest ratio.
     """
 
     ratio: NDArray
@@ -101,7 +108,9 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
     last = ratios.size - 1 - np.argmax(outside[:, ::-1], axis=1)
     curves = np.arange(len(values))
     is_within = ~outside.any(axis=1)
-    is_crossed = ~is_within & (last < ratios.size - 1) & np.isfinite(values[curves, last])
+    is_last = last == ratios.size - 1
+    is_orbit = np.isfinite(values[curves, last])
+    is_crossed = ~is_within & ~is_last & is_orbit
     curve = curves[is_crossed]
     below = last[is_crossed]
     logarithms = np.log(ratios)
@@ -114,7 +123,8 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
             tolerances={"xatol": 1e-14, "xrtol": 0.0},
         )
         ratio[curve] = np.where(found.success, np.exp(found.x), np.nan)
-    status = np.where(is_within, "within", np.where(np.isnan(ratio), "outside", "found"))
+    cases = [is_within, ~is_orbit & is_last, ~is_orbit, np.isfinite(ratio)]
+    status = np.select(cases, ["within", "no orbit", "first orbit", "found"], "exceeded")
     shape = error.values.shape[:-1]
     # Of a single curve, the results are numbers.
     return Threshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
@@ -207,7 +217,7 @@ def _along(
 
     # The restitution model predicts an orbit that does not exist: count its error as infinite.
     values = error(family, orbits)
-    return Error(np.where(np.isnan(values), np.inf, values), between)
+    return Error(np.where(np.isnan(values), np.inf, values), between, family.clearance(orbits) > 0)
 
 
 def errors(

@@ -51,6 +51,7 @@ from bouncing_ball.drawing import (
     style,
     title,
 )
+from bouncing_ball.restitution import period_doubling, saddle_node
 
 CONTACT = COLOURS[1]
 """Colour of the spring-damper model where it is compared with the restitution model."""
@@ -678,7 +679,28 @@ FIGURES: Mapping[str, Callable[..., Figure]] = {**SCHEMATICS, **PLOTS}
 def draw(name: str, *data: xr.Dataset) -> Figure:
     """Draw a figure of the paper, fig01 to fig16, or the validity map from its dataset.
 
-    fig01 and fig04 need no dataset. The style is independent of the user's settings.
+    fig01 and fig04 need no dataset. The style is independent of the user's settings. Raises
+    ValueError if the dataset has no orbit.
     """
+    for each in data:
+        orbits = each.get("phase", each.get("ball"))
+        if orbits is not None and orbits.isnull().all():
+            raise ValueError(f"{name} would be empty: {without_orbit(each)}")
     with style():
         return FIGURES[name](*data)
+
+
+def without_orbit(data: xr.Dataset) -> str:
+    """Say of which parameters there is no orbit, and where stable ones lie on a stiff contact."""
+    given = parameters(data)
+    names = ("n", "restitution", "amplitude", "cases", "frequency_ratio", "amplitude_max")
+    asked = ", ".join(f"{name} = {given[name]}" for name in names if name in given)
+    n = np.atleast_1d(given["n"])[0]
+    cases = given.get("cases", [given])
+    r = cases[0]["restitution"]
+    low = float(saddle_node(n, r))
+    high = float(period_doubling(n, r))
+    return (
+        f"no stable orbit has {asked}; for n = {n} and restitution = {r:g} the orbits of a stiff "
+        f"contact are stable at amplitudes from {low:.4g} (Eq. 7) to {high:.4g} (Eq. R1)"
+    )

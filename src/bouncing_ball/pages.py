@@ -38,8 +38,6 @@ class Row:
         The computed number, or the conditions of the verdict.
     verdict
         One of `verdicts.VERDICTS`.
-    asked
-        Whether this run can judge the claim.
     literal
         Whether the literal sense holds, if the senses differ.
     reason, remark
@@ -50,7 +48,6 @@ class Row:
     where: str
     found: Sequence[str]
     verdict: str
-    asked: bool
     literal: str
     reason: str
     remark: str
@@ -101,7 +98,7 @@ def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **m
         markdown=tables.markdown,
         formula=convert,
         counts=tables.counts(claims),
-        unasked=int((~claims.asked).sum()),
+        unasked=int((claims.verdict == "not asked").sum()),
         exceptions=exceptions(datasets["validity_map"]),
         formulas=tables.chosen(tables.SECTIONS["restored formula"], formulas),
         figures=[part for part in found if "PNG" in part.files],
@@ -166,7 +163,6 @@ def row(claim: Mapping) -> Row:
         where=claim["item"],
         found=[number] if claim["distance"] else claim["senses"],
         verdict=claim["verdict"],
-        asked=claim["asked"],
         literal=claim["own_sense"],
         reason=claim["reason"],
         remark=claim["remark"],

@@ -11,11 +11,14 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from bouncing_ball.claims import table1_ends
 from bouncing_ball.datasets import parameters
 from bouncing_ball.measures import ROUNDING
-from bouncing_ball.paper import PARAMETERS, QUANTITIES, other_parameters
-from bouncing_ball.verdicts import VERDICTS, against_print
+from bouncing_ball.paper import QUANTITIES
+from bouncing_ball.verdicts import VERDICTS, answer
 
+NOT_FOLLOWED = ", which no ball follows"
+"""What is added to the number of an orbit that is not admissible."""
 MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
 
 
@@ -63,18 +66,18 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     paper does not print.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
-    not_asked = other_parameters("table1", data, PARAMETERS["table1"])
+    answers = {claim.name: answer(claim, {"table1": data}) for claim in table1_ends()}
     for end in each(data, "frequency_ratio", "n", "bound"):
         place = [number(end["frequency_ratio"], "g"), str(end["n"].item()), end["bound"].item()]
         printed = number(end["printed"], ".3f", "")
-        judged = ["", ""]
-        if printed and not_asked:
-            judged = ["", "not testable"]
-        elif printed:
-            verdict, units, share = against_print(float(end["computed"]), printed)
-            rounds = verdict == "reproduced"
-            judged = [f"rounds to {printed}" if rounds else distance_text(units, share), verdict]
-        rows.append([*place, number(end["computed"], ".5f"), printed, *judged])
+        judged = answers.get(f"Table 1: {', '.join(place)}", {})
+        distance = distance_text(judged.get("deviation_units", np.nan), judged.get("deviation", 0))
+        if judged.get("verdict") == "reproduced":
+            distance = f"rounds to {printed}"
+        computed = number(end["computed"], ".5f", "no such bifurcation")
+        if not end["admissible"] and np.isfinite(end["computed"]):
+            computed += NOT_FOLLOWED
+        rows.append([*place, computed, printed, distance, judged.get("verdict", "")])
     for end in each(data, "impact_map", "n", "bound"):
         place = [MAPS[end["impact_map"].item()], str(end["n"].item()), end["bound"].item()]
         rows.append([*place, number(end["restitution_range"], ".5f"), "", "", ""])
@@ -87,20 +90,31 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     A threshold outside of the range scanned is printed as "< lowest" or "> largest".
     """
     lowest, highest = data["frequency_ratio"].values[[0, -1]]
-    outside = {"within": f"< {lowest:g}", "outside": f"> {highest:g}"}
+    instead = {
+        "within": f"< {lowest:g}",
+        "exceeded": f"> {highest:g}",
+        "first orbit": "from where the orbit begins",
+        "no orbit": f"no orbit at {highest:g}",
+    }
     given = parameters(data)
     orbit = f"n = {given['n']}, r = {given['restitution']:g}, Λ = {given['amplitude']:g}"
     tolerances = [f"{100 * tolerance:g} %" for tolerance in data["tolerance"].values]
     rows = [[f"relative error of an orbit with {orbit}", *tolerances]]
     for line in each(data, "quantity"):
-        status = line["threshold_status"].values
+        status = line["threshold_status"].values.tolist()
         ratios = line["error_threshold"].values
         entries = [
-            outside.get(str(kind), number(ratio, ".5g"))
+            instead.get(kind, number(ratio, ".5g")) + NOT_FOLLOWED * (not is_followed(line, ratio))
             for kind, ratio in zip(status, ratios, strict=True)
         ]
         rows.append([QUANTITIES[line["quantity"].item()], *entries])
     return rows
+
+
+def is_followed(line: xr.Dataset, threshold: float) -> bool:
+    """Whether the orbits of the scan next to a threshold are admissible; true without one."""
+    after = int(np.searchsorted(line["frequency_ratio"].values, threshold))
+    return bool(line["admissible"].values[max(after - 1, 0) : after + 1].all())
 
 
 def hypotheses(data: xr.Dataset) -> list[list[str]]:

@@ -131,7 +131,7 @@ SYMBOLS = {
         "ϖ_1%",
         "Eqs. 37-38",
     ),
-    "threshold_status": Variable("whether the threshold lies within the range scanned"),
+    "threshold_status": Variable("whether the threshold is found, or why it is not"),
 }
 
 OF_DATASET: dict[str, dict[str, Variable]] = {
@@ -258,7 +258,6 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
     "claims": {
         "claim": Variable("claim of the paper"),
         "verdict": Variable("verdict on the claim"),
-        "asked": Variable("whether this run can judge the claim"),
         "own_sense": Variable("whether the literal reading holds"),
         "item": Variable("figure, table, equation or section of the paper"),
         "statement": Variable("what the claim says"),

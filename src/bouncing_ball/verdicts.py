@@ -1,6 +1,6 @@
 """How a claim of the paper is judged.
 
-A claim is a printed number or a statement. There are four verdicts:
+A claim is a printed number or a statement. There are four verdicts, and one word for none:
 
 reproduced
     The computed number rounds to the printed one. Or: the statement holds in every sense of its
@@ -11,8 +11,9 @@ not reproduced
     The computed number does not round to the printed one, even if it is within one unit of the last
     digit. Or: the statement holds in no sense.
 not testable
-    The text does not say what decides the claim. Or: this run has other parameters than the claim
-    needs, or lacks a dataset; only then `asked` is false.
+    The text does not say what decides the claim.
+not asked
+    This run has other parameters than the claim needs, or lacks a dataset.
 
 Each sense of a statement is a condition on the datasets, a `Reading`. The first is the literal one.
 """
@@ -28,7 +29,7 @@ from bouncing_ball.datasets import Datasets
 from bouncing_ball.measures import ROUNDING, complete
 from bouncing_ball.paper import LIMIT, other_parameters
 
-VERDICTS = ("reproduced", "partly", "not reproduced", "not testable")
+VERDICTS = ("reproduced", "partly", "not reproduced", "not testable", "not asked")
 
 
 # Printed numbers
@@ -177,26 +178,27 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
-    try:
-        decided = claim.decide(*(datasets[name] for name in claim.datasets))
-        if claim.printed:
-            return of_number(claim, decided)
-        return of_readings(claim, decided)
-    except (KeyError, ValueError, IndexError) as error:
-        return not_asked(f"{type(error).__name__}: {error}")
+    decided = claim.decide(*(datasets[name] for name in claim.datasets))
+    if claim.printed:
+        return of_number(claim, decided)
+    return of_readings(claim, decided)
 
 
 def not_asked(reason: str) -> dict:
     """The verdict on a claim that this run cannot judge."""
-    return {"verdict": "not testable", "asked": False, "reason": reason}
+    return {"verdict": "not asked", "reason": reason}
 
 
 def of_number(claim: Claim, computed: ArrayLike) -> dict:
     """The verdict on a printed number."""
     found = float(complete(computed))
     verdict, units, share = against_print(found, claim.printed)
-    numbers = {"found": found, "deviation_units": units, "deviation": share}
-    return {"verdict": verdict, "asked": True} | numbers
+    return {
+        "verdict": verdict,
+        "found": found,
+        "deviation_units": units,
+        "deviation": share,
+    }
 
 
 def of_readings(claim: Claim, readings: list[Reading]) -> dict:
@@ -207,7 +209,6 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     found = {
         "found": readings[0].found if readings else np.nan,
         "condition": listed(readings),
-        "asked": True,
     }
     right = [reading.holds for reading in readings]
     if claim.missing and (any(right) != all(right) or not readings):

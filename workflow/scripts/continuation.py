@@ -117,8 +117,8 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
 def table1(parameters: dict, release: str) -> xr.Dataset:
     """Ranges of Λ with stable orbits: computed, printed, and of both maps of the restitution model.
 
-    An end beyond the largest amplitude is NaN, and so is a printed end of a row that the paper does
-    not have.
+    A printed end of a row that the paper does not have is NaN. No ball follows an orbit that is not
+    admissible.
     """
     n = parameters["n"]
     r = parameters["restitution"]
@@ -127,8 +127,10 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
     bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
-    amplitude, phase, _, angle = np.where(ends[0] <= parameters["amplitude_max"], ends, np.nan)
+    amplitude, phase, _, angle = ends
     duration = angle / np.array(ratios)[:, np.newaxis]
+    family = Family(np.array(n)[:, np.newaxis], contact)
+    admissible = [family.clearance(ends[..., k]) > 0 for k in range(bounds.size)]
     fold = restitution.saddle_node(n, r)
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]
     shape = ("n", "frequency_ratio", "bound")
@@ -137,6 +139,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
             "computed": (shape, amplitude),
             "special_phase": (shape, phase),
             "special_contact_duration": (shape, duration),
+            "admissible": (shape, np.stack(admissible, axis=-1)),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 [np.stack([fold, each], axis=-1) for each in doublings],
@@ -158,9 +161,19 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
     """The ϖ at which the period doubling of each family is lowest, and its Λ there."""
     n = parameters["n"]
     ratios = grid(parameters["frequency_ratio"])
-    turns, amplitudes = lowest_period_doublings(n, parameters["restitution"], ratios, release)
+    r = parameters["restitution"]
+    turns, amplitudes = lowest_period_doublings(n, r, ratios, release)
+    admissible = []
+    for family, turn in zip(n, turns, strict=True):
+        contact = Contact(turn, damping_ratio(r), release)
+        orbit = bifurcations(family, "period doubling", contact)
+        admissible.append(bool(Family(family, contact).clearance(orbit) > 0))
     return xr.Dataset(
-        {"period_doubling_turn": ("n", turns), "period_doubling_amplitude": ("n", amplitudes)},
+        {
+            "period_doubling_turn": ("n", turns),
+            "period_doubling_amplitude": ("n", amplitudes),
+            "admissible": ("n", admissible),
+        },
         {"n": n},
     )
 

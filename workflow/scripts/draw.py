@@ -10,4 +10,8 @@ from bouncing_ball.figures import draw
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 shown = [read(path) for path in snakemake.input.data]
 png = snakemake.output.png
-save_picture(draw(Path(png).stem, *shown), png, snakemake.output.svg)
+try:
+    figure = draw(Path(png).stem, *shown)
+except ValueError as error:
+    sys.exit(f"configuration: {error}")
+save_picture(figure, png, snakemake.output.svg)

@@ -2,6 +2,7 @@
 
 import sys
 
+import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
@@ -55,6 +56,10 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
             "relative_error": (
                 ("quantity", "frequency_ratio"),
                 [each.values for each in known.values()],
+            ),
+            "admissible": (
+                ("quantity", "frequency_ratio"),
+                [np.broadcast_to(each.admissible, ratios.shape) for each in known.values()],
             ),
             "error_threshold": (shape, [[each.ratio for each in row] for row in found]),
             "threshold_status": (shape, [[each.status for each in row] for row in found]),

@@ -51,7 +51,6 @@ from bouncing_ball.drawing import (
     style,
     title,
 )
-from bouncing_ball.restitution import period_doubling, saddle_node
 
 CONTACT = COLOURS[1]
 """Colour of the spring-damper model where it is compared with the restitution model."""
@@ -692,6 +691,9 @@ def draw(name: str, *data: xr.Dataset) -> Figure:
 
 def without_orbit(data: xr.Dataset) -> str:
     """Say of which parameters there is no orbit, and where stable ones lie on a stiff contact."""
+    # Only this message needs it, and it imports SciPy.
+    from bouncing_ball.restitution import period_doubling, saddle_node
+
     given = parameters(data)
     names = ("n", "restitution", "amplitude", "cases", "frequency_ratio", "amplitude_max")
     asked = ", ".join(f"{name} = {given[name]}" for name in names if name in given)

@@ -17,12 +17,16 @@ STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios of at least `STIFF`."""
 
 
+class Missing(ValueError):
+    """A run does not have the numbers that decide a claim."""
+
+
 def complete(values: ArrayLike) -> NDArray:
-    """Return numbers as an array; raise ValueError if there are none, or if one is NaN."""
+    """Return numbers as an array; raise Missing if there are none, or if one is NaN."""
     numbers = np.asarray(values, dtype=float)
     missing = int(np.isnan(numbers).sum())
     if missing or not numbers.size:
-        raise ValueError(f"{missing} of {numbers.size} numbers are missing")
+        raise Missing(f"{missing} of {numbers.size} numbers are missing")
     return numbers
 
 
@@ -52,11 +56,11 @@ def last_special(branch: xr.Dataset, kind: str) -> float:
     """Return Λ at the last special point of a kind along a branch.
 
     The range of Table 1 lies at the end of a branch, on the stable side of its last saddle-node.
-    Raises ValueError if the branch has no such point.
+    Raises Missing if the branch has no such point.
     """
     found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
     if not found.size:
-        raise ValueError(f"the branch has no {kind}")
+        raise Missing(f"the branch has no {kind}")
     return float(found[-1])
 
 

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets import Datasets
-from bouncing_ball.measures import ROUNDING, complete
+from bouncing_ball.measures import ROUNDING, Missing, complete
 from bouncing_ball.paper import LIMIT, other_parameters
 
 VERDICTS = ("reproduced", "partly", "not reproduced", "not testable", "not asked")
@@ -178,10 +178,11 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
-    decided = claim.decide(*(datasets[name] for name in claim.datasets))
-    if claim.printed:
-        return of_number(claim, decided)
-    return of_readings(claim, decided)
+    try:
+        decided = claim.decide(*(datasets[name] for name in claim.datasets))
+        return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
+    except Missing as error:
+        return not_asked(str(error))
 
 
 def not_asked(reason: str) -> dict:

@@ -47,9 +47,11 @@ def test_a_threshold_outside_of_the_scan_has_a_status():
         return found.status
 
     assert status(0.1, 0.05, 0.02) == "within"
-    assert status(0.01, 0.05, 0.2) == "outside"
-    # Without an orbit there is no threshold to be located beside it.
-    assert status(np.inf, np.inf, 0.02) == "outside"
+    assert status(0.01, 0.05, 0.2) == "exceeded"
+    # Without an orbit there is no threshold to be located next to it.
+    assert status(np.inf, np.inf, 0.02) == "first orbit"
+    assert status(0.01, np.nan, 0.02) == "first orbit"
+    assert status(0.01, 0.05, np.inf) == "no orbit"
 
 
 def test_the_threshold_of_permanent_contact_is_that_of_equation_34():

@@ -160,13 +160,13 @@ def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
     other = data["fig14"].attrs["parameters"].replace('"n": 1', '"n": 2')
     changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
-    unasked = int((~changed["claims"].asked).sum())
+    unasked = int((changed["claims"].verdict == "not asked").sum())
     reason = "other parameters: fig14: n is 2, and the claim needs 1"
     page = Page(pages.filled_in("html", changed, ENTRIES))
     assert f"This run cannot judge it: {reason}" in page.texts
     assert f"This run cannot judge {unasked} of these claims" in page.texts
     listed = pages.filled_in("md", changed, ENTRIES)
-    assert f"*not testable*: this run cannot judge it, {reason} |" in listed
+    assert f"*not asked*: this run cannot judge it, {reason} |" in listed
     assert any("above 82; this run has other parameters." in text for text in page.texts)
     assert not any("his run" in text for text in read["index.html"].texts)
 

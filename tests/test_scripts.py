@@ -306,12 +306,21 @@ def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
     assert doublings == pytest.approx(np.hypot(x, highest).values)
 
 
-def test_an_end_of_table_1_beyond_the_largest_amplitude_is_missing():
-    given = registered("continuation", "table1", frequency_ratio=[10.0], amplitude_max=1.1)
-    data = stage("continuation").STAGE["table1"](given, "displacement")
-    missing = data.computed.isnull().isel(frequency_ratio=0)
-    # The period doublings of n = 2 and 3, at 1.13 and 1.27.
-    assert missing.values.tolist() == [[False, False], [False, True], [False, True]]
+def test_an_end_of_table_1_that_no_ball_follows_is_marked():
+    """At r = 0.1, n = 2, ϖ = 0.7 the orbit touches the table before its landing."""
+    given = registered("continuation", "table1", n=[2], restitution=0.1, frequency_ratio=[0.7])
+    data = stage("continuation").STAGE["table1"](given, "displacement").squeeze()
+    doubling = data.sel(bound="period doubling")
+    assert float(doubling.computed) == pytest.approx(7.62590, abs=1e-5)
+    assert not doubling.admissible
+    contact = 0.7, independent.restitution_to_damping(0.1), "displacement"
+    duration = float(doubling.special_contact_duration)
+    y = independent.orbit(2, *contact, duration)
+    gap, rate, _, speed, _ = independent.transfer(*contact[:2], duration) @ start_of(y)
+    phase = y[1] + duration
+    height = y[0] * np.sin(phase)
+    landing = independent.first_landing(y[0], phase, height + gap / 0.7, rate + speed)
+    assert landing < 4 * np.pi - duration - 1e-3
 
 
 # Permanent contact

@@ -28,6 +28,7 @@ def ends():
         {
             "computed": (("frequency_ratio", "n", "bound"), [[[0.25471, 1.0383]]]),
             "printed": (("frequency_ratio", "n", "bound"), [[[0.255, 1.032]]]),
+            "admissible": (("frequency_ratio", "n", "bound"), [[[True, True]]]),
             "restitution_range": (
                 ("impact_map", "n", "bound"),
                 [[[0.25472, 1.0383]], [[0.25472, 1.03193]]],
@@ -62,7 +63,12 @@ def test_an_end_within_a_unit_is_named_as_such(ends):
 
 def test_an_end_that_does_not_exist_has_no_number(ends):
     ends["computed"][0, 0, 1] = np.nan
-    assert tables.table1(ends)[2][3:] == ["–", "1.032", "", "not reproduced"]
+    assert tables.table1(ends)[2][3:] == ["no such bifurcation", "1.032", "", "not asked"]
+
+
+def test_an_end_that_no_ball_follows_is_marked(ends):
+    ends["admissible"][0, 0, 1] = False
+    assert tables.table1(ends)[2][3] == "1.03830, which no ball follows"
 
 
 def test_an_end_that_is_not_printed_has_no_verdict(ends):
@@ -81,14 +87,15 @@ def test_a_row_that_the_paper_does_not_print_has_numbers_alone_and_leaves_the_ot
 
 def test_table_1_under_other_parameters_is_not_judged(ends):
     ends.attrs["parameters"] = json.dumps(PARAMETERS | {"restitution": 0.7})
-    assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not testable", "not testable"]
+    assert [row[-1] for row in tables.table1(ends)[1:3]] == ["not asked", "not asked"]
 
 
 def test_a_threshold_outside_of_the_scan_is_a_bound():
     data = xr.Dataset(
         {
             "error_threshold": (("quantity", "tolerance"), [[np.nan, 82.1774, np.nan]]),
-            "threshold_status": (("quantity", "tolerance"), [["within", "found", "outside"]]),
+            "threshold_status": (("quantity", "tolerance"), [["within", "found", "exceeded"]]),
+            "admissible": (("quantity", "frequency_ratio"), [[True, True, True]]),
         },
         {
             "quantity": ["max_height"],
@@ -100,6 +107,15 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
     assert tables.thresholds(data) == [
         ["relative error of an orbit with n = 1, r = 0.65, Λ = 1", "10 %", "1 %", "0.5 %"],
         ["maximum height", "< 20", "82.177", "> 100"],
+    ]
+    data["threshold_status"] = data.threshold_status.copy(
+        data=[["first orbit", "found", "no orbit"]]
+    )
+    data["admissible"][0, 1] = False
+    assert tables.thresholds(data)[1][1:] == [
+        "from where the orbit begins",
+        "82.177, which no ball follows",
+        "no orbit at 100",
     ]
 
 

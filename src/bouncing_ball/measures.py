@@ -47,8 +47,13 @@ def crossing(curve: xr.DataArray, level: float) -> float:
 
 
 def from_the_stiffest(table1: xr.Dataset) -> xr.Dataset:
-    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ."""
+    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ.
+
+    Raises Missing if there is none.
+    """
     printed = table1.dropna("frequency_ratio", subset=["printed"])
+    if not printed.sizes["frequency_ratio"]:
+        raise Missing("the table has no printed row")
     return printed.sortby("frequency_ratio", ascending=False)
 
 

@@ -66,11 +66,12 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     paper does not print.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
-    answers = {claim.name: answer(claim, {"table1": data}) for claim in table1_ends()}
+    ends = {claim.name: claim for claim in table1_ends()}
     for end in each(data, "frequency_ratio", "n", "bound"):
         place = [number(end["frequency_ratio"], "g"), str(end["n"].item()), end["bound"].item()]
         printed = number(end["printed"], ".3f", "")
-        judged = answers.get(f"Table 1: {', '.join(place)}", {})
+        claim = ends.get(f"Table 1: {', '.join(place)}") if printed else None
+        judged = answer(claim, {"table1": data}) if claim else {}
         distance = distance_text(judged.get("deviation_units", np.nan), judged.get("deviation", 0))
         if judged.get("verdict") == "reproduced":
             distance = f"rounds to {printed}"

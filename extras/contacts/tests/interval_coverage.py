@@ -399,6 +399,37 @@ KINDS = [
         soft(0.6),
         partial(coefficients, v=np.linspace(1, 4, 8), error=5e-3, scatter=None, stated=True),
     ),
+    (
+        "20 pairs of intervals, 20 ms",
+        flat(0.8),
+        partial(flights, impacts=1, error=0.02, scatter=0, recordings=20),
+    ),
+    (
+        "30 pairs of intervals, 20 ms",
+        flat(0.8),
+        partial(flights, impacts=1, error=0.02, scatter=0, recordings=30),
+    ),
+    (
+        "30 pairs of intervals, 20 ms, resolution stated",
+        flat(0.8),
+        partial(flights, impacts=1, error=0.02, scatter=0, recordings=30),
+        0.02,
+    ),
+    (
+        "10 falls with two impacts each, 20 ms",
+        flat(0.8),
+        partial(flights, impacts=2, error=0.02, scatter=0, recordings=10),
+    ),
+    (
+        "20 pairs of intervals, 20 ms, scatter 0.02",
+        flat(0.8),
+        partial(flights, impacts=1, error=0.02, scatter=0.02, recordings=20),
+    ),
+    (
+        "20 pairs of speeds about 3 m/s to 0.1 m/s",
+        flat(0.8),
+        partial(speeds, v=np.linspace(2.9, 3.1, 20), error=0.1, scatter=0),
+    ),
 ]
 
 

@@ -8,7 +8,7 @@ import pytest
 from scipy.special import chdtrc
 
 from bouncing_ball_contacts import Refused, design, fit
-from bouncing_ball_contacts.intervals import curves_of, estimate, impacts_of
+from bouncing_ball_contacts.intervals import curves_of, deviations, estimate, impacts_of
 from bouncing_ball_contacts.recordings import Recording, rounding_of
 from bouncing_ball_contacts.tables import experiments
 
@@ -212,3 +212,39 @@ def test_what_a_table_lacks_is_explained(tmp_path):
     path.write_text("Heights of a ball, third run, indoors\n1000,640,410\n")
     with pytest.raises(Refused, match="a title or a comment begins with #"):
         fit(path)
+
+
+def test_errors_of_pooled_pairs_make_no_slope(typed):
+    """Twenty pairs of intervals with one r had v^-0.4, and intervals that held r in 90 %."""
+    rng = np.random.default_rng(8)
+    pooled = coverage.flights(rng, lambda v: 0.8, 1, 0.02, 0, recordings=20)
+    found = fit(pooled)
+    assert np.isnan(found.slope) and "differ by no more than their errors" in str(found)
+    # One chain with the same errors has speeds that differ by much more.
+    assert not np.isnan(fit(coverage.flights(rng, lambda v: 0.8, 5, 0.02, 0)).slope)
+    # Where no speed was measured, r is known as far as slopes are.
+    far = fit(pooled, speed=1.0)
+    assert np.ptp(far.interval) > 2 * np.ptp(found.interval)
+    for kind in (-6, -4, -1):
+        held, _, _ = coverage.study(coverage.KINDS[kind], 40, seed=4)
+        assert held >= 33
+
+
+def test_what_one_impact_or_one_height_cannot_say_is_not_said():
+    """They had v^+0.000, and deviations of 0.0000."""
+    one = str(fit({"height (m)": [1.0, 0.64]}))
+    assert "goes as" not in one and "deviate" not in one
+    same = str(fit({"drop height (m)": [1.0] * 4, "rebound height (m)": [0.64, 0.65, 0.63, 0.64]}))
+    assert "goes as" not in same and "deviate by 0.00" in same
+
+
+def test_columns_count_as_told_by_the_impacts_only_if_they_differ():
+    """Impacts of two speeds tell a slope, and impacts of one speed tell none."""
+    impacts = impacts_of(Recording("", "coefficients", (np.array([[1.0, 0.8], [2.0, 0.7]] * 3),)))
+    weights = np.ones((1, 6))
+    columns = np.stack([np.ones((1, 6)), np.log(impacts.speed)[None]], axis=-1)
+    left, q = deviations(weights, columns, impacts.log_r)
+    assert np.abs(left).max() < 1e-12 and np.sum(q**2) == pytest.approx(2)
+    # Of one speed the second column tells nothing.
+    columns = np.stack([np.ones((1, 6)), np.full((1, 6), 0.3)], axis=-1)
+    assert np.sum(deviations(weights, columns, impacts.log_r)[1] ** 2) == pytest.approx(1)

@@ -91,6 +91,37 @@ FILES = {
     "frames of a film": "# frame rate: 240 Hz\nframe\n" + column(np.round(240 * TIMES), "{:.0f}"),
     "a track by frames": "# frame rate: 60\nframe,y\n"
     + "\n".join(f"{60 * t:.0f},{position(t):.5f}" for t in FRAMES),
+    # What instruments write, with their headings.
+    "phyphox, acoustic stopwatch, multiple": "Start (s),Stop 1 (s),Stop 2 (s),Stop 3 (s)\n"
+    + ",".join(f"{t:.9E}" for t in TIMES[:4]),
+    "phyphox, acoustic stopwatch, all": '"Event time (s)","Interval (s)"\n'
+    + "\n".join(f"{t:.9E},{x:.9E}" for t, x in zip(TIMES, [*FLIGHTS, 0.0], strict=True)),
+    "phyphox, (in)elastic collision": ",".join(
+        [
+            "Bounce 0 (s),Height 0 (m)",
+            *(f"Bounce {i} (s),Height {i} (m),Energy {i}" for i in (1, 2, 3)),
+        ]
+    )
+    + f"\n{TIMES[0]},1.2,{TIMES[1]},.9,.67,{TIMES[2]},.6,.67,{TIMES[3]},.4,.67",
+    "Logger Pro, the latest run": "Latest: Time (s),Latest: Position (m),Latest: Velocity (m/s)\n"
+    + track("{:.4f},{:.5f},0"),
+    "Graphical Analysis, a data set": "Data Set 1:Time(s),Data Set 1:Position(m),"
+    "Data Set 1:Velocity(m/s),Data Set 1:Acceleration(m/s²)\n" + track("{:.4f},{:.5f},0,0"),
+    "Logger Pro, a run": "Run 1: Time (s),Run 1: Position (m),Run 1: Velocity (m/s),"
+    "Run 1: Acceleration (m/s^2)\n" + track("{:.6f},{:.6f},0,0"),
+    "Capstone": '"Time (s) Run #1";"Position (m) Run #1";"Velocity (m/s) Run #1"\n'
+    + track("{:.4f};{:.5f};0").replace(".", ","),
+    "Tracker, with velocities": "mass A\t\t\t\t\nt\tx\ty\tv_{y}\tstep\n"
+    + track("{:.6f}\t0.001\t{:.6f}\t0\t1"),
+    "Arduino, distance below a sensor": "millis,distance_cm\n"
+    + track("{:.1f},{:.3f}", slow=1000, shown=lambda y: 200 - 100 * y),
+    "Audacity, labels": "\n".join(f"{t:.6f}\t{t:.6f}\t{i}" for i, t in enumerate(TIMES)),
+    "computed columns": "Time (s),Δt (s),Height ratio\n"
+    + "\n".join(f"{t},{x},0.6724" for t, x in zip(TIMES[1:], FLIGHTS, strict=True)),
+    "films below each other": "t,y\n" + track() + "\n\n" + track(),
+    "films by a column": "run,t,y\n"
+    + "\n".join(f"{i},{line}" for i in (1, 2) for line in track().split("\n")),
+    "frames at 60 fps": "# frame rate: 60 fps\nframe\n" + column(60 * TIMES, "{:.3f}"),
     "a count with a gap": "n,interval (s)\n"
     + "\n".join(f"{i},{x}" for i, x in enumerate(FLIGHTS) if i != 3),
 }
@@ -158,7 +189,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
             "a,b\n1,2",
             "'a' is not known, 'b' is not known: name them drop height and rebound height",
         ),
-        ("millis,distance_cm\n10,20", "'millis' is not known, 'distance' is not known"),
+        ("millis,distance_cm\n10,20", "too few lines of a track, 1"),
         ("Fallhöhe (m),Sprung (m)\n2,1", "'Fallhöhe' is not known, 'Sprung' is not known"),
         ("valhoogte (cm),stuithoogte (cm)\n2,1", "'valhoogte' is not known"),
         ("落下高さ (cm),跳ね返り (cm)\n2,1", "'落下高さ' is not known"),
@@ -202,7 +233,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
             "t,y\n" + "\n".join(reversed(track().split("\n"))),
             "the time is not after the one before",
         ),
-        ("t,y\n0.1,0.5\n0.2,0.7\n0.3,0.6", "3 lines of a track are too few"),
+        ("t,y\n0.1,0.5\n0.2,0.7\n0.3,0.6", "too few lines of a track, 3"),
         ("t,y\n0,2\n" + "\n".join(f"{t + 9:.4f},{position(t):.5f}" for t in FRAMES), "a gap in"),
         ("time,KE\n" + track(), "evenly spaced times are those of samples"),
         ("speed,COR\n1,81", "is it in %"),
@@ -223,6 +254,13 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("interval (s),height (m)\n.9,.6\n.7,.4", "column 'height' looks like a measurement"),
         ("drop (cm),trial 1 (cm),rebound (cm)\n100,60,64", "column 'trial 1' looks like"),
         ("drop (cm),rebound (cm),time (s)\n100,60,.4", "column 'time' looks like a measurement"),
+        ("h (mm)\n1.500\n1.008", "'1.500' .* read as 1500 or as 1.5 mm"),
+        ("v_in (mm/s)\tv_out (mm/s)\n3,000\t2,400", "'3,000' .* read as 3000 or as 3 mm/s"),
+        (
+            "type,drop (m),rebound (m)\n1,1,.67\n1,2,1.35\n2,1,.3\n2,2,.6",
+            "'type' looks like groups: name it 'ball' for one result each, or 'remark'",
+        ),
+        ("height\n1000\n900\n800", "is it in cm or mm"),
         ("frame\n10\n200\n350", "frames are times with a line above .* # frame rate: 30"),
     ],
 )
@@ -417,3 +455,70 @@ def test_kilometres_per_hour_are_not_metres_per_second(tmp_path):
     for heading in ("v_in/km/h,v_out/km/h", "v_in_km/h,v_out_km/h", "v_in (km/h),v_out (km/h)"):
         path.write_text(heading + "\n3.6,2.88\n7.2,5.76")
         assert read(path)[""].chains[0] == pytest.approx(np.array([[1, 0.8], [2, 1.6]]))
+
+
+def test_films_are_read_as_one_recording_of_all_impacts(tmp_path):
+    """Of two films below each other the time was said not to be sorted."""
+    path = tmp_path / "films.csv"
+    for name in ("films below each other", "films by a column"):
+        path.write_text(FILES[name])
+        assert len(fit(path).impacts.speed) == 12
+    path.write_text("t,y\n" + track() + "\n" + track())
+    with pytest.raises(Refused, match="leave an empty line before another film"):
+        fit(path)
+
+
+def test_numbers_are_read_alike_by_command_line_and_column(typed, tmp_path):
+    """The line of a file was refused, whose numbers the command read."""
+    path = tmp_path / "heights.csv"
+    for text in ("h0 (m),h1 (m),h2 (m),h3 (m)\n1.7,.81,.70,.59", "height (m)\n1.7\n.81\n.70\n.59"):
+        path.write_text(text)
+        answer = fit(path).result.split(": ")[1]
+        for numbers in (
+            "1.7 0.81 0.70 0.59 m",
+            '"1.7 m" "0.81 m" "0.70 m" "0.59 m"',
+            "1.7m 0.81m 0.70m 0.59m",
+            "1.7,0.81,0.70,0.59 m",
+        ):
+            assert answer in typed(f"fit {numbers}")[1]
+
+
+def test_a_resolution_relaxes_what_it_makes_doubtful():
+    """A second interval of a stopwatch that was longer by an error of the hand was refused."""
+    tapped = {"recording": [1, 1, 2, 2, 3, 3], "interval (s)": [0.7, 0.6, 0.6, 0.65, 0.7, 0.55]}
+    with pytest.raises(Refused, match="follows one of"):
+        fit(tapped)
+    assert fit(tapped, resolution="60 ms").restitution < 1
+    pairs = {"drop (m)": [1.0, 1.0], "rebound (m)": [0.9, 1.2]}
+    with pytest.raises(Refused, match="exchanged"):
+        fit(pairs)
+    assert fit(pairs, resolution="10 cm").restitution <= 1
+
+
+def test_only_columns_with_computed_numbers_are_left_alone():
+    """An r beside times is computed of them, and one beside a drop height is half of a pair."""
+    times = {"time (s)": TIMES, "COR": [0.82] * len(TIMES)}
+    assert fit(times).restitution == pytest.approx(0.82, abs=1e-3)
+    with pytest.raises(Refused, match="no bounces"):
+        fit({"drop height (m)": [1.0], "COR": [0.8]})
+
+
+def test_more_impacts_than_a_fit_takes_are_refused():
+    """Of 20,000 the arrays crashed."""
+    many = np.full(1001, 1.0)
+    with pytest.raises(Refused, match="1001 impacts are more than 1000: fit parts of them"):
+        fit({"drop (m)": many, "rebound (m)": 0.64 * many})
+
+
+def test_five_balls_have_each_remark_once(typed, tmp_path):
+    """They were 479 words."""
+    path = tmp_path / "balls.csv"
+    rows = [
+        f"{n},{h},{h * r**2}"
+        for n, r in zip("abcde", (0.5, 0.6, 0.7, 0.8, 0.9), strict=True)
+        for h in (1, 2, 3)
+    ]
+    path.write_text("\n".join(["ball,drop (m),rebound (m)", *rows]))
+    out = typed(f"fit {path}")[1]
+    assert out.count("lowest point") == out.count("drag of the air") == 1
+    assert len(out.split()) < 250

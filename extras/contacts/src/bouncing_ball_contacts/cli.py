@@ -237,11 +237,11 @@ def fit_command(
     RECORDING is a file, - for what is piped, a published experiment, such as croquet, or numbers
     and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms.
     """
-    from bouncing_ball_contacts.fits import fit
+    from bouncing_ball_contacts.fits import fit, together
     from bouncing_ball_contacts.recordings import read, typed_readings
 
     source = typed_readings(recording) if len(recording) > 1 else recording[0]
-    balls = read("/dev/stdin" if source == "-" else source, leave_out, ball)
+    balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     contact = {
         "density": density,
@@ -255,7 +255,12 @@ def fit_command(
         for name in holding((value, name) for name, value in of_engine.items()):
             option = name.replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
-        _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain)
+        if len(fits) == 1 or as_json:
+            _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain)
+            return
+        each, shared = together(fits)
+        _print(each, as_json, explain)
+        click.echo("\n".join(["", *(f"! of all: {note}" for note in shared)]))
         return
     if len(fits) > 1:
         raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")

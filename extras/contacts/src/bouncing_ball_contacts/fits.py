@@ -1,6 +1,8 @@
 """The answer to a recording: r at a speed with its interval, and what else is known of it."""
 
+import itertools
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,6 +16,7 @@ from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
     Impacts,
+    are_told,
     curves_of,
     estimate,
     impacts_of,
@@ -52,7 +55,7 @@ class Fit:
     scatter
         Root mean square of the deviations of single impacts from the curve.
     slope
-        Exponent of the speed in r.
+        Exponent of the speed in r; NaN if the speeds differ by no more than their errors.
     contact_time
         In s; 0 if it is not known.
     mass, diameter
@@ -85,10 +88,19 @@ class Fit:
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
         count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
+        slope = self.slope
+        said = [
+            (
+                math.isnan(slope) and v.max() > v.min(),
+                "the speeds differ by no more than their errors",
+            ),
+            (not math.isnan(slope), f"r goes as v^{slope:+.3f}"),
+            (len(v) > 1, f"single impacts deviate by {self.scatter:.4f}"),
+        ]
+        more = "; ".join([f"from {self.recording.kind}", *filter(None, [", ".join(holding(said))])])
         return [
             self.result,
-            f"{count} at {span(v.min(), v.max(), form='g')} m/s, from {self.recording.kind}; r "
-            f"goes as v^{self.slope:+.3f}, single impacts deviate by {self.scatter:.4f}",
+            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}",
             *(f"! {note}" for note in self.notes[:most]),
         ]
 
@@ -118,6 +130,30 @@ class Fit:
             # √(k/m) times the contact time, which would be π without damping.
             body["contact_time"] = math.pi * self.contact_time / _phase(self.restitution)
         return Bounce(**body)
+
+
+_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+def together(fits: Mapping[str, Fit]) -> tuple[dict[str, Fit], list[str]]:
+    """Return fits without the notes that all of them have, and these notes once.
+
+    The numbers of such a note are the smallest and the largest of all fits.
+    """
+    by_words = [{_NUMBER.sub("0", note): note for note in each.notes} for each in fits.values()]
+    shared = [words for words in by_words[0] if all(words in each for each in by_words)]
+    notes = []
+    for words in shared:
+        columns = zip(*(_NUMBER.findall(each[words]) for each in by_words), strict=True)
+        ends = ((min(each, key=float), max(each, key=float)) for each in columns)
+        numbers = [low if low == high else f"{low}–{high}" for low, high in ends]
+        pairs = itertools.zip_longest(words.split("0"), numbers, fillvalue="")
+        notes.append("".join(itertools.chain(*pairs)))
+    left = {
+        name: replace(each, notes=tuple(note for words, note in own.items() if words not in shared))
+        for (name, each), own in zip(fits.items(), by_words, strict=True)
+    }
+    return left, notes
 
 
 def _phase(restitution: float) -> float:
@@ -203,7 +239,7 @@ def fit(
     if isinstance(source, Recording):
         recording = source
     else:
-        balls = read(source, leave_out, ball)
+        balls = read(source, leave_out, ball, resolution)
         if len(balls) > 1:
             raise Refused(f"the recording has {', '.join(balls)}: name one, --ball")
         recording = next(iter(balls.values()))
@@ -253,6 +289,7 @@ def fit(
     )
     curves = curves_of(impacts, known, at, rounding)
     found = estimate(curves)
+    has_slope = v.max() > v.min() and are_told(impacts, known)
     r = math.exp(found.value)
     wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
     if found.low > 0:
@@ -330,7 +367,7 @@ def fit(
         restitution=min(r, 1.0),
         interval=(low, high),
         scatter=curves.scatter,
-        slope=found.slope,
+        slope=found.slope if has_slope else math.nan,
         contact_time=lasts,
         mass=kilograms,
         diameter=metres,

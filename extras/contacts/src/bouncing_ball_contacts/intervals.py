@@ -61,6 +61,8 @@ _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
 _ARITHMETIC = 1e-12
+# Arrays have the square of this number, and a fit of so many impacts takes a few seconds.
+_MOST = 1000
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 
@@ -81,12 +83,15 @@ class Impacts:
         m/s, or r.
     usual
         Usual standard deviation of a reading.
+    shared
+        Covariance of ln r and ln v of each impact for readings with a variance of 1.
     """
 
     speed: Array
     log_r: Array
     readings: Array
     usual: float
+    shared: Array
 
     @property
     def restitution(self) -> Array:
@@ -94,16 +99,36 @@ class Impacts:
         return np.exp(self.log_r)
 
 
-def _derivatives(kind: str, values: Array) -> Array:
-    """Return the part of M of a chain: ln v after an impact minus ln v before it."""
+def _derivatives(kind: str, values: Array) -> tuple[Array, Array]:
+    """Return the part of M of a chain, ln v after an impact minus ln v before it, and `shared`."""
     power = np.array(KINDS[kind][2])
     n = len(values)
     if values.ndim == 2:
+        # A height of a drop and a speed of a coefficient are set, and not read.
+        is_read = kind in ("speeds", "track")
         # The readings of a pair are independent, and enter as one.
-        return np.diag(np.linalg.norm(power / values, axis=1))
+        each = np.linalg.norm(power / values, axis=1)
+        return np.diag(each), -is_read * (power[0] / values[:, 0]) ** 2
     # A flight is the difference of two readings.
     each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
-    return np.diff(power[0] * each / values[:, None], axis=0)
+    log_v = power[0] * each / values[:, None]
+    readings = np.diff(log_v, axis=0)
+    return readings, np.sum(readings * log_v[:-1], axis=1)
+
+
+def are_told(impacts: Impacts, known: float | Array | None) -> bool:
+    """Return whether the speeds differ by more than errors of the readings would make.
+
+    A reading enters r and the speed, so its error makes a slope of r over the speed where there is
+    none. The deviations of r are at most errors of readings. If their covariance with the speeds
+    then is a correlation with a square above 1/20, the slope would take more than this share
+    of the deviations, and the interval would be too narrow by more than 1/40.
+    """
+    x, y = (each - np.mean(each) for each in (np.log(impacts.speed), impacts.log_r))
+    size = np.sum(y**2) / max(float(np.sum(impacts.readings**2)), _ARITHMETIC)
+    variance = size if known is None else min(size, float(np.max(known)) ** 2)
+    covariance = variance * float(np.sum(impacts.shared))
+    return bool(20 * covariance**2 <= np.sum(x**2) * np.sum(y**2))
 
 
 def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
@@ -125,6 +150,10 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
             for values in chains
         ]
     )
+    if len(pairs) > _MOST:
+        raise Refused(
+            f"{recording.name}: {len(pairs)} impacts are more than {_MOST}: fit parts of them"
+        )
     if not len(pairs):
         raise Refused(
             f"{recording.name}: no impact lies between two flights: three times or two heights are "
@@ -138,8 +167,14 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if kind in ("flights", "heights", "drops"):
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
-    readings = linalg.block_diag(*(_derivatives(kind, values) for values in chains))
-    return Impacts(before, np.log(after / before), readings, KINDS[kind][1])
+    readings, shared = zip(*(_derivatives(kind, values) for values in chains), strict=True)
+    return Impacts(
+        before,
+        np.log(after / before),
+        linalg.block_diag(*readings),
+        KINDS[kind][1],
+        np.concatenate(shared),
+    )
 
 
 def misread(impacts: Impacts) -> Lines:
@@ -302,7 +337,12 @@ def curves_of(
     # middle of ln r is subtracted against rounding errors.
     middle = float(np.mean(impacts.log_r))
     y = (impacts.log_r - middle) @ basis
-    bends = np.expm1(np.outer(_EXPONENTS, np.log(impacts.speed / at))) / _EXPONENTS[:, None]
+    # Speeds that differ by errors only are taken as one: then only the prior of c says how r
+    # changes up to the speed that is asked.
+    x = np.log(impacts.speed / at)
+    has_slope = are_told(impacts, known)
+    x = x if has_slope else np.full(n, np.mean(x))
+    bends = np.expm1(np.outer(_EXPONENTS, x)) / _EXPONENTS[:, None]
     columns = basis.T @ np.stack([np.ones_like(bends), bends], axis=-1)
     weights = 1 / variances
     precision = (1 / sizes**2)[:, None]
@@ -331,8 +371,8 @@ def curves_of(
         value=middle + value,
         slope=slope,
         spread=np.sqrt((1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends),
-        # A curve has two parameters.
-        scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 2, 1)),
+        # A curve has two parameters, and a constant r has one.
+        scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 1 - has_slope, 1)),
     )
 
 

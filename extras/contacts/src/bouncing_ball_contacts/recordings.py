@@ -41,6 +41,7 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("track", ("time", "position")),
     ("track", ("time", "height")),
     ("times", ("time",)),
+    ("times", ("touch",)),
     ("flights", ("interval",)),
     ("flights", ("flight",)),
     ("heights", ("height",)),
@@ -54,12 +55,12 @@ _COMPUTED = {
     "drops": ("restitution", "average"),
     "speeds": ("restitution",),
     "track": ("restitution", "speed", ""),
-    "times": ("restitution", "interval"),
+    "times": ("restitution", "interval", "height"),
     "flights": ("restitution",),
     "heights": ("restitution",),
 }
 _READINGS = "height|rebound|bounce|drop|trial|speed|velocity|time"
-_ERRORS = "uncertainty|deviation|error|std"
+_ERRORS = "uncertainty|deviation|error|std|ratio|energy"
 _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
@@ -134,12 +135,6 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     runs: list[tuple[Array, Lines]] = []
     if len(columns) > 1:
         matrix = np.column_stack([table.values(each) for each in columns])
-        falls = matrix[:, 1:] / matrix[:, :-1]
-        table.refuse(
-            np.any(falls[:, 1:] > np.sqrt(falls[:, :-1]), axis=1),
-            "these heights do not fall on as those of successive bounces: repeated drops from one "
-            "height are named drop height, trial 1, trial 2",
-        )
         runs += zip(matrix, np.broadcast_to(table.lines[:, None], matrix.shape), strict=True)
     else:
         for part in table.parts("recording").values():
@@ -233,14 +228,27 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         head=table.head,
     )
     rounding = rounding_of(found) if found.chains else 0.0
+    # Rounding has the standard deviation of a resolution that is 1/√12 of it.
+    unit = "m" if kind == "heights" else "s"
+    if "resolution" in table.head:
+        resolution = positive("resolution", table.head["resolution"], unit)
+        rounding = max(rounding, math.sqrt(12) * resolution)
     # Errors of two readings may let a height grow by a last digit, and those of three times a
     # flight by two.
-    grows = 2 * rounding if kind == "times" else rounding
+    grows = rounding if kind == "heights" else 2 * rounding
     film = "; times of a film need a line # frame rate: 30" if kind == "times" else ""
     remedy = "delete this line" if kind == "times" else "add it to the next flight"
     what = "height of {} m" if kind == "heights" else "flight of {} s"
     for values, lines in runs:
-        if kind != "heights":
+        if kind == "heights":
+            falls = (values[1:] / values[:-1])[:2]
+            table.refuse(
+                np.array([len(falls) == 2 and falls[0] < 0.9 and abs(falls[1] - 1) < 0.03]),
+                "these heights do not fall on as those of successive bounces: repeated drops from "
+                "one height are named drop height, trial 1, trial 2",
+                lines=lines,
+            )
+        else:
             _refuse_durations(table, values, lines)
             _refuse_echoes(table, values, lines, grows, remedy)
         table.refuse(
@@ -267,20 +275,23 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
     is_there = ~np.isnan(numbers).any(axis=1)
     pairs = numbers[is_there, :2]
     if kind != "coefficients":
-        _refuse_growth(table, kind, pairs, np.tile(table.lines, len(others))[is_there])
+        unit = "m" if kind == "drops" else "m/s"
+        said = table.head.get("resolution")
+        grows = 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
+        _refuse_growth(table, kind, pairs, np.tile(table.lines, len(others))[is_there], grows)
     read_off = columns if kind == "speeds" else columns[1:]
     digit = min(each.digit for each in read_off)
     uncertainty = numbers[is_there, 2] if errors else None
     return Recording(table.name, kind, (pairs,), uncertainty, digit=digit)
 
 
-def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines) -> None:
+def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float = 0.0) -> None:
     """Refuse pairs of heights or speeds with an r above 1.05."""
     before, after = pairs.T
     unit = "m" if kind == "drops" else "m/s"
     most = 1.05**2 if kind == "drops" else 1.05
     said = f"it rebounds with {{}} {unit} from {{}} {unit}: is a number wrong, or are the columns "
-    table.refuse(after > most * before, f"{said}exchanged?", after, before, lines=lines)
+    table.refuse(after > most * before + grows, f"{said}exchanged?", after, before, lines=lines)
 
 
 # Samples to series.
@@ -326,33 +337,63 @@ def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, floa
     return impacts
 
 
-def _of_track(table: Table, columns: list[Column]) -> Recording:
-    """Return the tracks of impacts, scaled by gravity."""
-    is_there = np.all([~np.isnan(each.numbers) for each in columns], axis=0)
-    t = table.values(columns[0])[is_there]
-    t = t - t[:1]
-    y = columns[1].numbers[is_there]
-    lines = table.lines[is_there]
+def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Lines]]:
+    """Return the times, positions and lines of each film; an empty line or a name divides films."""
+    films = []
+    for part in table.parts("recording").values():
+        times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
+        both = np.column_stack([part.values(times), positions.numbers])
+        # A frame without a position is no end of a film.
+        is_end = np.isnan(both).all(axis=1)
+        for rows in np.split(np.arange(len(both)), np.flatnonzero(is_end)):
+            is_there = ~np.isnan(both[rows]).any(axis=1)
+            if is_there.any():
+                t, y = both[rows[is_there]].T
+                films.append((t - t[0], y, part.lines[rows[is_there]]))
+    return films
+
+
+def _even(table: Table, t: Array, lines: Lines, digit: float) -> Array:
+    """Return the times of a film; rounded times are those of even frames."""
     if len(t) <= 2 * _FEWEST:
         raise Refused(
-            f"{table.name}: {len(t)} lines of a track are too few; tops are one column, height"
+            f"{table.name}: too few lines of a track, {len(t)}; tops are one column, height"
         )
     steps = np.diff(t)
-    table.refuse(steps < 0, "the time is not after the one before: sort the lines", lines=lines[1:])
+    table.refuse(
+        steps < 0,
+        "the time is not after the one before: sort the lines, or leave an empty line before "
+        "another film",
+        lines=lines[1:],
+    )
     gap = steps > 20 * np.mean(steps)
-    table.refuse(gap, "a gap in the time: one recording of positions is read", lines=lines[1:])
-    # Times that are rounded are those of even frames.
+    table.refuse(gap, "a gap in the time: leave an empty line before another film", lines=lines[1:])
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
-    t = np.where(np.abs(t - even).max() <= columns[0].digit, even, t)
+    return np.where(np.abs(t - even).max() <= digit, even, t)
+
+
+def _of_track(table: Table, columns: list[Column]) -> Recording:
+    """Return the tracks of impacts of one film or several, scaled by gravity."""
+    films = [
+        (_even(table, t, lines, columns[0].digit), y, lines)
+        for t, y, lines in _films(table, columns)
+    ]
     # Upside down no flight is a parabola.
-    ways = [_impacts_of_track(t, up) for up in (y, -y)]
+    ways = [
+        {
+            int(lines[i]): impact
+            for t, y, lines in films
+            for i, impact in _impacts_of_track(t, way * y).items()
+        }
+        for way in (1, -1)
+    ]
     impacts = max(ways, key=len)
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
     tracks, *speeds, gravities = zip(*impacts.values(), strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    lines = lines[list(impacts)]
+    lines = np.array(list(impacts))
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
     long = "a flight of {} s is too long: is it in ms, or of slow motion?"
     table.refuse(lasts > 9, long, lasts, lines=lines)
@@ -401,7 +442,7 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         raise Refused(f"{table.name}: no bounces, as {there}: {film}{HEADINGS}")
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        counted = "height" if kind == "heights" else "trial"
+        counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
         is_counted = each.role == counted and re.search(r"\d$", each.name + other.name)
         if each.role == other.role and not is_counted:
             raise Refused(
@@ -420,6 +461,15 @@ def _is_reading(column: Column, kind: str) -> bool:
     is_of_bounce = any(column.unit in units_of(unit) for unit in ("s", "m", "m/s"))
     named = column.role or re.search(_READINGS, column.name.lower())
     return bool(is_of_bounce or (named and not column.is_count))
+
+
+def _is_group(column: Column, kind: str) -> bool:
+    """Return whether a column that is not known has numbers that each return, as groups have."""
+    _, counts = np.unique(column.numbers, return_counts=True)
+    is_derived = re.search(_ERRORS, column.name.lower())
+    return (
+        kind != "track" and not (column.role or is_derived) and len(counts) > 1 and all(counts > 1)
+    )
 
 
 def _contact_time(table: Table) -> float:
@@ -456,6 +506,11 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
                 f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
                 "delete it, or name it 'remark'"
             )
+        if _is_group(each, kind):
+            raise Refused(
+                f"{table.name}: column {each.name!r} looks like groups: name it 'ball' for one "
+                "result each, or 'remark' for one of all"
+            )
     unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
@@ -484,6 +539,7 @@ def read(
     source: str | Path | Mapping[str, Any],
     leave_out: Sequence[int] = (),
     ball: str | None = None,
+    resolution: Any = None,
 ) -> dict[str, Recording]:
     """Return the recordings of a file, an experiment or columns, by the names of their balls.
 
@@ -495,6 +551,9 @@ def read(
         Numbers of lines, from 1 on, that are left out with the impacts beside them.
     ball : str, optional
         The name of one, in a column ``ball``, in small letters or capital ones.
+    resolution : quantity, optional
+        The standard deviation of a reading, in place of that of the head. A number is refused only
+        if it is wrong by more than such errors.
 
     Returns
     -------
@@ -507,6 +566,8 @@ def read(
         If there are no bounces, or if a number or a column cannot be read.
     """
     table = table_of(source, leave_out)
+    if resolution is not None:
+        table = replace(table, head={**table.head, "resolution": str(resolution)})
     for each in table.columns:
         # A reading with its unit, such as 36 cm, begins with a digit, and is no name.
         texts = {cell for cell in each.cells if re.match(r"\D", cell)}
@@ -536,14 +597,20 @@ def typed_readings(words: Sequence[str]) -> dict[str, Any]:
     Refused
         If a word is not a number, or the unit is not a unit of length or time.
     """
-    *numbers, unit = words
+    # Commas divide numbers that have points.
+    text = " ".join(words)
+    text = re.sub(r",(?=\d*\.)", " ", text)
+    found = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
+    numbers = [each[1] for each in found if each and each[1]]
+    units = {each[2] for each in found if each and each[2]}
+    unit = units.pop() if len(units) == 1 and None not in found else ""
+    if unit not in units_of("s") + units_of("m"):
+        raise Refused(
+            f"recording: {' '.join(words)!r} are no heights or times with one unit: write "
+            "1.80 1.21 0.82 m, or give one file"
+        )
     values = [in_si("recording", number, "") for number in numbers]
     if unit in units_of("m"):
         return {f"height ({unit})": numbers}
-    if unit not in units_of("s"):
-        raise Refused(
-            f"recording: {unit!r} is no unit of heights or times: write 1.80 1.21 0.82 m, or give "
-            "one file"
-        )
     is_time = all(later > earlier for earlier, later in itertools.pairwise(values))
     return {f"{'time' if is_time else 'interval'} ({unit})": numbers}

@@ -19,13 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refuse
+from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refuse, units_of
 
 Lines = NDArray[np.intp]
 
 NAMES = {
     "time": "time, t, impact time, event time",
-    "interval": "interval, time between, dt, delta t",
+    "interval": "interval, time between, dt, delta t, Δt, difference",
+    "touch": "start, stop",
     "flight": "flight, flight time, time of flight, air time",
     "drop height": "drop height, drop, initial height, release height, start height, "
     "height before, height of drop",
@@ -40,12 +41,12 @@ NAMES = {
     "restitution": "restitution, restitution coefficient, coefficient of restitution, COR, e, r",
     "uncertainty": "uncertainty, standard deviation, std, error",
     "duration": "contact time, duration",
-    "position": "y, z, y position, position",
+    "position": "y, z, y position, position, distance",
     "frame": "frame, frames, frame number",
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
-    "remark": "remark, note, comment",
+    "remark": "remark, note, comment, label",
 }
 """What a column has, and the names that say so."""
 HEADINGS = (
@@ -74,11 +75,15 @@ _SPELLED = {
     "milliseconds": "ms",
 }
 """Units in words."""
+_CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
+# Programs write the name of a series before a heading or behind it.
+_SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
 _UNITS = {
     "interval": "s",
     "flight": "s",
     "duration": "s",
     "time": "s",
+    "touch": "s",
     "drop height": "m",
     "rebound height": "m",
     "trial": "m",
@@ -95,8 +100,8 @@ _UNITS = {
 _LARGEST = {
     # A time may be counted from 1970.
     "s": ("time", math.inf, math.inf, ""),
-    "m": ("height", 10.0, 100.0, "cm"),
-    "m/s": ("speed", 100.0, 100.0, "cm/s"),
+    "m": ("height", 10.0, 100.0, "cm or mm"),
+    "m/s": ("speed", 100.0, 100.0, "cm/s or mm/s"),
     # An error of its reading may let an r exceed 1.
     "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
@@ -139,6 +144,13 @@ class Column:
         """Whether the numbers are whole and increase by 0 or 1, as numbers of trials do."""
         steps = np.diff(self.numbers)
         return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
+
+    @property
+    def is_ambiguous(self) -> bool:
+        """Whether 1.500 may be 1500, because no instrument writes thousandths of the unit."""
+        cells = list(filter(None, self.cells))
+        is_thousands = all(re.fullmatch(r"[1-9]\d{0,2}[.,]\d{3}", cell) for cell in cells)
+        return self.unit in ("mm", "mm/s", "px") and bool(cells) and is_thousands
 
     @property
     def digit(self) -> float:
@@ -193,7 +205,7 @@ class Table:
         values = column.scale * (np.abs(column.numbers) if unit == "m/s" else column.numbers)
         said = f"a {what} of {{}} {unit}".strip() + f" below {column.name!r} is "
         small = "not positive, or too small: is the unit right?"
-        large = f"large: is it in {meant}? write ({meant}) behind the heading"
+        large = f"large: is it in {meant}? write the unit behind the heading"
         self.refuse((values < _SMALLEST) & (column.role != "time"), said + small, values)
         self.refuse(values > (most if column.unit else bare), said + large, values)
         return values
@@ -212,7 +224,13 @@ def _text_of(source: Any) -> tuple[str, str]:
     path = inside if str(source) in experiments() and not Path(source).exists() else Path(source)
     known = ", ".join(experiments())
     refuse(
-        [(not path.exists(), f"the file {source} does not exist, and the experiments are {known}")]
+        [
+            (
+                not path.exists(),
+                f"the file {source} does not exist, and the experiments are {known}",
+            ),
+            (path.is_dir(), f"{source} is a folder: give a file in it"),
+        ]
     )
     data = path.read_bytes()
     is_text = b"\0" not in data and not data.startswith(b"PK")
@@ -230,6 +248,8 @@ def _columns_as_text(columns: Mapping[str, Any]) -> str:
 def _heading(text: str) -> tuple[str, str, str]:
     """Return the name of a heading, its unit, and its role; an unknown role is empty."""
     plain = " ".join(re.sub("[’′]", "'", text.replace("_", " ")).split())
+    plain = re.sub(_SERIES, "", plain, flags=re.IGNORECASE)
+    plain = _CLOCKS.get(plain.lower(), plain)
     parts = re.fullmatch(r"(.+?) ?[(\[](.*)[)\]]", plain) or re.fullmatch(
         r"(.+?)(?: in |[ /]+)(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
     )
@@ -237,7 +257,9 @@ def _heading(text: str) -> tuple[str, str, str]:
     unit = _SPELLED.get(unit.lower(), unit)
     key = re.sub(r"[ .]", "", name.lower())
     # h0, h1, h2 are counted, and v0 is a name of its own.
-    return name, unit, _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
+    role = _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
+    # Bounce 1 (s) is the time of a touch, and Bounce the number of one.
+    return name, unit, "touch" if role == "count" and unit in units_of("s") else role
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:
@@ -271,6 +293,9 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
+    if re.match(r"(\d+\.\d+)\t\1(\t|$)", next(iter(lines.values()), "")):
+        # Labels of points in a sound track have the same begin and end, and no heading.
+        begin, table = 0, {0: "time (s)\tend\tlabel", **lines}
     if len(table) < 2:
         raise Refused(f"{name} has no line of numbers below a heading")
     sign = next((each for each in "\t;," if each in table[begin]), "\t")
@@ -324,6 +349,13 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
                 "stands in the heading, as in height (cm)"
             )
         column = Column(title, unit, role, cells, np.array(numbers, float))
+        if role and column.is_ambiguous:
+            cell = next(filter(None, cells))
+            raise Refused(
+                f"{name}: {cell!r} below {title!r} can be read as {re.sub('[.,]', '', cell)} or "
+                f"as {cell.replace(',', '.').rstrip('0').rstrip('.')} {unit}: write it without "
+                "this sign, or with fewer digits"
+            )
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)

@@ -37,7 +37,7 @@ _UNITS = {
     "m/s^2": {"m/s^2": 1.0, "m/s²": 1.0, "m/s2": 1.0, "cm/s^2": 1e-2, "ft/s^2": 0.3048},
     "kg/m^3": {"kg/m^3": 1.0, "kg/m³": 1.0, "kg/m3": 1.0}
     | {"g/cm^3": 1e3, "g/cm³": 1e3, "g/cm3": 1e3},
-    "Hz": {"Hz": 1.0, "kHz": 1e3},
+    "Hz": {"Hz": 1.0, "kHz": 1e3, "fps": 1.0, "FPS": 1.0},
     "N/m": {"N/m": 1.0, "mN/m": 1e-3, "kN/m": 1e3, "MN/m": 1e6, "GN/m": 1e9}
     | {"N/mm": 1e3, "kN/mm": 1e6},
     "N s/m": {"N s/m": 1.0, "Ns/m": 1.0, "kN s/m": 1e3},
@@ -158,7 +158,7 @@ def step_in_si(value: Any) -> float:
     Refused
         If it cannot be read, or is too long for any simulation of a contact.
     """
-    if isinstance(value, str) and value.strip().lower().endswith("hz"):
+    if isinstance(value, str) and value.strip().lower().endswith(("hz", "fps")):
         step = 1 / positive("rate of the steps", value, "Hz")
     else:
         step = positive("time step", value, "s")

@@ -685,6 +685,13 @@ class TestJumps:
         if force is not on_the_way_out:
             assert f"jumps by {size:.3g} near" in str(error.value)
 
+    def test_a_jump_of_the_size_of_an_error_is_a_kink(self):
+        """It changes the force by half a millionth, and the multipliers by as much."""
+        kinks = (lambda p, v, k, drop: p - 0.05,)
+        ForceLaw(dropped, {"k": 400.0, "drop": 1e-5}, kinks=kinks)
+        with pytest.raises(ValueError, match=r"has a kink near p = 0\.05"):
+            ForceLaw(dropped, {"k": 400.0, "drop": 1e-5})
+
     def test_a_smooth_step_in_its_place_conserves_the_product_of_the_multipliers(self):
         """An elastic ball with a force that drops by 10 within a small range of depth."""
 
@@ -856,6 +863,12 @@ REFUSED = {
     ),
     "list": (lambda p, v, k: [k * x for x in p], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
     "first entry": (lambda p, v, k: k * p[0], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
+    "pole that nothing feels": (
+        lambda p, v, k, h, d: k * p + h * (p / (d - p)) ** 2,
+        {"k": 20.0, "h": 1e-3, "d": 0.3},
+        {},
+        r"tends to infinity near p = 0\.3, v = .* in too small a range of p",
+    ),
     "one kink": (lambda p, v, k: k * p, {"k": 1.0}, {"kinks": np.sign}, r"kinks=\(kink,\), not"),
     "a maximum besides the release": (
         lambda p, v, k, c: np.maximum(0, k * p + c * v),

@@ -23,6 +23,7 @@ from bouncing_ball.measures import (
     departure,
     error_of_eq_8,
     from_the_stiffest,
+    labelled,
     last_special,
     residual,
     restitution_at_rest,
@@ -470,7 +471,7 @@ def dip_at_12(fig06):
     "the amplitude",
 )
 def compliant_end(fig06):
-    return fig06["apparent_restitution"].isel(case=-1).sel(frequency_ratio=1.0)
+    return labelled(fig06["apparent_restitution"].isel(case=-1), frequency_ratio=1.0)
 
 
 @claim(
@@ -950,7 +951,7 @@ def table1_ends(
                     "Table 1",
                     f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
                     {"table1": PARAMETERS["table1"]},
-                    lambda table1, where=where: table1["computed"].sel(where),
+                    lambda table1, where=where: labelled(table1["computed"], **where),
                     printed=text,
                     remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
                     beside="table1",

@@ -30,6 +30,14 @@ def complete(values: ArrayLike) -> NDArray:
     return numbers
 
 
+def labelled(values: xr.DataArray, **labels: float | str) -> xr.DataArray:
+    """Select a number by the labels of its coordinates; raise Missing if there is none."""
+    for name, label in labels.items():
+        if label not in values[name].values:
+            raise Missing(f"there is no {name} = {label}")
+    return values.sel(labels)
+
+
 def steps(data: xr.DataArray) -> NDArray:
     """Return the changes from each contact to the next stiffer one."""
     return data.sortby("frequency_ratio").diff("frequency_ratio").values

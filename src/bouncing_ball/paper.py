@@ -95,7 +95,20 @@ PARAMETERS = {
     },
     "table1": on_contacts(n=[1, 2, 3], restitution=0.85, frequency_ratio={*ROWS_OF_TABLE_1}),
     "thresholds": on_contacts(
-        n=1, restitution=0.65, amplitude=1.0, frequency_ratio={"min": 1.0, "max": 1e4}
+        n=1,
+        restitution=0.65,
+        amplitude=1.0,
+        quantities={
+            "max_height",
+            "bounce_velocity",
+            "phase",
+            "apparent_restitution",
+            "saddle_node",
+            "period_doubling",
+            "permanent_contact",
+        },
+        tolerances={LIMIT},
+        frequency_ratio={"min": 1.0, "max": 1e4},
     ),
     "lowest_doubling": on_contacts(n=[1, 2, 3], restitution=0.85),
     "validity_map": on_contacts(

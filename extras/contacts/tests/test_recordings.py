@@ -503,6 +503,19 @@ def test_only_columns_with_computed_numbers_are_left_alone():
         fit({"drop height (m)": [1.0], "COR": [0.8]})
 
 
+def test_heights_in_pixels_have_an_r_and_no_speed():
+    """They were refused, though their ratio was all that was asked."""
+    metres = {"drop (m)": [1.0, 0.8, 0.6], "rebound (m)": [0.64, 0.52, 0.39]}
+    pixels = {"drop (px)": [800.0, 640.0, 480.0], "rebound (px)": [512.0, 416.0, 312.0]}
+    found = fit(pixels)
+    # Pixels are rounded to another digit, which weighs the heights otherwise.
+    assert found.restitution == pytest.approx(fit(metres).restitution, abs=1e-3)
+    assert "m/s" not in str(found) and "drag" not in str(found)
+    for asked in (lambda: fit(pixels, speed=2), lambda: fit(pixels, mass=1), found.bounce):
+        with pytest.raises(Refused, match="heights in px have no speed"):
+            asked()
+
+
 def test_more_impacts_than_a_fit_takes_are_refused():
     """Of 20,000 the arrays crashed."""
     many = np.full(1001, 1.0)

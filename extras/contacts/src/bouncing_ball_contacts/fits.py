@@ -34,6 +34,7 @@ from bouncing_ball_contacts.units import (
     span,
 )
 
+_NO_SCALE = "heights in px have no speed: give them in cm for a speed, the drag or an engine"
 _WITH_DRAG = ("flights", "heights", "drops", "track")
 # Mass in kg and diameter in m of the balls that the drag changes little and much.
 _GOLF_BALL = (0.0459, 0.0427)
@@ -83,7 +84,8 @@ class Fit:
         ends = span(*self.interval, 4)
         # r has the digits of its interval, in which it would not lie with fewer.
         r = f"{self.restitution:.{len(ends.split()[0]) - 2}f}"
-        return f"{title}: r = {r} ({ends}) at {self.speed:.3g} m/s"
+        at = f" at {self.speed:.3g} m/s" if self.recording.has_scale else ""
+        return f"{title}: r = {r} ({ends}){at}"
 
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
@@ -100,7 +102,9 @@ class Fit:
         more = "; ".join([f"from {self.recording.kind}", *filter(None, [", ".join(holding(said))])])
         return [
             self.result,
-            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}",
+            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}"
+            if self.recording.has_scale
+            else f"{count} at unknown speeds, {more}",
             *(f"! {note}" for note in self.notes[:most]),
         ]
 
@@ -122,6 +126,8 @@ class Fit:
 
         The contact time of a bounce is the one of a linear contact without damping.
         """
+        if not self.recording.has_scale:
+            raise Refused(_NO_SCALE)
         body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
             body["radius"] = self.diameter / 2
@@ -248,6 +254,8 @@ def fit(
         said = recording.head.get(name) if value is None else value
         return None if said is None else positive(name, said, unit)
 
+    if not recording.has_scale and any((speed, resolution, mass, diameter, read_at)):
+        raise Refused(_NO_SCALE)
     unit = KINDS[recording.kind][0]
     known = given("resolution", resolution, unit) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
@@ -317,8 +325,8 @@ def fit(
             f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
             f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"
         )
-    does_drag = recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
-    is_height = recording.kind in ("drops", "heights") and read_at is None
+    does_drag = recording.has_scale and recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
+    is_height = recording.kind in ("drops", "heights") and read_at is None and recording.has_scale
     size = metres or 0.04
     # r = √(h′/h), and h′ = r² v²/2g.
     by_size = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * v**2)))

@@ -61,7 +61,7 @@ _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
 _ARITHMETIC = 1e-12
-# Arrays have the square of this number, and a fit of so many impacts takes a few seconds.
+# Arrays have the square of this number, and a fit of so many impacts takes about 10 s.
 _MOST = 1000
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])

@@ -95,6 +95,8 @@ class Recording:
     digit : float
         Last digit of the readings in SI units, or 0. Heights of drops and speeds of coefficients
         are set, and not read.
+    has_scale : bool
+        Whether lengths are known; of heights in px only the ratios are.
     head : dict
         Quantities in the head of the file.
     notes : tuple of str
@@ -109,6 +111,7 @@ class Recording:
     is_free: bool = False
     are_times: bool = False
     digit: float = 0.0
+    has_scale: bool = True
     head: dict[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
@@ -443,7 +446,9 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
         counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
-        is_counted = each.role == counted and re.search(r"\d$", each.name + other.name)
+        is_counted = each.role == counted and (
+            counted == "touch" or re.search(r"\d$", each.name + other.name)
+        )
         if each.role == other.role and not is_counted:
             raise Refused(
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
@@ -531,6 +536,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
         head=table.head,
         contact_time=_contact_time(table),
         is_free=columns[0].role == "flight",
+        has_scale=kind == "track" or all(each.unit != "px" for each in columns),
         notes=tuple(holding(notes)),
     )
 

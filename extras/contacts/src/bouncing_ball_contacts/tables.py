@@ -126,6 +126,8 @@ class Column:
         What the column contains, a key of :data:`NAMES`; empty if the name is not known.
     cells, numbers
         Texts of the cells, and numbers in the unit of the column; NaN for an empty cell.
+    pixel
+        Size of a pixel in m if heights are in px: the largest height is 1 m.
     """
 
     name: str
@@ -133,10 +135,13 @@ class Column:
     role: str
     cells: list[str]
     numbers: Array
+    pixel: float = math.nan
 
     @property
     def scale(self) -> float:
         """Unit of the column in SI units."""
+        if self.unit == "px" and self.pixel > 0:
+            return self.pixel
         return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
 
     @property
@@ -359,6 +364,10 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)
+    pixels = [each for each in columns if each.unit == "px" and _UNITS.get(each.role) == "m"]
+    largest = max((np.nanmax(each.numbers, initial=0.0) for each in pixels), default=0.0)
+    if largest > 0:
+        columns = [replace(each, pixel=1 / largest) if each in pixels else each for each in columns]
     return Table(name, head, _with_times(head, columns), np.array(lines))
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball_contacts import Refused, fit
-from bouncing_ball_contacts.recordings import read
+from bouncing_ball_contacts.recordings import _flights_of_track, read
 from bouncing_ball_contacts.tables import experiments
 
 FLIGHTS = 0.9 * 0.82 ** np.arange(6)
@@ -535,3 +535,27 @@ def test_five_balls_have_each_remark_once(typed, tmp_path):
     out = typed(f"fit {path}")[1]
     assert out.count("lowest point") == out.count("drag of the air") == 1
     assert len(out.split()) < 250
+
+
+def test_bottoms_of_a_track_stand_out_of_noise_and_of_a_fiftieth_of_its_height():
+    """A bottom is an impact, and no error of a position and no stir of a ball at rest."""
+    t = np.arange(0, TIMES[-2] + 0.1, 1 / 240)
+    up = np.array([position(each) for each in t])
+    impacts = np.searchsorted(t, TIMES[:-1])
+    noisy = up + 0.012 * np.random.default_rng(2).normal(size=len(t))
+    # Half of the positions are exact, so that the noise of the third differences is 0.
+    stirring = np.concatenate([up, np.zeros(len(t)), 0.01 * np.ptp(up) * (np.arange(90) % 9 == 4)])
+    for positions, end in ((up, len(t)), (noisy, len(t)), (stirring, len(t))):
+        _, bottoms = _flights_of_track(positions)
+        found = [each for each in bottoms if each < end - 2]
+        assert len(found) == len(impacts) and np.abs(np.array(found) - impacts).max() <= 4
+        assert len(bottoms) <= len(found) + 1
+
+
+def test_times_of_one_film_may_lack_positions(tmp_path):
+    """A frame without a position ends no film, and an empty line does."""
+    path = tmp_path / "track.csv"
+    lines = track().split("\n")
+    lines[20] = lines[20].split(",")[0] + ","
+    path.write_text("t,y\n" + "\n".join(lines))
+    assert len(fit(path).impacts.speed) == 6

@@ -179,7 +179,7 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     limit = article.percent(given["tolerance"])
     families = [f"n = {n}" for n in validity_map.n.values]
     heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
-    rows = [[*heads, f"share of these Λ: {families[0]}", *families[1:]]]
+    rows = [[*heads, f"share: {families[0]}", *families[1:]]]
     for quantity in validity_map["quantity"].values:
         error = validity_map.stiff_error.sel(quantity=quantity).max()
         of = " of a period" if quantity == "phase_in_periods" else ""

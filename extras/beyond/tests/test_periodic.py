@@ -359,3 +359,13 @@ def test_rows_without_orbits_are_searched_together():
     assert any(missing) and not all(missing)
     rigid = orbit(Rigid([0.1, 0.5, 0.3]), amplitude=1.2)
     assert [isinstance(each, OrbitNotFound) for each in rigid] == [True, False, True]
+
+
+def test_a_contact_ends_where_its_root_time_repeats_it():
+    """With m = 2, q oscillates about zero, and time runs backwards where q is negative."""
+    law = hunt_crossley(400.0, 0.1)
+    end = float(law.first_release(0.3, 2.0, 1.0))
+    share = np.array([0.5, 1.0, 1.5, 10.0, 20.0])
+    times = law.contact(0.3, 2.0, share * end, 1.0).duration
+    assert times[0] == pytest.approx(times[2], abs=1e-7) and times[1] > times[0]
+    assert np.isnan(times[3:]).all()

@@ -92,3 +92,14 @@ def test_where_there_is_no_rest_it_is_said():
         bb.orbit_with_rest(bb.Rigid(0.95), amplitude=2.0)
     with pytest.raises(ValueError, match="must have impacts at the level"):
         bb.orbit_with_rest(bb.SpringDamper(20.0, 0.3), amplitude=1.9)
+
+
+def test_the_end_of_a_rest_on_a_table_that_is_not_a_sine():
+    """On both sides of the end, simulated balls come to rest and do not come to rest."""
+    table = Table([(1, 1.0, 0.0), (2, 0.3, 1.0)])
+    start = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.1, table=table)
+    end = bb.follow(start, to=1.6).first("end of a rest").amplitude
+    assert end == pytest.approx(1.538304135, abs=1e-9)
+    assert bb.orbit_with_rest(bb.Rigid(0.3), amplitude=end - 1e-6, table=table).rest > 0
+    with pytest.raises(OrbitNotFound):
+        bb.orbit_with_rest(bb.Rigid(0.3), amplitude=end + 1e-6, table=table)

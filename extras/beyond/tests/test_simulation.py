@@ -598,3 +598,36 @@ def test_a_ball_of_a_law_that_is_laid_on_the_table_is_followed_in_time():
     known = {"t_eval": times, "rtol": 1e-11, "atol": 1e-13}
     solution = solve_ivp(motion, (0, times[-1]), [0.0, -1e-12], "Radau", **known)
     np.testing.assert_allclose(found.ball - found.table, solution.y[0], atol=1e-9)
+
+
+@pytest.mark.parametrize("table", [bb.tables.SINE, bb.Table([(1, 1.5, 0.0)])], ids=["loop", "rows"])
+def test_landings_just_before_a_lift_off_take_few_steps(monkeypatch, table):
+    """δ = vt - gt²/2 - w‴t³/6 for short flights; the gravity g on the table nearly vanishes.
+
+    Rounding errors of t, relative to vt, limit the digits.
+    """
+    speed = 1e-12
+    steps = []
+
+    def counted(t, f, slope, second, bend, jerk):
+        steps.append(t)
+        assert len(steps) < 100
+        return whole(t, f, slope, second, bend, jerk)
+
+    gravity = 1e-7
+    scale = 1.5 if table is bb.tables.SINE else 1.0
+    phase = np.pi - np.arcsin((1 - gravity) / 1.5)
+    waves = table.waves(phase, scale)
+    x = 1.5 * np.cos(phase)
+    if table is bb.tables.SINE:
+        whole = getattr(one_ball.safe_step, "py_func", one_ball.safe_step)
+        landing = getattr(one_ball.landing, "py_func", one_ball.landing)
+        monkeypatch.setattr(one_ball, "safe_step", counted)
+        found, _ = landing(0.0, 0.0, speed, *waves, 1.5)
+    else:
+        whole = bounces.safe_steps
+        monkeypatch.setattr(bounces, "safe_steps", counted)
+        given = (np.array([each]) for each in (0.0, 1.0, 0.0, speed, *waves))
+        found = bounces.landings(table, *given)[0]
+    known = 2 * speed / (gravity / 2 + np.sqrt(gravity**2 / 4 - 2 * speed * x / 3))
+    assert found == pytest.approx(known, rel=np.finfo(float).eps / speed)

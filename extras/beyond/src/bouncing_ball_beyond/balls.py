@@ -661,8 +661,14 @@ def safe_steps(
 ) -> tuple:
     """:func:`.one_ball.safe_step` for arrays."""
     step = root_of_parabola(f, slope, bend)
-    reach = REACH * step
-    closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
+    while True:
+        reach = REACH * step
+        closer = root_of_parabola(f, slope, np.minimum(bend, jerk / 3 * reach - second))
+        short = (closer > reach) | (np.isnan(closer) & (slope >= 0))
+        short &= reach < np.inf
+        if not short.any():
+            break
+        step = np.where(short, reach, step)
     step = np.maximum(step, np.fmin(reach, closer))
     near = jerk * step * step * step <= -EPS * slope * t
     if near.any():

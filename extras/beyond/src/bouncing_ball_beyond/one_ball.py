@@ -17,7 +17,8 @@ PERIOD = 2 * math.pi
 REACH = 4.0
 """Reach H in which the parabola with the bound J holds, divided by a step of the other parabola.
 
-The other parabola uses only the bound K (docs/impacts.md).
+The other parabola uses only the bound K (docs/impacts.md). If the zero is later than H, H is
+multiplied by this factor again.
 
 At half and at twice: only rounding errors change.
 """
@@ -90,7 +91,12 @@ def safe_step(
     """
     step = root_of_parabola(f, slope, bend)
     reach = REACH * step
-    step = max(step, min(reach, root_of_parabola(f, slope, min(bend, jerk * reach / 3 - second))))
+    closer = root_of_parabola(f, slope, min(bend, jerk * reach / 3 - second))
+    while closer > reach and (slope >= 0 or closer < math.inf):
+        step = reach
+        reach = REACH * step
+        closer = root_of_parabola(f, slope, min(bend, jerk * reach / 3 - second))
+    step = max(step, min(reach, closer))
     if slope < 0 and jerk * step * step * step <= EPS * -slope * t:
         return root_of_parabola(f, slope, -second), True
     return step, step <= EPS * t

@@ -36,7 +36,7 @@ SLOW_BOUNCE = 1e-2
 Slower bounces are simulated, and are left out of the tests for grazing flights and impacts.
 """
 
-BOUNCES_AT_ONCE = 32
+BOUNCES_AT_ONCE = 8
 """Number of bounces that are simulated before it is checked whether the ball is at rest."""
 
 SOON = 1e-6

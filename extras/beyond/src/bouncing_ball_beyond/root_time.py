@@ -844,6 +844,7 @@ class _Contacts:
     ratio: NDArray
     ended: NDArray
     lost: NDArray
+    first: NDArray
 
     def advance(self, here: NDArray, lies: bool) -> None:
         """Move contacts to the ends of their next panels. Panels that fail are made shorter."""
@@ -876,6 +877,11 @@ class _Contacts:
         kept = here[good]
         self.size[kept] = np.fmax(self.size[kept], greatest[good])
         self.least[kept] = np.fmin(self.least[kept], panel.nodes[0].min(0)[good])
+        if motion.root > 1:
+            # Time runs backwards from the first zero of q to the second. There the contact starts
+            # again, so an integration to a later root time is of no use.
+            v = self.first[kept]
+            self.lost[kept] |= (self.now[1, kept] * v < 0) & (panel.end[0][good] * v >= 0)
         self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
         which = which[good]
         if self.by.any() or self.motion.steps.keys() - {"T"}:
@@ -1062,6 +1068,7 @@ def integrate_contacts(
         ratio=np.full(rows, np.inf),
         ended=np.zeros(rows, bool),
         lost=~np.isfinite(known),
+        first=v,
     )
     for attempt in range(MOST_PANELS):
         active = np.flatnonzero(~(contacts.ended | contacts.lost))

@@ -137,12 +137,12 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         latest = side
         if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
             break
-    # At the ends of curves the equations are singular, and rounding errors may move later iterates
-    # away. Use the iterate with the smallest test function.
-    z[singular] = nearest[singular]
-    value[singular] = least[singular]
+    # Use the iterate with the smallest test function, because rounding errors may move later
+    # iterates away: at the ends of curves the equations are singular, and the length of a rest has
+    # an infinite slope at its end.
+    # Where gravity on the table vanishes, the length of a rest has errors of 1e-8, the root of EPS.
     largest = np.abs(crossings.values).max(axis=0)
-    return z, found & (np.abs(value) < 1e-6 * np.maximum(largest, 1e-3))
+    return nearest, found & (least < 1e-6 * np.maximum(largest, 0.1))
 
 
 def special_near(

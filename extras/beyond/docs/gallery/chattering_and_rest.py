@@ -11,7 +11,7 @@ periods = found.time / (2 * np.pi)
 gap = found.ball - found.table
 figure, (above, below) = plt.subplots(2, sharex=True, layout="constrained")
 above.plot(periods, found.ball, label="ball")
-above.plot(periods, found.table, color="grey", label="table")
+above.plot(periods, found.table, "--", color="grey", label="table")
 above.set(title="Λ = 0.6, r = 0.7: each flight is shorter than the one before", ylabel="height")
 above.legend()
 below.semilogy(periods, gap.where(gap > 0))

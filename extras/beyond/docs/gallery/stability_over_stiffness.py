@@ -17,7 +17,10 @@ for n, colour in ((1, "#0072B2"), (2, "#C77C00"), (3, "#AA3A00")):
     for start, line, name in ends:
         curve = bb.special_curve(start, along=parameters, ranges=ranges).refined()
         label = f"{n}-T orbit: {name}"
-        axes.semilogx(*curve.z[:, :-3:-1].T, line, color=colour, label=label)
+        ratios, amplitudes = curve.z[:, :-3:-1].T
+        axes.semilogx(ratios, amplitudes, line, color=colour, label=label)
+        last = ratios.argmax()
+        axes.text(1.03 * ratios[last], amplitudes[last], n, color=colour, va="center", fontsize=7)
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="amplitude Λ", title="r = 0.85")
 axes.legend(fontsize=7, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.15))
 figure.savefig("stability_over_stiffness.png")

@@ -499,3 +499,10 @@ def test_limits_begin_next_to_the_steepest_phase(r, harmonic, doubling):
     branch = bb.follow(found.saddle_node, to=1.0)
     folds = [each.amplitude for each in branch.special if each.kind == "saddle-node"]
     assert any(np.isclose(folds, line / table.next_low_slope, rtol=1e-3))
+
+
+@pytest.mark.parametrize("level", [0.0, 1e6])
+def test_harmonics_of_rounding_are_dropped(level):
+    tau = 2 * np.pi * np.arange(10_000) / 10_000
+    found = Table.of_samples(level + np.sin(tau) + 0.1 * np.cos(3 * tau))
+    assert found.orders == (1, 3)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_beyond.one_ball import CHATTER, PERIOD
+from bouncing_ball_beyond.one_ball import CHATTER, EPS, PERIOD
 
 SAMPLES = 64
 """Number of samples of W in a period of its highest harmonic.
@@ -163,9 +163,12 @@ class Table:
         values : array_like, shape (samples,)
             Heights or accelerations, in any unit.
         harmonics : int, optional
-            Highest harmonic to keep. By default all harmonics that the samples resolve are kept.
-            Give the highest harmonic for measured heights, because the acceleration amplifies noise
-            by k².
+            Highest harmonic to keep. By default all harmonics that the samples resolve are kept,
+            except those at the level of rounding errors, 2.2e-16 times the largest sample. Give the
+            highest harmonic for measured heights, because the acceleration amplifies noise by k².
+            A bifurcation may depend on this choice: for a triangle and r = 0.8, the Λ of the period
+            doubling is 1.38, 1.16, 1.07 and 1.03 times the Λ of the saddle-node, with 5, 9, 15 and
+            25 harmonics. Compare bifurcations with those of twice as many harmonics.
         acceleration : bool
             Whether the values are accelerations.
 
@@ -204,7 +207,10 @@ class Table:
             )
         series = np.fft.rfft(values) / len(values)
         k = np.arange(1, last + 1)
-        pulls = 2 * series[1 : last + 1] * (1.0 if acceleration else -(k**2))
+        waves = 2 * series[1 : last + 1]
+        # The samples are rounded to EPS/2, so harmonics up to EPS may be rounding errors.
+        waves[np.abs(waves) <= EPS * np.abs(values).max()] = 0.0
+        pulls = waves * (1.0 if acceleration else -(k**2))
         size = np.linalg.norm(pulls)
         if size <= 1e-12 * np.abs(values).max():
             raise ValueError("values: are all equal: the table would be at rest")

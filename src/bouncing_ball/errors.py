@@ -360,16 +360,19 @@ def lowest_period_doublings(
     """Minimum over ϖ of the amplitude of the period doubling, for each family.
 
     Returns the frequency ratios of the minima and the amplitudes there, both of the shape
-    (families,). Both are NaN if the smallest amplitude is at the first or last ratio. A frequency
-    ratio has half as many exact digits as the amplitude, because the minimum is flat.
+    (families,). Both are NaN if the smallest amplitude is at the first or last ratio with a period
+    doubling. A frequency ratio has half as many exact digits as the amplitude, because the minimum
+    is flat.
     """
     contact = Contact(ratios, damping_ratio(r), release)
     orbits = bifurcations(n, "period doubling", contact)
     families = np.atleast_1d(n)
     turns = np.full(families.size, np.nan)
     amplitudes = np.full_like(turns, np.nan)
-    for k, lowest in enumerate(np.nanargmin(orbits[0], axis=1)):
-        if lowest in (0, ratios.size - 1):
+    known = np.where(np.isnan(orbits[0]), np.inf, orbits[0])
+    for k, lowest in enumerate(np.argmin(known, axis=1)):
+        # Without an orbit on one side, this is an end of the doublings, and no minimum.
+        if lowest in (0, ratios.size - 1) or np.isinf(known[k, [lowest - 1, lowest + 1]]).any():
             continue
 
         def amplitude(logarithm, n=families[k], guess=orbits[:, k, lowest]):

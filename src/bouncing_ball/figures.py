@@ -571,6 +571,7 @@ def mark_printed(axes: Axes, claim: str) -> None:
 # Where the frequency ratio of the paper is enough
 
 DOUBLED: Look = {"facecolor": pale(COLOURS[2]), "edgecolor": COLOURS[2], "linewidth": 0.8}
+CROSS: Look = {"marker": "x", "linestyle": "none", "color": "black"}
 CURVES: Look = {
     "marker": "o",
     "markersize": 3.4,
@@ -613,6 +614,9 @@ def validity_map(data: xr.Dataset) -> Figure:
         f"the contact of {advised} has doubled the period": Patch(**DOUBLED),
         "curves of the paper": sample(**CURVES),
     }
+    if data.enough_from.isnull().any():
+        largest = latex_number(given["frequency_ratio"]["max"])
+        entries[rf"no $\varpi$ up to ${largest}$ is known to be enough"] = sample(**CROSS)
     legend_below(figure, entries, columns=1)
     return figure
 
@@ -647,10 +651,14 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
         # The border keeps thin regions visible.
         axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
     row, column = np.nonzero(data.enough_from.isnull().values)
-    axes.plot(data.restitution[row], data.place[column], "x", color="black")
+    axes.plot(data.restitution[row], data.place[column], **CROSS)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
     axes.text(0.44, 0.4, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
+
+
+class Empty(ValueError):
+    """A picture would have no curve."""
 
 
 SCHEMATICS: Mapping[str, Callable[[], Figure]] = {"fig01": fig01, "fig04": fig04}
@@ -679,12 +687,12 @@ def draw(name: str, *data: xr.Dataset) -> Figure:
     """Draw a figure of the paper, fig01 to fig16, or the validity map from its dataset.
 
     fig01 and fig04 need no dataset. The style is independent of the user's settings. Raises
-    ValueError if the dataset has no orbit.
+    Empty if the dataset has no orbit.
     """
     for each in data:
         orbits = each.get("phase", each.get("ball"))
         if orbits is not None and orbits.isnull().all():
-            raise ValueError(f"{name} would be empty: {without_orbit(each)}")
+            raise Empty(f"{name} would be empty: {without_orbit(each)}")
     with style():
         return FIGURES[name](*data)
 

@@ -251,7 +251,8 @@ class Family:
         trace, determinant = self.trace_and_determinant(y)
         root = np.sqrt(trace**2 / 4 - determinant + 0j)
         larger = np.where(trace < 0, trace / 2 - root, trace / 2 + root)
-        return np.stack([larger, determinant / larger])
+        with np.errstate(invalid="ignore"):  # orbits that are NaN
+            return np.stack([larger, determinant / larger])
 
     def motion(self, y: NDArray, s: NDArray) -> tuple[NDArray, NDArray, NDArray]:
         """Motion of the ball during one cycle (Eqs. 12-15).

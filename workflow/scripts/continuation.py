@@ -165,6 +165,9 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
     turns, amplitudes = lowest_period_doublings(n, r, ratios, release)
     admissible = []
     for family, turn in zip(n, turns, strict=True):
+        if np.isnan(turn):
+            admissible.append(False)
+            continue
         contact = Contact(turn, damping_ratio(r), release)
         orbit = bifurcations(family, "period doubling", contact)
         admissible.append(bool(Family(family, contact).clearance(orbit) > 0))

@@ -5,13 +5,13 @@ from pathlib import Path
 
 from bouncing_ball.datasets import read
 from bouncing_ball.drawing import save_picture
-from bouncing_ball.figures import draw
+from bouncing_ball.figures import Empty, draw
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 shown = [read(path) for path in snakemake.input.data]
 png = snakemake.output.png
 try:
     figure = draw(Path(png).stem, *shown)
-except ValueError as error:
+except Empty as error:
     sys.exit(f"configuration: {error}")
 save_picture(figure, png, snakemake.output.svg)

@@ -38,9 +38,8 @@ def fig03(parameters: dict) -> xr.Dataset:
     r = parameters["restitution"]
     largest = parameters["amplitude_max"]
     x = restitution.saddle_node(n, r)
-    impact_height = (
-        np.linspace(-1, 1, parameters["points"]) * np.sqrt(largest**2 - x**2)[:, np.newaxis]
-    )
+    highest = np.sqrt(np.where(x <= largest, largest**2 - x**2, np.nan))
+    impact_height = np.linspace(-1, 1, parameters["points"]) * highest[:, np.newaxis]
     grazing = np.array([restitution.grazing_height(each, r) for each in n])
     seen = np.hypot(x, grazing) <= largest
     doublings = [restitution.period_doubling(n, r), restitution.holmes_period_doubling(n, r)]

@@ -63,7 +63,8 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     state = {name: np.array([row[name] for row in rows]) for name in STATE}
     phase = float(restitution.impact_phase(n, r, amplitude))
     corners = np.concatenate([[phase], state["phase"], state["phase"] + state["contact_duration"]])
-    table_phase = np.union1d(np.linspace(0, period, parameters["samples"]), corners % period)
+    corners = corners[np.isfinite(corners)] % period
+    table_phase = np.union1d(np.linspace(0, period, parameters["samples"]), corners)
     balls = []
     contacts = []
     for family, y in zip(families, orbits.T, strict=True):

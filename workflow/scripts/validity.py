@@ -125,7 +125,11 @@ def failures(
 
 
 def mean_over(r: NDArray, values: NDArray) -> NDArray:
-    """The mean over r, the last axis of values, by the integral of a cubic spline."""
+    """The mean over r, the last axis of values, by the integral of a cubic spline; NaN if a value
+    is missing.
+    """
+    if np.isnan(values).any():
+        return np.full(values.shape[:-1], np.nan)
     return CubicSpline(r, values, axis=-1).integrate(r[0], r[-1]) / (r[-1] - r[0])
 
 

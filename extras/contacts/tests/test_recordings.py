@@ -535,6 +535,8 @@ def test_five_balls_have_each_remark_once(typed, tmp_path):
     out = typed(f"fit {path}")[1]
     assert out.count("lowest point") == out.count("drag of the air") == 1
     assert len(out.split()) < 250
+    spans = re.findall(r"([\d.]+)–([\d.]+)", out)
+    assert spans and all(float(low) < float(high) for low, high in spans)
 
 
 def test_bottoms_of_a_track_stand_out_of_noise_and_of_a_fiftieth_of_its_height():

@@ -17,6 +17,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -30,8 +31,10 @@ import xarray as xr
 import yaml
 from PIL import Image
 
-from bouncing_ball.datasets import plain, read, whole
+from bouncing_ball.datasets import attributes, plain, read, whole
 from bouncing_ball.provenance import CHECKOUT, PACKAGES, contents, versions
+from bouncing_ball.variables import Variable
+from bouncing_ball.variables import described as descriptions
 
 ACCEPTED = "figures/accepted.json"
 PROVENANCE = {"parameters", "code", "versions", "computed_on"}
@@ -55,12 +58,15 @@ class Project:
         takes their name, the dataset, or none for a picture without data, and the folder.
     code
         Folders and files of code, from the top of the repository.
+    describe
+        Today's descriptions of the variables of a dataset, by its name.
     """
 
     top: Path
     texts: tuple[str, ...]
     make: Callable[[str, xr.Dataset | None, Path], None]
     code: tuple[str, ...]
+    describe: Callable[[str], Mapping[str, Variable]] = descriptions
 
     def files(self, *sides: Path) -> list[str]:
         """All files that one of the folders has, datasets first, the claims after the others."""
@@ -229,8 +235,10 @@ def shown(value: object) -> str:
     return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
 
 
-def stale(new: xr.Dataset, name: str, config: Mapping) -> str:
-    """Name the parameters and files that changed since a result was computed; empty if none."""
+def stale(new: xr.Dataset, name: str, config: Mapping, descriptions: Mapping[str, Variable]) -> str:
+    """Name the parameters, descriptions and files that changed since a result was computed; empty
+    if none.
+    """
     recorded = record(new, "parameters")
     wanted = {key: value for key, value in config.items() if key in recorded}
     for stage in config.values():
@@ -239,6 +247,10 @@ def stale(new: xr.Dataset, name: str, config: Mapping) -> str:
     for word in ("title", "caption", "table"):
         wanted.pop(word, None)
     found = changes(recorded, plain(wanted))
+    for each, variable in new.variables.items():
+        if each in descriptions:
+            today = attributes(descriptions[str(each)], variable.dtype)
+            found += changes(plain(variable.attrs), plain(today), f"{each}.")
     code = record(new, "code")
     paths = [CHECKOUT / file for file in code if (CHECKOUT / file).is_file()]
     now = contents(paths)
@@ -311,11 +323,17 @@ def causes(project: Project) -> Causes:
 
 
 def compare(
-    project: Project, results: Path, config: Mapping, names: Collection[str] = ()
+    project: Project,
+    results: Path,
+    config: Mapping,
+    names: Collection[str] = (),
+    makers: Mapping[str, Collection[str]] | None = None,
 ) -> Report:
     """Compare all files of results with the reference, or those of the figures and tables named.
 
-    `config` is the configuration of the results.
+    `config` is the configuration of the results. `makers` has the files of code that make a
+    picture, a table or a text. The code of a file that is not among them is all code that did not
+    compute its dataset.
     """
     files = [
         file
@@ -347,11 +365,20 @@ def compare(
             change = "the picture differs"
             if not file.endswith(PICTURES):
                 change = first_change(project.top / file, results / file)
-            makers = without_models(project, results, name, code)
-            line = f"{name}: {change}; {why.of([], makers, versions())}"
+            able = without_models(project, results, name, code)
+            if makers and file in makers:
+                able = contents(makers[file])
+            # Pictures have no titles and captions of the configuration.
+            chosen = [] if file.endswith(PICTURES) else given(project, config)
+            line = f"{name}: {change}; {why.of(chosen, able, versions())}"
             # Both pictures of a figure have the same line.
             report.lines.extend({line} - {*report.lines})
     return report
+
+
+def given(project: Project, config: Mapping) -> list[str]:
+    """The parameters of a run that are not those of the checkout."""
+    return changes(plain(project.configuration()), plain(config))
 
 
 def absent(project: Project, results: Path, file: str) -> str:
@@ -376,10 +403,12 @@ def dataset_lines(
         new = read(results / file)
         about = changes(described(old), described(new))
         found = about or differences(old, new)
-        old_code = stale(new, name, config)
+        old_code = stale(new, name, config, project.describe(name))
     except Exception as error:  # Whatever readers raise for a damaged file.
         return [f"{file} cannot be compared: {error!r}"]
     parameters = changes(record(old, "parameters"), record(new, "parameters"))
+    if old.attrs.get("title") != new.attrs.get("title"):
+        parameters += [line for line in given(project, config) if f".{name}.title " in line]
     lines = [old_code] if old_code else []
     if found or parameters:
         code = record(new, "code")
@@ -522,13 +551,19 @@ def main(project: Project, arguments: list[str]) -> int:
     return 1 if report.lines else 0
 
 
-def report_of_run(project: Project, results: Path, config: Mapping, names: Collection[str]) -> int:
+def report_of_run(
+    project: Project,
+    results: Path,
+    config: Mapping,
+    names: Collection[str],
+    makers: Mapping[str, Collection[str]],
+) -> int:
     """Compare the results of a run, and save the report as text and as a page: the rule `diff`.
 
-    Returns the exit status: 1 if something differs.
+    Returns the exit status: 1 if something differs. Snakemake then prints the log, at its end.
     """
-    report = compare(project, results, config, names)
+    report = compare(project, results, config, names, makers)
     text = f"{report.text()}\n{write_page(project, results, report)}\n"
     (results / "diff/report.txt").write_text(text, "utf-8")
-    print(text, end="")
+    print(text, end="", file=sys.stderr if report.lines else sys.stdout)
     return 1 if report.lines else 0

@@ -19,6 +19,11 @@ from bouncing_ball.restitution import Numbers
 RELEASES = ("displacement", "force")
 
 
+def unknown(release: str) -> ValueError:
+    """The error of a function for a release that it does not know."""
+    return ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
+
+
 def damping_ratio(r: Numbers) -> NDArray:
     """Damping ratio ζ = -ln r/√(π² + ln² r) for which a free impact has the restitution r (Eq. 16).
 
@@ -112,7 +117,7 @@ class Contact:
 
     def __post_init__(self):
         if self.release not in RELEASES:
-            raise ValueError(f"release is {self.release!r}: it must be {' or '.join(RELEASES)}")
+            raise unknown(self.release)
         # NaN must pass, because it marks elements of an array for which no contact exists.
         if np.any(np.less(self.damping_ratio, 0) | np.greater_equal(self.damping_ratio, 1)):
             raise ValueError(f"the damping ratio ζ is {self.damping_ratio}: give 0 <= ζ < 1")
@@ -125,6 +130,8 @@ class Contact:
         """
         if self.release == "displacement":
             return np.zeros_like(self.frequency_ratio, dtype=float)
+        if self.release != "force":
+            raise unknown(self.release)
         return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
 
     @property
@@ -132,6 +139,8 @@ class Contact:
         """Restitution coefficient of a free impact, the limit of r_a as ϖ tends to infinity."""
         if self.release == "displacement":
             return free_restitution(self.damping_ratio)
+        if self.release != "force":
+            raise unknown(self.release)
         return force_release_restitution(self.damping_ratio)
 
     def responses(self, s: Numbers) -> Responses:
@@ -222,6 +231,8 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
     resistance = np.hypot(ratio**2 - 1, 2 * zeta * ratio)
     if release == "displacement":
         return resistance / ratio**2
+    if release != "force":
+        raise unknown(release)
     return resistance / np.hypot(ratio**2, 2 * zeta * ratio)
 
 
@@ -240,6 +251,8 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
     if release == "force":
         ratio = np.sqrt((1 + np.sqrt(1 + 8 * zeta**2)) / 2)
         return float(ratio), float(permanent_contact(ratio, zeta, release))
+    if release != "displacement":
+        raise unknown(release)
     if 2 * zeta**2 >= 1:
         return np.inf, 1.0
     return float(1 / np.sqrt(1 - 2 * zeta**2)), float(2 * zeta * np.sqrt(1 - zeta**2))

@@ -11,12 +11,15 @@ The exit status is 1 if something differs.
 import sys
 from pathlib import Path
 
-import xarray as xr
+TOP = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(TOP / "src"))
 
-from bouncing_ball.compare import Project, main, report_of_run
-from bouncing_ball.drawing import save_picture
-from bouncing_ball.figures import FIGURES, draw
-from bouncing_ball.tables import TABLES, comma_separated, markdown
+import xarray as xr  # noqa: E402
+
+from bouncing_ball.compare import Project, main, report_of_run  # noqa: E402
+from bouncing_ball.drawing import save_picture  # noqa: E402
+from bouncing_ball.figures import FIGURES, draw  # noqa: E402
+from bouncing_ball.tables import TABLES, comma_separated, markdown  # noqa: E402
 
 
 def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
@@ -31,7 +34,7 @@ def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
 
 
 PROJECT = Project(
-    top=Path(__file__).resolve().parents[2],
+    top=TOP,
     texts=("paper.md", "supplement.md"),
     make=make,
     code=("Snakefile", "config", "src", "workflow"),
@@ -42,5 +45,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names
+    given = snakemake.params.config, snakemake.params.names, snakemake.params.makers
     sys.exit(report_of_run(PROJECT, Path("results"), *given))

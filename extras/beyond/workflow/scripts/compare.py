@@ -19,6 +19,7 @@ from bouncing_ball.tables import comma_separated, markdown  # noqa: E402
 from studies.explorer import page  # noqa: E402
 from studies.figures import FIGURES, draw  # noqa: E402
 from studies.tables import TABLES  # noqa: E402
+from studies.variables import described  # noqa: E402
 
 
 def make(name: str, data: xr.Dataset, folder: Path) -> None:
@@ -41,6 +42,7 @@ PROJECT = Project(
         *(f"extras/beyond/{name}" for name in ("Snakefile", "config", "src", "workflow")),
         "src",
     ),
+    describe=described,
 )
 
 if __name__ == "__main__" and "snakemake" not in globals():
@@ -48,5 +50,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names
+    given = snakemake.params.config, snakemake.params.names, snakemake.params.makers
     sys.exit(report_of_run(PROJECT, Path("results"), *given))

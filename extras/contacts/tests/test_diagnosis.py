@@ -645,3 +645,37 @@ def test_a_damper_that_is_too_strong_for_explicit_steps_has_no_r_above_one():
     found = diagnose(Bounce(mass=1, radius=0.1), "drake", None, "1 ms")
     assert found.numbers["limit"] < 0.01 and found.outcome.restitution[2] < 0.01
     assert "lowers r" not in repr(found)
+
+
+@pytest.mark.parametrize(
+    ("solimp", "said"),
+    [
+        ("9 9 0.001", "the engine takes 0.9999 and 0.9999"),
+        ("0.001 0.95 0.9", "is a depth in m"),
+    ],
+)
+def test_a_solimp_out_of_its_range_is_said_to_be(solimp, said):
+    ball = Bounce(mass=1, radius=0.1)
+    found = diagnose(ball, "mujoco", {"solref": "-2e4 -30", "solimp": solimp}, "2 ms")
+    assert said in found.explained
+    plain = diagnose(ball, "mujoco", {"solref": "-2e4 -30"}, "2 ms")
+    assert "solimp = " not in " ".join(plain.warnings) and "depth in m" not in plain.explained
+
+
+@pytest.mark.parametrize(
+    ("engine", "name", "meant"),
+    [
+        ("rapier", "e", "restitution"),
+        ("rapier", "bounciness", "restitution"),
+        ("generic", "k", "stiffness"),
+        ("generic", "c", "damping"),
+    ],
+)
+def test_a_name_of_another_engine_is_answered_by_the_one_here(engine, name, meant):
+    with pytest.raises(Refused, match=f"did you mean {meant}?"):
+        diagnose(Bounce(mass=1), engine, {name: 0.8}, "2 ms")
+
+
+def test_a_diameter_is_answered_by_the_radius(typed):
+    status, _, err = typed("design --mass 1 --restitution 0.8 --diameter '5 cm'")
+    assert status == 2 and "--radius" in err

@@ -216,3 +216,24 @@ def test_contacts_side_by_side_are_those_one_by_one():
         one = drop(Linear(k[i], c[i]), SemiImplicit(), steps[i], 2.0, 9.81, AT)
         assert np.allclose(both.restitution[i], one.restitution, rtol=1e-12)
         assert np.allclose(both.depth[i], one.depth, rtol=1e-12)
+
+
+@pytest.mark.parametrize("power", [1.0, 2.0, 3.5])
+@pytest.mark.parametrize("middle", [0.2, 0.5, 0.7])
+def test_the_power_curve_of_an_impedance_is_continuous_through_its_middle(power, middle):
+    """At the middle x of the width the share of the rise is x itself, from both sides.
+
+    For other x the curve is x^p/m^(p-1) below, and its mirror image above; MuJoCo's documentation.
+    """
+    law = Impedance(np.asarray(0.0), np.asarray(0.0), 1, 0.1, 0.9, 1e-3, middle, power)
+
+    def impedance(x):
+        # Without a spring and a damper a contact takes this share of gravity.
+        return float(law.push(np.asarray(x * 1e-3), np.asarray(0.0), np.asarray(1.0)))
+
+    for x in (middle - 1e-12, middle + 1e-12):
+        assert impedance(x) == pytest.approx(0.1 + 0.8 * middle, rel=1e-9)
+    half = impedance(middle / 2)
+    assert half == pytest.approx(0.1 + 0.8 * middle * 0.5**power, rel=1e-12)
+    above = impedance((1 + middle) / 2)
+    assert above == pytest.approx(0.9 - 0.8 * (1 - middle) * 0.5**power, rel=1e-12)

@@ -135,7 +135,7 @@ class Answer:
         ]
         return f"{self.engine}, {step}: {', '.join(holding(said))}"
 
-    def _lines(self, most: int) -> list[str]:
+    def _lines(self, most: int, explain: bool = False) -> list[str]:
         """Return the lines of the answer with so many warnings, and the others behind them."""
         not_for = [f"Not for: {', '.join(self.not_for)}."] * bool(self.not_for)
         change = self.change
@@ -146,8 +146,8 @@ class Answer:
             does = f"gives r = {each.outcome.restitution}" if each.gives else f"sinks {depth}"
             step = show(each.time_step, "s").replace(" ", "")
             also.append(f"Also good: --time-step {step} {does}.")
-            # Another step has lines of its own, which are shown if this one has none.
-            also.append("" if any(paste) else each.snippet)
+            # Another step has lines of its own.
+            also.append(each.snippet if explain or not any(paste) else "")
         least = [f"Least change: {change.gives}."] if change else []
         warnings = [f"! {each}" for each in self.warnings]
         first = [*warnings[: most - bool(not_for)], *not_for]
@@ -157,7 +157,7 @@ class Answer:
     @property
     def explained(self) -> str:
         """All of the answer."""
-        return "\n".join(self._lines(len(self.warnings) + 1))
+        return "\n".join(self._lines(len(self.warnings) + 1, explain=True))
 
     def __str__(self) -> str:
         lines = self._lines(MOST_WARNINGS)

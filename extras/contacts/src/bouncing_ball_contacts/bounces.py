@@ -42,6 +42,16 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
 _CONTACT = ("penetration", "stiffness", "contact_time")
 _EITHER = (("drop_height", "speed"), *combinations(_CONTACT, 2))
 """Pairs of quantities of which at most one is given."""
+_FOAM = 25.0
+"""Density in kg/m³ below which a number without a unit may be one in g/cm³, up to osmium's 22.6."""
+
+
+def _is_bare(typed: Quantity) -> bool:
+    """Whether a text is a number without a unit."""
+    try:
+        return isinstance(typed, str) and math.isfinite(float(typed))
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -108,6 +118,7 @@ class Bounce:
                 ),
             ]
         )
+        typed = {name: getattr(self, name) for name in ("density", "contact_time")}
         given = {}
         for name, (unit, read) in _QUANTITIES.items():
             default = getattr(Bounce, name)
@@ -119,6 +130,22 @@ class Bounce:
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)
+        depth = self.impact_speed * (self.contact_time or 0.0) / math.pi
+        refuse(
+            [
+                (
+                    _is_bare(typed["density"]) and (self.density or math.inf) < _FOAM,
+                    f"is the density of {typed['density']} in g/cm^3, or in kg/m^3? "
+                    f"write the unit: --density '{typed['density']} g/cm^3'",
+                ),
+                (
+                    _is_bare(typed["contact_time"]) and depth > self.size,
+                    f"a contact of {show(self.contact_time or 0, 's')} is {show(depth, 'm')} deep, "
+                    f"more than the {self.size_name} of {show(self.size, 'm')}: if ms are meant, "
+                    f"--contact-time '{typed['contact_time']} ms'",
+                ),
+            ]
+        )
         if self.mass is None and None not in (self.radius, self.density):
             object.__setattr__(self, "mass", self.density * self.solid * self.radius**3)
             object.__setattr__(self, "density", None)

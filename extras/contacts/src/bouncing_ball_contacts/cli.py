@@ -25,7 +25,14 @@ from bouncing_ball_contacts.units import (
 _DENSITY = click.Option(
     ["--density"], help="In place of the size or the mass; also steel, rubber, …"
 )
+
+
+def _halve(_: click.Context, __: click.Parameter, typed: str | None) -> None:
+    refuse([(typed is not None, f"give the radius, half of the diameter {typed}: --radius")])
+
+
 _BODY = [
+    click.Option(["--diameter"], hidden=True, expose_value=False, callback=_halve),
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
     click.Option(["--restitution"], help="√(h′/h) that is wanted, 0 to 1."),
     click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),

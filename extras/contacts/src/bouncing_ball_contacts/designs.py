@@ -420,7 +420,9 @@ def snippet(problem: Problem, parameters: Parameters, step: float, asked: float 
     values = {
         "step": step,
         "friction": mu,
-        "rubs": engine.rubs[bool(mu)].format(mu=mu, root=math.sqrt(mu)),
+        "rubs": engine.rubs.format(mu=mu, root=math.sqrt(mu))
+        if bounce.friction is not None
+        else "",
         "condim": 1 if bounce.friction == 0 else 3,
     }
     return filled(template, {**values, **parameters}).rstrip()

@@ -416,8 +416,23 @@ def _dangers(contact: Contact, found: Found) -> list[str]:
     """Return what makes a contact useless in a scene."""
     bounce = contact.problem.bounce
     high = found.outcome.restitution.high
+    law = contact.law
+    typed = contact.one.get("solimp", ())
+    ends = (law.low, law.high) if isinstance(law, Impedance) else ()
+    is_clipped = any(not 0 <= each <= 1 for each in typed[:2])
+    is_wide = isinstance(law, Impedance) and law.low != law.high and law.width > bounce.size
     return holding(
         [
+            (
+                is_clipped,
+                f"the impedances of solimp = {_spelled(typed)} are shares from 0 to 1: the engine "
+                f"takes {' and '.join(f'{each:.4f}' for each in ends)}",
+            ),
+            (
+                is_wide,
+                f"the third number of solimp, {_spelled(typed)}, is a depth in m, and the body has "
+                f"a {bounce.size_name} of {show(bounce.size, 'm')}",
+            ),
             (
                 high > 1 + TOLERANCE,
                 f"unstable: the body leaves up to {high:.3g} times as fast as it came",

@@ -152,9 +152,9 @@ class Engine:
         Whether r is that of a box which falls flat on a plane and does not slide; `box` says so.
     friction : str
         What friction does to r.
-    rubs : tuple of str
-        What is pasted without and with the friction ``mu``, of which each body has the ``root`` if
-        those of two bodies are multiplied.
+    rubs : str
+        What is pasted with the friction ``mu`` if one is given, of which each body has the ``root``
+        if those of two bodies are multiplied. Without it the friction is the engine's own.
     sliding : Sliding
         By how much r of a body that slides may leave the range of one that does not.
     caution : str
@@ -183,7 +183,7 @@ class Engine:
     box: str = ""
     flat_only: bool = False
     sliding: Sliding = Sliding()
-    rubs: tuple[str, str] = ("", "")
+    rubs: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
     caution: str = ""
     not_for: tuple[str, ...] = ()
@@ -254,6 +254,14 @@ def as_compared(name: str) -> str:
     return last if len(last) == 1 else re.sub(r"^(set|geom_)(?!$)|[\W_]", "", last.lower())
 
 
+_SAME = {
+    **dict.fromkeys(("e", "cor", "bounciness", "bounce", "elasticity"), "restitution"),
+    "k": "stiffness",
+    "c": "damping",
+}
+"""What other engines and papers call a parameter, as names are compared."""
+
+
 def parameters_of(
     engine: str, known: Mapping[str, str], names: Sequence[str], typed: Parameters
 ) -> dict[str, Any]:
@@ -273,7 +281,9 @@ def parameters_of(
         if name is None:
             near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
             others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
-            hint = "".join(near or others)
+            same = _SAME.get(as_compared(str(each)), "")
+            meant = [f"; did you mean {same}?"] * (same in known)
+            hint = "".join(meant or near or others)
             known_here = ", ".join(names)
             raise Refused(
                 f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
@@ -583,7 +593,7 @@ _MUJOCO = Engine(
         _WEIGHTLESS,
     ),
     friction=f"{_EVERY_FRICTION}; a pair of geoms with a solreffriction of its own grips more",
-    rubs=("", ' friction="{mu:g} 0.005 0.0001"'),
+    rubs=' friction="{mu:g} 0.005 0.0001"',
     sliding=_PUSHED_UP,
     not_for=_NOT_MUJOCO,
 )
@@ -624,12 +634,13 @@ ENGINES: Mapping[str, Engine] = {
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.20 to 0.79 for 0.80); on springs a box that slides gains energy",
             friction=_MANIFOLD,
-            rubs=("", ", lateralFriction={root:.6g}"),
+            rubs=", lateralFriction={root:.6g}",
             # On one of 1 to 5 times its mass a ball had 0.60 to 0.78 for 0.80.
             not_for=("free plates",),
         ),
         Engine(
             name="drake-sap",
+            rubs=", CoulombFriction({mu:g}, {mu:g})",
             names=("point_contact_stiffness", "relaxation_time"),
             scheme=Implicit(),
             write=_write_drake,
@@ -651,6 +662,7 @@ ENGINES: Mapping[str, Engine] = {
         ),
         DrakeDissipation(
             name="drake",
+            rubs=", CoulombFriction({mu:g}, {mu:g})",
             names=("point_contact_stiffness", "hunt_crossley_dissipation"),
             scheme=Implicit(),
             write=_write_dissipation,
@@ -713,7 +725,7 @@ ENGINES: Mapping[str, Engine] = {
             resolution=_SINGLE,
             ran="Newton 1.8.0",
             notes=("The damper acts while the bodies approach only",),
-            rubs=("kf=0.0, mu=0.0", "mu={mu:g}"),
+            rubs=", mu={mu:g}",
             box="The points are those of a face: r is that of a box which falls flat on a plane "
             "and does not slide; on a box, on an edge or sliding it had 0.78 to 0.91 for 0.80",
             flat_only=True,
@@ -733,7 +745,7 @@ ENGINES: Mapping[str, Engine] = {
             resolution=_SINGLE,
             ran="Newton 1.8.0",
             notes=("Without friction it needs condim = 1, or there are no numbers", _WEIGHTLESS),
-            rubs=("", ", mu={mu:g}"),
+            rubs=", mu={mu:g}",
             friction=_EVERY_FRICTION,
             sliding=_PUSHED_UP,
         ),
@@ -761,6 +773,7 @@ ENGINES: Mapping[str, Engine] = {
             write=_PHYSX["write"],
             read=_PHYSX["read"],
             units=_PHYSX["units"],
+            rubs="static_friction={mu:g}, dynamic_friction={mu:g}, ",
             meaning="compliantContactStiffness = k, compliantContactDamping = c",
             ran="PhysX 5.12 (ovphysx 0.7.0)",
             rules={

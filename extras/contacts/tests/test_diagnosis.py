@@ -532,7 +532,7 @@ def test_what_changes_r_is_named_with_r_without_it():
     found = asked(None, "ode", {"bounce": 0.9, "soft_cfm": 1e-3}, "10 ms")
     hard = asked(None, "ode", {"bounce": 0.9}, "10 ms").outcome.restitution[1]
     r = found.outcome.restitution[1]
-    said = f"soft_cfm = 0.001 lowers r from {hard:.3f} to {r:.3f}; designs have 1e-10"
+    said = f"soft_cfm = 0.001 lowers r from {hard:.3f} to {r:.3f}; 1e-10 if r needs it"
     assert said in found.warnings
     raised = asked(None, "genesis", {"timeconst": 1e-5, "dampratio": 1}, "1 ms")
     assert any("1e-05 s to 0.002 s, two steps" in reason for reason in raised.warnings)

@@ -130,7 +130,9 @@ class Bounce:
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)
-        depth = self.impact_speed * (self.contact_time or 0.0) / math.pi
+        # A gravity that is not positive is refused below.
+        falls = _is_bare(typed["contact_time"]) and (self.speed or self.gravity > 0)
+        depth = self.impact_speed * (self.contact_time or 0.0) / math.pi if falls else 0.0
         refuse(
             [
                 (
@@ -139,7 +141,7 @@ class Bounce:
                     f"write the unit: --density '{typed['density']} g/cm^3'",
                 ),
                 (
-                    _is_bare(typed["contact_time"]) and depth > self.size,
+                    depth > self.size,
                     f"a contact of {show(self.contact_time or 0, 's')} is {show(depth, 'm')} deep, "
                     f"more than the {self.size_name} of {show(self.size, 'm')}: if ms are meant, "
                     f"--contact-time '{typed['contact_time']} ms'",

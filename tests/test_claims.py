@@ -300,6 +300,21 @@ def test_an_orbit_that_is_not_admissible_has_no_one_impact(reference):
     assert verdict("one impact per period", changed) == "not reproduced"
 
 
+@pytest.mark.parametrize(("impacts", "periods"), [((2, 2), (2, 2)), ((1, 2), (1, 1))])
+def test_a_motion_of_one_kind_is_not_one_of_another(reference, impacts, periods):
+    """Two subharmonic balls are not periodic, and two impacts in one period not subharmonic."""
+    balls = reference["three_balls"].sortby("impacts")
+    chaotic = balls["impacts"].values == 0
+    assert chaotic.sum() == 1
+    counts = balls["impacts"].copy(data=[0, *impacts])
+    lengths = balls["periods"].copy(data=[0, *periods])
+    changed = with_other(
+        reference | {"three_balls": balls}, "three_balls", impacts=counts, periods=lengths
+    )
+    assert verdict("kinds of motion", reference) == "reproduced"
+    assert verdict("kinds of motion", changed) == "not reproduced"
+
+
 def test_a_ball_that_sticks_is_not_chaotic(reference):
     stickings = reference["three_balls"]["stickings"] + 1
     changed = with_other(reference, "three_balls", stickings=stickings)

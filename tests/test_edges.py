@@ -24,8 +24,7 @@ from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.figures import Empty
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
-STAGES = [name for name, each in CONFIG.items() if isinstance(each, dict) and name != "validity"]
-"""The stages whose keys are tried one by one; of the map only the cases below are."""
+STAGES = [name for name, each in CONFIG.items() if isinstance(each, dict)]
 COARSE = {"samples": 9, "points": 21, "places": 5, "impacts": 256}
 """Sizes of grids; their upper bounds are not tried, because they take minutes."""
 UNTRUE = re.compile(
@@ -85,9 +84,9 @@ def edges() -> Iterator[tuple[str, str, dict]]:
     """Stage, name and the changed parameters of each case."""
     for section in STAGES:
         for name, entry in CONFIGURATION[section].items():
-            properties = {}
-            if name != "title":
-                properties = resolved(SCHEMA["properties"][section]["properties"][name])
+            # A new figure may have any parameters.
+            known = SCHEMA["properties"][section]["properties"].get(name, {})
+            properties = resolved(known) if name != "title" else {}
             for key, schema in properties.get("properties", {}).items():
                 for value in others(schema, entry[key], key) if key in entry else ():
                     if value != entry[key]:
@@ -122,6 +121,8 @@ CASES = [
     ),
     ("error_thresholds", "fig14", {"n": 5, "amplitude": 3.5}),
     ("validity", "validity_map", {"restitution": {"min": 0.95, "max": 0.05, "samples": 31}}),
+    ("validity", "validity_map", {"advised": 3.0}),
+    ("validity", "validity_map", {"n": [2]}),
     ("time_histories", "fig07", {"restitution": 0.1, "amplitude": 2.6, "frequency_ratio": 0.5}),
     ("time_histories", "fig12", {"restitution": 0.999, "n": 5, "amplitude": 0.02}),
     ("time_histories", "fig12", {"frequency_ratio": [0.3, 20.0]}),

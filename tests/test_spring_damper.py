@@ -154,3 +154,17 @@ def test_no_frequency_ratio_has_a_threshold_below_the_lowest():
 def test_another_release_is_refused():
     with pytest.raises(ValueError, match="release is 'speed': it must be displacement or force"):
         Contact(2.0, 0.1, "speed")
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        lambda: spring_damper.permanent_contact(10.0, 0.1, "sticky"),
+        lambda: spring_damper.lowest_permanent_contact(0.1, "sticky"),
+        lambda: Contact(10.0, 0.1, "sticky"),
+    ],
+)
+def test_an_unknown_release_is_refused(function):
+    """It was taken for the force release in silence."""
+    with pytest.raises(ValueError, match="release is 'sticky': it must be displacement or force"):
+        function()

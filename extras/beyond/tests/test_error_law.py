@@ -271,13 +271,13 @@ def test_a_path_is_given_by_a_function():
 def test_statuses():
     """Too strict and too loose a tolerance, and an orbit that only stiff contacts have."""
     known = {"amplitude": 1.0, "quantities": ["max_height"], "high": 1e3}
-    assert error_thresholds(BALL, tolerance=1e-6, **known)["max_height"].status == "outside"
+    assert error_thresholds(BALL, tolerance=1e-6, **known)["max_height"].status == "exceeded"
     assert error_thresholds(BALL, tolerance=1.0, **known)["max_height"].status == "within"
     impact = free_impact(BALL)
     node = float(impact.speed) - np.pi
     below = {"amplitude": node, "quantities": ["phase"]}
     found = error_thresholds(BALL, **below)["phase"]
-    assert found.status == "outside" and np.isnan(found.ratio)
+    assert found.status == "exceeded" and np.isnan(found.ratio)
 
 
 def test_no_orbit_is_nan():

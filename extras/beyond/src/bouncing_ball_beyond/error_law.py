@@ -664,9 +664,9 @@ class ErrorThreshold(NamedTuple):
     status : array of str
         - "found";
         - "within": the error is within the tolerance at all ratios;
-        - "outside": the error exceeds the tolerance at the largest ratio;
-        - "no orbit": there is no orbit at the largest ratio, or no orbit just below the range of
-          ratios in which the error stays within the tolerance.
+        - "exceeded": the error exceeds the tolerance at the largest ratio;
+        - "first orbit": it is within the tolerance from the first ratio with an orbit on;
+        - "no orbit": there is no orbit at the largest ratio.
     unstable : array of str
         Which orbit is unstable: "", "in the simple model", "on the contact" or "in both models".
         This is the orbit at ``ratio``, or at the largest ratio if ``ratio`` is NaN. The text is ""
@@ -766,9 +766,10 @@ def error_thresholds(
         beyond = ~(scan <= tolerance)
         last = samples - 1 - beyond[::-1].argmax(axis=0)
         places = np.arange(last.size)
-        status = np.where(np.isnan(scan[last, places]), "no orbit", "found")
-        status[(status == "found") & (last == samples - 1)] = "outside"
-        status[~beyond.any(axis=0)] = "within"
+        is_last = last == samples - 1
+        no_orbit = np.isnan(scan[last, places])
+        cases = [~beyond.any(axis=0), no_orbit & is_last, no_orbit, is_last]
+        status = np.select(cases, ["within", "no orbit", "first orbit", "exceeded"], "found")
         places = places[status == "found"]
         ratio = np.full(last.size, np.nan)
         if places.size:

@@ -653,8 +653,8 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], **CROSS)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
-    # On a fill of the same colour the number needs a ground of its own.
-    share["bbox"] = {"facecolor": "white", "edgecolor": "none", "pad": 1.0}
+    # On a fill of the same colour the number needs a ground of its own, behind the curves' circles.
+    share |= {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}, "zorder": 1.9}
     axes.text(0.44, 0.4, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
 

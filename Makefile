@@ -54,7 +54,13 @@ lint: develop
 	$(RUN) mypy
 	$(RUN) snakemake --lint
 
-diff accept: setup
+diff: setup
+	@$(SNAKEMAKE) $@
+
+# The tests that read the reference judge the results first, so that they are green afterwards, too.
+accept: develop
+	@$(SNAKEMAKE)
+	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet $(filter-out tests/test_edges.py,$(shell grep -l tests.reference tests/test_*.py))
 	@$(SNAKEMAKE) $@
 
 replication: clean diff

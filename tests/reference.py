@@ -2,6 +2,7 @@
 
 import importlib.util
 import json
+import os
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -12,7 +13,10 @@ import yaml
 from bouncing_ball.datasets import read
 
 ROOT = Path(__file__).resolve().parents[1]
-FIGURES = ROOT / "figures"
+TOP = Path(os.environ.get("CANDIDATE", ROOT)).resolve()
+"""The folder whose figures and texts the tests read: that of the reference, or that of the results
+which `make accept` would make the reference."""
+FIGURES = TOP / "figures"
 CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
 ACCEPTED = {path.stem for path in FIGURES.iterdir()}
 ENTRIES = {

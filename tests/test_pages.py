@@ -5,7 +5,7 @@ from html.parser import HTMLParser
 
 import pytest
 import xarray as xr
-from tests.reference import ENTRIES, FIGURES, ROOT, reference
+from tests.reference import ENTRIES, FIGURES, TOP, reference
 
 from bouncing_ball import article, pages, tables
 from bouncing_ball.claims import judge
@@ -204,7 +204,7 @@ def test_only_a_formula_and_its_punctuation_are_kept_on_one_line(texts):
 
 def test_figures_and_tables_of_the_article_can_be_read_without_sight_and_on_a_telephone(read):
     page = read["paper.html"]
-    shown = re.findall(r"\]\(figures/(\w+)\.png\)", (ROOT / "paper.md").read_text("utf-8"))
+    shown = re.findall(r"\]\(figures/(\w+)\.png\)", (TOP / "paper.md").read_text("utf-8"))
     assert page.places["alt"] == [CAPTIONS[name] for name in shown] and len(shown) > 16
     assert page.tags.count("td") == len(page.places["data-label"]) > 0
 

@@ -104,6 +104,13 @@ CASES = [
         "fig06",
         {"n": 5, "cases": [{"restitution": 0.65, "amplitude": 3.5}]},
     ),
+    ("apparent_restitution", "fig06", {"frequency_ratio": {"min": 0.25, "max": 1.9, "samples": 9}}),
+    (
+        "apparent_restitution",
+        "fig13",
+        {"frequency_ratio": {"min": 41.0, "max": 62.0, "samples": 9}},
+    ),
+    ("permanent_contact", "fig16", {"restitution": 0.94, "tolerance": 0.5}),
     ("apparent_restitution", "fig10", {"restitution": 0.1, "amplitude": [5.0, 6.0]}),
     ("continuation", "table1", {"frequency_ratio": [50.0, 30.0]}),
     ("continuation", "table1", {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}),

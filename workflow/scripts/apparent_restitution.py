@@ -89,7 +89,8 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
     # The ends of the grid, and decades inside, are round up to rounding errors.
     inside = round_values >= ratios[0] * (1 - 1e-12)
     inside &= round_values <= ratios[-1] * (1 + 1e-12)
-    near = np.abs(ratios[:, np.newaxis] / round_values[inside] - 1).min(axis=1) < 1e-12
+    apart = np.abs(ratios[:, np.newaxis] / round_values[inside] - 1)
+    near = apart.min(axis=1, initial=np.inf) < 1e-12
     merged = np.sort(np.concatenate([ratios[~near], round_values[inside]]))
     dataset = amplitudes(parameters, merged, release)
     return dataset.assign(labelled=("frequency_ratio", np.isin(merged, round_values)))

@@ -43,7 +43,7 @@ def test_orbit_confirms_the_answer(answers):
 
 @pytest.mark.parametrize("contact", ["spring", "hertz"])
 def test_limits_are_special_orbits_along_the_frequency(contact, answers):
-    """At the same stroke, by continuation, which is another way to the same places."""
+    """At the same displacement, by continuation, which is another way to the same places."""
     answer = answers[contact]
     here = np.sqrt(answer.amplitude)
     one = orbit(answer.ball, amplitude=answer.amplitude)
@@ -143,7 +143,7 @@ def test_between_the_bifurcations_of_both_models():
 @pytest.mark.parametrize(
     ("change", "named"),
     [
-        ({"acceleration": None}, "exactly one of stroke, acceleration"),
+        ({"acceleration": None}, "exactly one of displacement, acceleration"),
         ({"stiffness": None}, "exactly one of contact_duration, stiffness, youngs_modulus"),
         ({"mass": None}, "mass"),
         ({"mass": "20 g"}, "mass = '20 g': must be a positive number in kg$"),
@@ -167,9 +167,9 @@ def test_mistakes_are_one_line(change, named):
 
 def test_a_stroke_in_metres_has_no_height_that_is_no_number():
     given = {"frequency": 25.0, "mass": 0.02, "stiffness": 1e6, "restitution": 0.6}
-    words = str(on_shaker(**given, stroke=0.4))
+    words = str(on_shaker(**given, displacement=0.4))
     assert "nan" not in words
-    assert "strokes are in m." in words
+    assert "displacements are in m." in words
 
 
 def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_for(monkeypatch):

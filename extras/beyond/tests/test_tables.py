@@ -445,7 +445,7 @@ def test_a_recorded_acceleration_on_a_shaker():
     shape = Table.of_samples(recorded, acceleration=True)
     given = {"frequency": 50.0, "restitution": 0.85, "contact_duration": 1e-4}
     answer = bb.on_shaker(**given, acceleration=0.8 * 9.80665, table=shape)
-    again = bb.on_shaker(**given, stroke=answer.stroke, table=table)
+    again = bb.on_shaker(**given, displacement=answer.displacement, table=table)
     height = bb.orbit(answer.ball, amplitude=answer.amplitude, table=shape).max_height
     unit = 9.80665 / (100 * np.pi) ** 2
     assert answer.max_height.exact == pytest.approx(height * unit, rel=1e-9)

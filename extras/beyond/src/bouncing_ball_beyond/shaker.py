@@ -71,8 +71,10 @@ class ShakerAnswer:
     """Dimensionless ball with its contact, for the other functions of the package."""
     frequency: float
     """Frequency of the table in Hz."""
-    stroke: float
-    """Stroke of the table in m: half of the distance between its lowest and highest positions."""
+    displacement: float
+    """Amplitude of the displacement of the table in m: half of the distance between its lowest and
+    highest positions.
+    """
     contact_duration: float
     """Duration, in s, of a free impact at the closing speed of the orbit."""
     tolerance: float
@@ -84,9 +86,9 @@ class ShakerAnswer:
     max_height: ByModel
     """Maximum height of the ball, in m, above the mean position of the table."""
     lowest_frequency: float
-    """Frequency, in Hz, above which the ball bounces on this contact, at the same stroke."""
+    """Frequency, in Hz, above which the ball bounces on this contact, at the same displacement."""
     highest_frequency: float
-    """Frequency, in Hz, up to which the orbit on this contact is stable, at the same stroke."""
+    """Frequency, in Hz, up to which the orbit on this contact is stable, at this displacement."""
     longest_contact: float
     """Longest contact, in s, with a height within the tolerance, at the same frequency."""
     table: Table = SINE
@@ -130,7 +132,7 @@ class ShakerAnswer:
 
     def __repr__(self) -> str:
         rows = [
-            ("", ("restitution", "contact", "error law"), "on this contact, at this stroke"),
+            ("", ("restitution", "contact", "error law"), "on this contact, at this displacement"),
             (
                 "bounces from Λ",
                 [f"{value:.4g}" for value in self.saddle_node],
@@ -163,7 +165,7 @@ class ShakerAnswer:
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
-            f"The table moves by ±{1e3 * self.stroke:.4g} mm at {self.frequency:.4g} Hz,"
+            f"The table moves by ±{1e3 * self.displacement:.4g} mm at {self.frequency:.4g} Hz,"
             f" with an acceleration of {self._acceleration()}."
             f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
@@ -172,7 +174,7 @@ class ShakerAnswer:
         if self.bounces and np.isnan(self.error):
             sentences.append(
                 "Its orbit on the contact is not found at this acceleration: check the units;"
-                " strokes are in m."
+                " displacements are in m."
             )
         elif self.bounces:
             sentences.append(f"This motion is {STABLE[doubled]}.")
@@ -219,7 +221,7 @@ def on_shaker(
     *,
     frequency: float,
     restitution: float,
-    stroke: float | None = None,
+    displacement: float | None = None,
     acceleration: float | None = None,
     mass: float | None = None,
     radius: float | None = None,
@@ -243,10 +245,10 @@ def on_shaker(
         Frequency of the table in Hz.
     restitution : float
         Restitution coefficient r of a free impact, between 0 and 1.
-    stroke, acceleration : float
-        Give exactly one of the two. The stroke of the table, in m, is half of the distance between
-        its lowest and highest positions. The acceleration, in m/s², is the maximum acceleration of
-        the table.
+    displacement, acceleration : float
+        Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
+        between the lowest and highest positions of the table. The acceleration, in m/s², is the
+        maximum acceleration of the table.
     mass : float, optional
         Mass of the ball in kg. Not needed with ``contact_duration``.
     radius, density : float, optional
@@ -294,8 +296,10 @@ def on_shaker(
     fall = positive("gravity", gravity, "m/s²")
     tolerance = positive("tolerance", tolerance, "")
     check_table(table)
-    if _one_of(stroke=stroke, acceleration=acceleration) == "stroke":
-        amplitude = positive("stroke", stroke, "m") * rate**2 / fall / _half_stroke(table)
+    if _one_of(displacement=displacement, acceleration=acceleration) == "displacement":
+        amplitude = (
+            positive("displacement", displacement, "m") * rate**2 / fall / _half_range(table)
+        )
     else:
         amplitude = positive("acceleration", acceleration, "m/s²") / fall / table.acceleration
     contact = _one_of(
@@ -330,7 +334,7 @@ def on_shaker(
     return _answer(contacts, amplitude, n, tolerance, rate, fall, table)
 
 
-def _half_stroke(table: Table) -> float:
+def _half_range(table: Table) -> float:
     highest, lowest = table.peaks
     return (highest - lowest) / 2
 
@@ -410,7 +414,7 @@ def _answer(
         amplitude=amplitude,
         ball=ball,
         frequency=frequency,
-        stroke=amplitude * _half_stroke(table) * fall / rate**2,
+        displacement=amplitude * _half_range(table) * fall / rate**2,
         contact_duration=duration / rate,
         tolerance=tolerance,
         lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact, table),
@@ -422,7 +426,7 @@ def _answer(
 
 
 def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
-    """Find the factor on the frequency at which a bifurcation takes place at the same stroke.
+    """Find the factor on the frequency at which a bifurcation takes place at the same displacement.
 
     Returns NaN if the iteration does not converge.
     """

@@ -41,7 +41,8 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
 def reversed_ranges(value: object, where: str = "") -> Iterator[str]:
     """Yield a line for each range whose ends are equal or reversed."""
     if isinstance(value, Mapping):
-        low, high = value.get("min"), value.get("max")
+        low = value.get("min")
+        high = value.get("max")
         if isinstance(low, int | float) and isinstance(high, int | float) and low >= high:
             yield f"{where}: min = {low:g} must be less than max = {high:g}"
         for key, part in value.items():

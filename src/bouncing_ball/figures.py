@@ -629,7 +629,8 @@ def stretched(position: NDArray) -> NDArray:
     >>> stretched(np.array([0.0, 0.002, 0.5, 1.0])).round(3).tolist()
     [0.0, 0.112, 0.5, 1.0]
     """
-    below, above = np.cbrt(position), np.cbrt(1 - position)
+    below = np.cbrt(position)
+    above = np.cbrt(1 - position)
     return below / (below + above)
 
 

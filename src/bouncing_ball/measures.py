@@ -17,25 +17,25 @@ STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios of at least `STIFF`."""
 
 
-class Missing(ValueError):
-    """A run does not have the numbers that decide a claim."""
+def largest(values: ArrayLike) -> float:
+    """Return the largest number; NaN if there are none, or if one is NaN.
 
-
-def complete(values: ArrayLike) -> NDArray:
-    """Return numbers as an array; raise Missing if there are none, or if one is NaN."""
+    >>> largest([1.0, 2.0]), largest([1.0, np.nan]), largest([])
+    (2.0, nan, nan)
+    """
     numbers = np.asarray(values, dtype=float)
-    missing = int(np.isnan(numbers).sum())
-    if missing or not numbers.size:
-        raise Missing(f"{missing} of {numbers.size} numbers are missing")
-    return numbers
+    return float(numbers.max()) if numbers.size else np.nan
 
 
-def labelled(values: xr.DataArray, **labels: float | str) -> xr.DataArray:
-    """Select a number by the labels of its coordinates; raise Missing if there is none."""
-    for name, label in labels.items():
-        if label not in values[name].values:
-            raise Missing(f"there is no {name} = {label}")
-    return values.sel(labels)
+def smallest(values: ArrayLike) -> float:
+    """Return the smallest number; NaN if there are none, or if one is NaN."""
+    return -largest(-np.asarray(values, dtype=float))
+
+
+def labelled(values: xr.DataArray, **labels: float | str) -> xr.DataArray | float:
+    """Select a number by the labels of its coordinates; NaN if there is none."""
+    has_them = all(label in values[name].values for name, label in labels.items())
+    return values.sel(labels) if has_them else np.nan
 
 
 def steps(data: xr.DataArray) -> NDArray:
@@ -44,24 +44,28 @@ def steps(data: xr.DataArray) -> NDArray:
 
 
 def between(curve: xr.DataArray) -> PchipInterpolator:
-    """Interpolate a curve along ϖ by a monotone piecewise cubic in ln ϖ."""
-    return PchipInterpolator(np.log(curve["frequency_ratio"].values), complete(curve))
+    """Interpolate a curve without gaps along ϖ, by a monotone piecewise cubic in ln ϖ."""
+    return PchipInterpolator(np.log(curve["frequency_ratio"].values), curve.values)
+
+
+def at_ratio(curve: xr.DataArray, ratio: float) -> float:
+    """Interpolate a curve at a frequency ratio; NaN if the curve has gaps."""
+    return np.nan if curve.isnull().any() else float(between(curve)(np.log(ratio)))
 
 
 def crossing(curve: xr.DataArray, level: float) -> float:
-    """Return the largest ϖ at which a curve reaches a level; NaN if there is none."""
+    """Return the largest ϖ at which a curve reaches a level; NaN if there is none, or if the curve
+    has gaps.
+    """
+    if curve.isnull().any():
+        return np.nan
     places = between(curve).solve(level, extrapolate=False)
     return float(np.exp(places.max())) if places.size else np.nan
 
 
 def from_the_stiffest(table1: xr.Dataset) -> xr.Dataset:
-    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ.
-
-    Raises Missing if there is none.
-    """
+    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ."""
     printed = table1.dropna("frequency_ratio", subset=["printed"])
-    if not printed.sizes["frequency_ratio"]:
-        raise Missing("the table has no printed row")
     return printed.sortby("frequency_ratio", ascending=False)
 
 
@@ -69,12 +73,10 @@ def last_special(branch: xr.Dataset, kind: str) -> float:
     """Return Λ at the last special point of a kind along a branch.
 
     The range of Table 1 lies at the end of a branch, on the stable side of its last saddle-node.
-    Raises Missing if the branch has no such point.
+    NaN if the branch has no such point.
     """
     found = branch["special_amplitude"].values[branch["special_kind"].values == kind]
-    if not found.size:
-        raise Missing(f"the branch has no {kind}")
-    return float(found[-1])
+    return float(found[-1]) if found.size else np.nan
 
 
 def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
@@ -89,10 +91,13 @@ def branches(*figures: xr.Dataset) -> list[xr.Dataset]:
 def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
     """Return the ranges of Λ with stable orbits, in the order of the branch.
 
-    A range begins and ends at a special point or at an end of the branch.
+    A range begins and ends at a special point or at an end of the branch. A branch with gaps has no
+    ranges.
     """
+    if branch["amplitude"].isnull().any():
+        return []
     special = branch.isel(special=branch["special_kind"].values != "")
-    places = complete([0.0, *special["special_arclength"].values, 1.0])
+    places = np.array([0.0, *special["special_arclength"].values, 1.0])
     amplitude = branch["amplitude"].values
     ends = np.array([amplitude[0], *special["special_amplitude"].values, amplitude[-1]])
     middles = (places[:-1] + places[1:]) / 2
@@ -158,7 +163,7 @@ def residual(figure: xr.Dataset) -> NDArray:
     n = parameters(figure)["n"]
     ratio = figure["frequency_ratio"].values[:, np.newaxis]
     amplitude, phase, end, duration, before, after = (
-        complete(figure[name])
+        figure[name].values
         for name in (
             "amplitude",
             "phase",
@@ -171,7 +176,8 @@ def residual(figure: xr.Dataset) -> NDArray:
     x = amplitude * np.cos(phase)
     impact_height = amplitude * np.sin(phase)
     contact = Contact(ratio, figure["damping_ratio"].item())
-    motion = contact.motion(duration, before - x, x, impact_height)
+    with np.errstate(invalid="ignore"):  # orbits that are missing
+        motion = contact.motion(duration, before - x, x, impact_height)
     flight = 2 * np.pi * n - duration
     landing = motion.displacement + amplitude * np.sin(end) + after * flight - flight**2 / 2
     return np.stack(

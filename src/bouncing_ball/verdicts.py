@@ -13,7 +13,8 @@ not reproduced
 not testable
     The text does not say what decides the claim.
 not asked
-    This run has other parameters than the claim needs, or lacks a dataset.
+    This run has other parameters than the claim needs, lacks a dataset, or lacks a number that
+    decides the claim.
 
 Each sense of a statement is a condition on the datasets, a `Reading`. The first is the literal one.
 """
@@ -26,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bouncing_ball.datasets import Datasets
-from bouncing_ball.measures import ROUNDING, Missing, complete
+from bouncing_ball.measures import ROUNDING, largest, smallest
 from bouncing_ball.paper import LIMIT, other_parameters
 
 VERDICTS = ("reproduced", "partly", "not reproduced", "not testable", "not asked")
@@ -41,7 +42,7 @@ class Comparison(NamedTuple):
     Attributes
     ----------
     verdict
-        "reproduced" or "not reproduced".
+        "reproduced" or "not reproduced"; "not asked" if the computed number is missing.
     units
         Distance from the printed number, in units of its last digit.
     share
@@ -58,9 +59,11 @@ def against_print(found: float, printed: str) -> Comparison:
 
     A number halfway between two roundings counts as rounding to either.
 
-    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2556)]
-    ['reproduced', 'not reproduced']
+    >>> [against_print(found, "0.255").verdict for found in (0.2545, 0.2556, np.nan)]
+    ['reproduced', 'not reproduced', 'not asked']
     """
+    if np.isnan(found):
+        return Comparison("not asked", np.nan, np.nan)
     decimals = len(printed.partition(".")[2])
     distance = found - float(printed)
     units = distance * 10.0**decimals
@@ -81,7 +84,7 @@ class Reading(NamedTuple):
     holds
         Whether it holds.
     found
-        The number that decides; NaN if none does.
+        The number that decides: None if none does, NaN if this run lacks it.
     required
         The bound of this number, as text; without a number, the reason.
     is_share
@@ -90,38 +93,38 @@ class Reading(NamedTuple):
 
     name: str
     holds: bool
-    found: float
+    found: float | None
     required: str
     is_share: bool = False
 
 
 def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is larger than a bound."""
-    largest = float(complete(values).max())
+    found = largest(values)
     if bound == LIMIT:
-        return Reading(name, largest <= bound, largest, f"at most {100 * LIMIT:g} %", True)
+        return Reading(name, found <= bound, found, f"at most {100 * LIMIT:g} %", True)
     words = {0: "none allowed", ROUNDING: "0 within rounding"}
     required = words.get(bound, f"at most {three_digits(bound)}")
-    return Reading(name, largest <= bound, largest, required)
+    return Reading(name, found <= bound, found, required)
 
 
 def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is smaller than a bound."""
-    smallest = float(complete(values).min())
+    found = smallest(values)
     if bound == LIMIT:
-        return Reading(name, smallest >= bound, smallest, f"at least {100 * LIMIT:g} %", True)
-    return Reading(name, smallest >= bound, smallest, f"at least {three_digits(bound)}")
+        return Reading(name, found >= bound, found, f"at least {100 * LIMIT:g} %", True)
+    return Reading(name, found >= bound, found, f"at least {three_digits(bound)}")
 
 
 def above(name: str, values: ArrayLike) -> Reading:
     """Require that every number is positive."""
-    smallest = float(complete(values).min())
-    return Reading(name, smallest > 0, smallest, "positive")
+    found = smallest(values)
+    return Reading(name, found > 0, found, "positive")
 
 
 def argued(name: str, holds: bool, reason: str) -> Reading:
     """State a sense that no number decides, with the reason."""
-    return Reading(name, holds, np.nan, reason)
+    return Reading(name, holds, None, reason)
 
 
 # Claims
@@ -178,11 +181,13 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
-    try:
-        decided = claim.decide(*(datasets[name] for name in claim.datasets))
-        return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
-    except Missing as error:
-        return not_asked(str(error))
+    decided = claim.decide(*(datasets[name] for name in claim.datasets))
+    return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
+
+
+def missing_numbers(claim: Claim) -> str:
+    """The reason if this run lacks a number that decides a claim."""
+    return f"a number that decides it is missing in {', '.join(claim.datasets)}"
 
 
 def not_asked(reason: str) -> dict:
@@ -192,8 +197,10 @@ def not_asked(reason: str) -> dict:
 
 def of_number(claim: Claim, computed: ArrayLike) -> dict:
     """The verdict on a printed number."""
-    found = float(complete(computed))
+    found = float(np.asarray(computed))
     verdict, units, share = against_print(found, claim.printed)
+    if verdict == "not asked":
+        return not_asked(missing_numbers(claim))
     return {
         "verdict": verdict,
         "found": found,
@@ -207,8 +214,12 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
 
     If the readings differ, `own_sense` says whether the literal one holds.
     """
+    numbers = [reading.found for reading in readings if reading.found is not None]
+    if np.isnan(numbers).any():
+        return not_asked(missing_numbers(claim))
+    literal = readings[0].found if readings else None
     found = {
-        "found": readings[0].found if readings else np.nan,
+        "found": np.nan if literal is None else literal,
         "condition": listed(readings),
     }
     right = [reading.holds for reading in readings]
@@ -219,8 +230,8 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
         return found | {"verdict": "reproduced"}
     if not any(right):
         return found | {"verdict": "not reproduced"}
-    literal = "holds" if readings[0].holds else "does not hold"
-    return found | {"verdict": "partly", "own_sense": literal}
+    sense = "holds" if readings[0].holds else "does not hold"
+    return found | {"verdict": "partly", "own_sense": sense}
 
 
 def listed(readings: list[Reading]) -> list[str]:
@@ -231,19 +242,19 @@ def listed(readings: list[Reading]) -> list[str]:
     """
     texts = []
     for reading in sorted(readings, key=lambda reading: not reading.holds):
-        number = f"{rounded(reading)}, " if np.isfinite(reading.found) else ""
+        found = reading.found
+        printed = "" if found is None or np.isinf(found) else rounded(found, reading.is_share)
+        number = f"{printed}, " if printed else ""
         word = "yes" if reading.holds else "no"
         texts.append(f"{word}: {reading.name} ({number}{reading.required})")
     return texts
 
 
-def rounded(reading: Reading) -> str:
-    """The number of a reading with three digits; zero if it is zero within rounding."""
-    if abs(reading.found) <= ROUNDING:
+def rounded(number: float, is_share: bool) -> str:
+    """Print a number with three digits, a share in per cent; zero if it is zero within rounding."""
+    if abs(number) <= ROUNDING:
         return "0"
-    if reading.is_share:
-        return f"{three_digits(100 * reading.found)} %"
-    return three_digits(reading.found)
+    return f"{three_digits(100 * number)} %" if is_share else three_digits(number)
 
 
 def three_digits(value: float) -> str:

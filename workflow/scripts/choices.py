@@ -93,7 +93,7 @@ def verdicts(
         for claim in decided_by(names, table)
     ]
     found = [(claim.name, answer(claim, datasets)["verdict"]) for claim in asked]
-    return [(name, verdict.replace("not computed", "beyond the axis")) for name, verdict in found]
+    return [(name, verdict.replace("not asked", "beyond the axis")) for name, verdict in found]
 
 
 def axis_of(name: str) -> str:

@@ -42,6 +42,13 @@ def flights(rng, r, impacts, error, scatter, recordings=1, start=3.6):
     return Recording("flights", "flights", tuple(chains))
 
 
+def falls(rng, r, heights, error, scatter):
+    """Two intervals after each fall from a height."""
+    v = np.sqrt(2 * G * heights)
+    found = [flights(rng, r, 1, error, scatter, start=each) for each in v * r(v)]
+    return Recording("falls", "flights", tuple(each.chains[0] for each in found))
+
+
 def rounded(rng, r, impacts, digits, scatter):
     """Times that are rounded to frames of a camera."""
     found = flights(rng, r, impacts, 0.0, scatter)
@@ -429,6 +436,11 @@ KINDS = [
         "20 pairs of speeds about 3 m/s to 0.1 m/s",
         flat(0.8),
         partial(speeds, v=np.linspace(2.9, 3.1, 20), error=0.1, scatter=0),
+    ),
+    (
+        "40 falls from 0.2 to 2 m, two intervals each, 20 ms, v^-0.1",
+        partial(power, 0.8, -0.1),
+        partial(falls, heights=np.geomspace(0.2, 2, 40), error=0.02, scatter=0),
     ),
 ]
 

@@ -1,14 +1,24 @@
 """Intervals of published experiments and of simulated recordings."""
 
 import importlib.util
+import math
+from dataclasses import astuple, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 from scipy.special import chdtrc
 
 from bouncing_ball_contacts import Refused, design, fit
-from bouncing_ball_contacts.intervals import curves_of, deviations, estimate, impacts_of
+from bouncing_ball_contacts.intervals import (
+    _by_errors,
+    curves_of,
+    deviations,
+    estimate,
+    impacts_of,
+    misread,
+)
 from bouncing_ball_contacts.recordings import Recording, rounding_of
 from bouncing_ball_contacts.tables import experiments
 
@@ -163,7 +173,27 @@ def test_errors_of_times_enter_the_flights_on_both_sides():
         moved = times + step * (np.arange(4) == i)
         again = impacts_of(Recording("", "flights", (np.diff(moved),)))
         slope = (again.log_r - found.log_r) / step
-        assert slope == pytest.approx(found.readings[:, i], abs=1e-4)
+        assert slope == pytest.approx(found.readings[0][:, i], abs=1e-4)
+        slope = np.log(again.speed / found.speed) / step
+        assert slope == pytest.approx(found.of_speed[0][:, i], abs=1e-4)
+
+
+def test_traces_of_errors_are_those_of_whole_matrices():
+    """tr PC and tr PD are found series by series, in the basis of the weights."""
+    rng = np.random.default_rng(4)
+    series = [(rng.normal(size=(n, n + 2)), rng.normal(size=(n, n + 2))) for n in (2, 1, 3)]
+    bases = [np.linalg.qr(rng.normal(size=(len(m), len(m))))[0] for m, _ in series]
+    weights = rng.uniform(1, 2, size=(1, 6))
+    of_r, of_x = ([u.T @ pair[i] for u, pair in zip(bases, series, strict=True)] for i in range(2))
+    of_bends = [np.repeat(each[..., None], 7, axis=2) for each in of_x]
+    basis = block_diag(*bases)
+    found = _by_errors(weights, basis.T @ np.ones(6), of_r, of_bends)
+    w = basis @ np.diag(weights[0]) @ basis.T
+    of_mean = w @ np.ones((6, 1))
+    p = w - of_mean @ of_mean.T / of_mean.sum()
+    m, d = (block_diag(*(pair[i] for pair in series)) for i in range(2))
+    assert found[0][0] == pytest.approx(np.full(7, np.trace(p @ d @ m.T)))
+    assert found[1][0] == pytest.approx(np.full(7, np.trace(p @ d @ d.T)))
 
 
 def test_a_fit_is_a_bounce_for_an_engine():
@@ -228,6 +258,35 @@ def test_errors_of_pooled_pairs_make_no_slope(typed):
     for kind in (-6, -4, -1):
         held, _, _ = coverage.study(coverage.KINDS[kind], 40, seed=4)
         assert held >= 33
+
+
+def test_series_are_fitted_as_by_one_matrix_of_all():
+    """Series share no reading: their matrix has blocks, which are used one by one."""
+    rng = np.random.default_rng(9)
+    pooled = coverage.flights(rng, coverage.flat(0.8), 3, 0.01, 0.01, recordings=4)
+    impacts = impacts_of(pooled)
+    one = replace(
+        impacts,
+        readings=(block_diag(*impacts.readings),),
+        of_speed=(block_diag(*impacts.of_speed),),
+    )
+    for known in (None, 0.01):
+        found, expected = (estimate(curves_of(each, known, 2.0)) for each in (impacts, one))
+        assert astuple(found) == pytest.approx(astuple(expected), abs=1e-8)
+    # A wrong time of the third series enters its three impacts.
+    impacts.log_r[6:9] += 0.3 * impacts.readings[2][:, 2]
+    assert list(misread(impacts)) == list(misread(one)) == [6, 7, 8]
+
+
+@pytest.mark.parametrize("resolution", [None, 0.02])
+def test_errors_that_r_and_the_speed_share_do_not_move_the_slope(resolution):
+    """Of 40 falls from 0.2 to 2 m it was v^-0.025, and is 0 within three standard errors."""
+    rng = np.random.default_rng(6)
+    slopes = []
+    for _ in range(60):
+        pooled = coverage.falls(rng, coverage.flat(0.8), np.geomspace(0.2, 2, 40), 0.02, 0)
+        slopes.append(estimate(curves_of(impacts_of(pooled), resolution, 2.5)).slope)
+    assert abs(np.mean(slopes)) < 3 * np.std(slopes) / math.sqrt(60)
 
 
 def test_what_one_impact_or_one_height_cannot_say_is_not_said():

@@ -518,9 +518,12 @@ def test_heights_in_pixels_have_an_r_and_no_speed():
 
 def test_more_impacts_than_a_fit_takes_are_refused():
     """Of 20,000 the arrays crashed."""
-    many = np.full(1001, 1.0)
-    with pytest.raises(Refused, match="1001 impacts are more than 1000: fit parts of them"):
+    many = np.full(10001, 1.0)
+    with pytest.raises(Refused, match="10001 impacts are more than 10000: fit parts of them"):
         fit({"drop (m)": many, "rebound (m)": 0.64 * many})
+    series = {"height (m)": 0.99 ** np.arange(1002)}
+    with pytest.raises(Refused, match="1001 impacts of one series are more than 1000"):
+        fit(series)
 
 
 def test_five_balls_have_each_remark_once(typed, tmp_path):

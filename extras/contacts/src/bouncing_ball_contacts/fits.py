@@ -289,7 +289,7 @@ def fit(
                 f"{span(v.min(), v.max(), form='g')} m/s: nothing is known of r there",
             ),
             (
-                np.min(np.linalg.norm(impacts.readings * error, axis=1)) > 1,
+                all(np.min(np.sum(each**2, axis=1)) > 1 for each in impacts.errors(error)[0]),
                 f"{recording.name}: readings with an error of {show(float(np.max(error)), unit)} "
                 "say nothing of r: is a unit missing?",
             ),

@@ -16,6 +16,9 @@ rounding, 0.29 frames or units of the last digit (`rounding_of`). If the errors 
 given, τ is known. The prior of scatter is about 0.011, with a factor of 4.5 either way: the
 published experiments have 0.0004 to 0.04.
 
+A reading enters the speed xᵢ also, which makes a slope where there is none. What it adds to the
+sums of products in c is known, and subtracted (`_by_errors`).
+
 The covariances of all ratios ρ = s/τ have the same eigenvectors, those of M Mᵀ. In their basis each
 covariance is a row of variances, and every question below is one of weighted sums of squares.
 
@@ -31,16 +34,17 @@ this distribution. Two impacts leave no deviation, and have the posterior for al
 """
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import linalg, optimize, special
+from scipy import optimize, special
 
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import Lines
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, refuse, show
 
 # Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
 # the readings with which the speeds before and after an impact go. Those of series are alike; of a
@@ -61,8 +65,9 @@ _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
 _ARITHMETIC = 1e-12
-# Arrays have the square of this number, and a fit of so many impacts takes about 10 s.
-_MOST = 1000
+# A fit takes about 1 s for each 1,000 impacts; of a series arrays have the square of its length.
+_MOST = 10_000
+_LONGEST = 1000
 # 1e-6 stands for 0, which would be divided by.
 _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 
@@ -78,57 +83,72 @@ class Impacts:
     ----------
     speed, log_r
         Speed in m/s, and ln r.
-    readings
-        M, the derivative of ln r with respect to the readings: times in s, heights in m, speeds in
-        m/s, or r.
+    readings, of_speed
+        Derivatives M of ln r and L of ln v with respect to the readings: times in s, heights in m,
+        speeds in m/s, or r. Both have one matrix for each series, because series share no reading.
     usual
         Usual standard deviation of a reading.
-    shared
-        Covariance of ln r and ln v of each impact for readings with a variance of 1.
     """
 
     speed: Array
     log_r: Array
-    readings: Array
+    readings: tuple[Array, ...]
+    of_speed: tuple[Array, ...]
     usual: float
-    shared: Array
 
     @property
     def restitution(self) -> Array:
         """r of each impact."""
         return np.exp(self.log_r)
 
+    def errors(self, size: float | Array) -> tuple[list[Array], list[Array]]:
+        """Return M and L times the standard deviation of the readings, or that of each r."""
+        sizes = np.broadcast_to(size, len(self.readings))
+        of_r, of_speed = (
+            [each * matrix for each, matrix in zip(sizes, matrices, strict=True)]
+            for matrices in (self.readings, self.of_speed)
+        )
+        return of_r, of_speed
 
-def _derivatives(kind: str, values: Array) -> tuple[Array, Array]:
-    """Return the part of M of a chain, ln v after an impact minus ln v before it, and `shared`."""
+    def largest_error(self, known: float | Array | None) -> float:
+        """Return the largest standard deviation of the readings.
+
+        If it is not known, all deviations of r are errors of the readings.
+        """
+        squares = max(sum(float(np.sum(each**2)) for each in self.readings), _ARITHMETIC)
+        largest = math.sqrt(len(self.log_r) * float(np.var(self.log_r)) / squares)
+        return largest if known is None else min(largest, float(np.max(known)))
+
+
+def _derivatives(kind: str, values: Array) -> Iterator[tuple[Array, Array]]:
+    """Yield M and L of the series of a chain; each pair is a series."""
     power = np.array(KINDS[kind][2])
     n = len(values)
     if values.ndim == 2:
         # A height of a drop and a speed of a coefficient are set, and not read.
         is_read = kind in ("speeds", "track")
-        # The readings of a pair are independent, and enter as one.
-        each = np.linalg.norm(power / values, axis=1)
-        return np.diag(each), -is_read * (power[0] / values[:, 0]) ** 2
-    # A flight is the difference of two readings.
-    each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
-    log_v = power[0] * each / values[:, None]
-    readings = np.diff(log_v, axis=0)
-    return readings, np.sum(readings * log_v[:-1], axis=1)
+        each = power / values
+        readings = (each * [-1, 1])[:, None]
+        yield from zip(readings, (each * [is_read, 0])[:, None], strict=True)
+    elif n > 1:
+        # A flight is the difference of two readings.
+        each = np.diff(np.eye(n + 1), axis=0) if kind == "flights" else np.eye(n)
+        log_v = power[0] * each / values[:, None]
+        yield np.diff(log_v, axis=0), log_v[:-1]
 
 
 def are_told(impacts: Impacts, known: float | Array | None) -> bool:
     """Return whether the speeds differ by more than errors of the readings would make.
 
     A reading enters r and the speed, so its error makes a slope of r over the speed where there is
-    none. The deviations of r are at most errors of readings. If their covariance with the speeds
-    then is a correlation with a square above 1/20, the slope would take more than this share
-    of the deviations, and the interval would be too narrow by more than 1/40.
+    none. If the covariance of the largest errors is a correlation with a square above 1/20, the
+    slope would take more than this share of the deviations.
     """
-    x, y = (each - np.mean(each) for each in (np.log(impacts.speed), impacts.log_r))
-    size = np.sum(y**2) / max(float(np.sum(impacts.readings**2)), _ARITHMETIC)
-    variance = size if known is None else min(size, float(np.max(known)) ** 2)
-    covariance = variance * float(np.sum(impacts.shared))
-    return bool(20 * covariance**2 <= np.sum(x**2) * np.sum(y**2))
+    both = zip(impacts.readings, impacts.of_speed, strict=True)
+    shared = sum(float(np.sum(of_r * of_v)) for of_r, of_v in both)
+    covariance = impacts.largest_error(known) ** 2 * shared / len(impacts.speed)
+    product = np.var(np.log(impacts.speed)) * np.var(impacts.log_r)
+    return bool(20 * covariance**2 <= product)
 
 
 def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
@@ -150,15 +170,24 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
             for values in chains
         ]
     )
-    if len(pairs) > _MOST:
-        raise Refused(
-            f"{recording.name}: {len(pairs)} impacts are more than {_MOST}: fit parts of them"
-        )
-    if not len(pairs):
-        raise Refused(
-            f"{recording.name}: no impact lies between two flights: three times or two heights are "
-            "needed"
-        )
+    longest = max((len(values) - 1 for values in chains if values.ndim == 1), default=0)
+    refuse(
+        [
+            (
+                len(pairs) > _MOST,
+                f"{recording.name}: {len(pairs)} impacts are more than {_MOST}: fit parts of them",
+            ),
+            (
+                longest > _LONGEST,
+                f"{recording.name}: {longest} impacts of one series are more than {_LONGEST}",
+            ),
+            (
+                not len(pairs),
+                f"{recording.name}: no impact lies between two flights: three times or two heights "
+                "are needed",
+            ),
+        ]
+    )
     before, after = pairs.T
     if kind == "coefficients":
         after = before * after
@@ -167,14 +196,9 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     if kind in ("flights", "heights", "drops"):
         before, _ = speeds_of(before, drag)
         _, after = speeds_of(after, drag)
-    readings, shared = zip(*(_derivatives(kind, values) for values in chains), strict=True)
-    return Impacts(
-        before,
-        np.log(after / before),
-        linalg.block_diag(*readings),
-        KINDS[kind][1],
-        np.concatenate(shared),
-    )
+    series = [each for values in chains for each in _derivatives(kind, values)]
+    readings, of_speed = zip(*series, strict=True)
+    return Impacts(before, np.log(after / before), readings, of_speed, KINDS[kind][1])
 
 
 def misread(impacts: Impacts) -> Lines:
@@ -184,13 +208,19 @@ def misread(impacts: Impacts) -> Lines:
     moved them by much more than the deviations that remain without it.
     """
     away = impacts.log_r - np.median(impacts.log_r)
-    readings = impacts.readings
-    # A single reading of a chain moves nothing.
+    # The impact that is farthest away is moved by the reading, or is left.
+    farthest = int(np.argmax(np.abs(away)))
+    begins = np.cumsum([0, *map(len, impacts.readings)])
+    i = int(np.searchsorted(begins, farthest, side="right")) - 1
+    begin, end = begins[i : i + 2]
+    readings = impacts.readings[i]
+    # A reading of a speed that is exact moves nothing.
     squares = np.sum(readings**2, axis=0)
-    moved = readings * (readings.T @ away) / np.where(squares > 0, squares, 1.0)
-    left = np.abs(away[:, None] - moved).max(axis=0)
+    moved = readings * (readings.T @ away[begin:end]) / np.where(squares > 0, squares, 1.0)
+    others = np.abs(np.delete(away, slice(begin, end))).max(initial=0.0)
+    left = np.maximum(np.abs(away[begin:end, None] - moved).max(axis=0), others)
     worst = int(np.argmin(left))
-    found = np.flatnonzero(readings[:, worst])
+    found = begin + np.flatnonzero(readings[:, worst])
     # Two impacts seldom deviate oppositely by themselves, as one may.
     least = 0.05 if len(found) > 1 else 0.2
     is_far = np.abs(moved[:, worst]).max() > max(least, 5 * left[worst])
@@ -303,6 +333,37 @@ def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
     return weights / weights.sum(axis=0) * posterior.sum(axis=0)
 
 
+def _by_errors(
+    weights: Array, ones: Array, of_r: list[Array], of_bends: list[Array]
+) -> tuple[Array, Array]:
+    """Return what errors of the readings add to the products of a regression, (ratio, exponent).
+
+    The slope of y over x is xᵀPy/xᵀPx, with P = W - W 1 1ᵀ W/(1ᵀ W 1). If x = ξ + δ and y = c ξ + ε
+    have errors with the covariances cov(δ, ε) = τ² C and cov(δ, δ) = τ² D, these products have the
+    means::
+
+        E xᵀPy = c ξᵀPξ + τ² tr PC,    E xᵀPx = ξᵀPξ + τ² tr PD
+
+    The ratio of both, each less its trace, is c (W. A. Fuller, Measurement Error Models, 1987,
+    section 2.2). The traces are returned. For each series, ``of_r`` (n, reading) and ``of_bends``
+    (n, reading, exponent) are derivatives with respect to the readings, in the basis of ``weights``
+    (ratio, n).
+    """
+    traces = np.zeros((2, len(weights), len(_EXPONENTS)))
+    total = (weights @ ones**2)[:, None]
+    begin = 0
+    for y, x in zip(of_r, of_bends, strict=True):
+        part = slice(begin, begin := begin + len(y))
+        # The speed may be set, and have no error.
+        if np.any(x):
+            for trace, other in zip(traces, (y[..., None], x), strict=True):
+                trace += weights[:, part] @ np.sum(x * other, axis=1)
+                of_mean = weights[:, part] * ones[part]
+                both = (np.tensordot(of_mean, each, axes=1) for each in (x, other))
+                trace -= np.sum(math.prod(both), axis=1) / total
+    return traces[0], traces[1]
+
+
 def curves_of(
     impacts: Impacts, known: float | Array | None, at: float, rounding: float = 0.0
 ) -> Curves:
@@ -312,10 +373,19 @@ def curves_of(
     Then readings are multiples of ``rounding``, if it is not 0.
     """
     n = len(impacts.log_r)
-    errors = impacts.readings * (impacts.usual if known is None else known)
-    covariance = errors @ errors.T
-    error = math.sqrt(float(np.median(np.diag(covariance))))
-    eigenvalues, basis = np.linalg.eigh(covariance / error**2)
+    unit = impacts.usual if known is None else known
+    each_variance = [np.sum(each**2, axis=1) for each in impacts.errors(unit)[0]]
+    error = math.sqrt(np.median(np.concatenate(each_variance)))
+    errors, errors_of_speed = impacts.errors(unit / error)
+    parts = [np.linalg.eigh(each @ each.T) for each in errors]
+    eigenvalues = np.concatenate([part.eigenvalues for part in parts])
+    ends = np.cumsum(list(map(len, errors)))[:-1]
+
+    def in_basis(columns: Iterable[Array]) -> list[Array]:
+        """Return columns of each series in the basis of the eigenvectors."""
+        both = zip(parts, columns, strict=True)
+        return [np.tensordot(part.eigenvectors, each, axes=(0, 0)) for part, each in both]
+
     # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n). Steps of 1/20 are
     # enough, because an error of 5 % in scatter is one of 5 % in the width.
     step = float(np.clip(math.sqrt(2 / n), 0.05, 0.25))
@@ -336,22 +406,34 @@ def curves_of(
     # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
     # middle of ln r is subtracted against rounding errors.
     middle = float(np.mean(impacts.log_r))
-    y = (impacts.log_r - middle) @ basis
+    y = np.concatenate(in_basis(np.split(impacts.log_r - middle, ends)))
     # Speeds that differ by errors only are taken as one: then only the prior of c says how r
     # changes up to the speed that is asked.
     x = np.log(impacts.speed / at)
     has_slope = are_told(impacts, known)
     x = x if has_slope else np.full(n, np.mean(x))
-    bends = np.expm1(np.outer(_EXPONENTS, x)) / _EXPONENTS[:, None]
-    columns = basis.T @ np.stack([np.ones_like(bends), bends], axis=-1)
+    growths = np.outer(x, _EXPONENTS)
+    bends = np.expm1(growths) / _EXPONENTS
+    both = np.stack([np.ones_like(bends), bends], axis=-1)
+    columns = np.concatenate(in_basis(np.split(both, ends))).swapaxes(0, 1)
     weights = 1 / variances
     precision = (1 / sizes**2)[:, None]
     products = np.tensordot(weights, columns[..., None] * columns[..., None, :], axes=(1, 1))
     pull = np.tensordot(weights, columns * y[:, None], axes=(1, 1))
     ones = products[..., 0, 0]
     shift = products[..., 0, 1] / ones
-    of_bends = (products[..., 1, 1] - shift**2 * ones)[:, None] * precision + _SLOPE**-2
-    slope = (pull[..., 1] - shift * pull[..., 0])[:, None] * precision / of_bends
+    # Errors of the readings enter the speeds also.
+    growth = np.split(np.exp(growths) * has_slope, ends)
+    errors_of_bends = [
+        each[..., None] * part[:, None] for each, part in zip(errors_of_speed, growth, strict=True)
+    ]
+    traces = _by_errors(weights, columns[0, :, 0], in_basis(errors), in_basis(errors_of_bends))
+    # Larger errors than the deviations have a posterior of about 0.
+    largest = impacts.largest_error(known) * error / np.max(unit)
+    made, lost = (each[:, None] * np.minimum(1.0, largest**2 * precision) for each in traces)
+    squares_of_bends = (products[..., 1, 1] - shift**2 * ones)[:, None] * precision
+    of_bends = np.maximum(squares_of_bends - lost, 0.0) + _SLOPE**-2
+    slope = ((pull[..., 1] - shift * pull[..., 0])[:, None] * precision - made) / of_bends
     value = (pull[..., 0] / ones)[:, None] - shift[:, None] * slope
     left = (weights @ y**2)[:, None] - pull[..., 0] ** 2 / ones
     squares = left[:, None] * precision - slope**2 * of_bends
@@ -359,12 +441,14 @@ def curves_of(
     volume = volume[..., None] + np.log(ones)[:, None] + np.log(of_bends)
     posterior = prior[..., None] - (squares + volume) / 2
     shares = special.softmax(posterior)
-    curve = middle + np.sum(shares * value) + np.sum(shares * slope, axis=(0, 1)) @ bends
+    curve = middle + np.sum(shares * value) + bends @ np.sum(shares * slope, axis=(0, 1))
     errors_of_r = np.exp(curve) - impacts.restitution
     # Two impacts leave no deviation, and have the posterior of all s > 0.
     confidence = np.concatenate([np.zeros_like(shares[:1]), special.softmax(posterior[1:])])
     if n > 2:
-        confidence = _confidence(confidence, _below(weights, columns, y, sizes), scatter)
+        # One exponent at a time, because these arrays are the largest ones.
+        below = [_below(weights, each[None], y, sizes) for each in columns]
+        confidence = _confidence(confidence, np.concatenate(below, axis=-1), scatter)
     return Curves(
         scatter_sizes=np.concatenate([np.zeros_like(scatter[:1]), scatter]),
         confidence=confidence,

@@ -182,10 +182,12 @@ class Table:
         """Return the lines of each name in a column; an empty cell has the name above it."""
         name = ""
         cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
-        names = [name := cell or name for cell in cells[0]]
+        rows_of: dict[str, list[int]] = {}
+        for i, cell in enumerate(cells[0]):
+            name = cell or name
+            rows_of.setdefault(name, []).append(i)
         parts = {}
-        for part in dict.fromkeys(names):
-            rows = [i for i, each in enumerate(names) if each == part]
+        for part, rows in rows_of.items():
             columns = [
                 replace(each, cells=[each.cells[i] for i in rows], numbers=each.numbers[rows])
                 for each in self.columns

@@ -111,11 +111,22 @@ FILES = {
     "Run 1: Acceleration (m/s^2)\n" + track("{:.6f},{:.6f},0,0"),
     "Capstone": '"Time (s) Run #1";"Position (m) Run #1";"Velocity (m/s) Run #1"\n'
     + track("{:.4f};{:.5f};0").replace(".", ","),
-    "Tracker, with velocities": "mass A\t\t\t\t\nt\tx\ty\tv_{y}\tstep\n"
-    + track("{:.6f}\t0.001\t{:.6f}\t0\t1"),
+    "Tracker 6": ",mass A,,,,,\nt,frame,x,y,pixelx,pixely,\n"
+    + track("{:.9E},7,1.2E-3,{:.9E},400.1,300.2,"),
+    "Tracker 5, no velocity at the ends": "mass_A\nt\tx\ty\tv_{x}\tv_{y}\n-1.6E-2\t0\t\t\t\n"
+    + track("{:.9E}\t1.2E-3\t{:.9E}\t0\t1"),
     "Arduino, distance below a sensor": "millis,distance_cm\n"
     + track("{:.1f},{:.3f}", slow=1000, shown=lambda y: 200 - 100 * y),
+    "Arduino, sketch of a distance sensor": "Time,Distance,Filtered\n"
+    + track("{:.4f},{:.1f},1000", shown=lambda y: 1500 - 700 * y),
+    "Arduino, monitor with its clock": "9:30:1.123 -> Live readings:\n"
+    "9:30:1.123 -> Time (ms), Distance (cm)\n"
+    + track("10:30:01.123 -> {:.1f}, {:.3f}", slow=1000, shown=lambda y: 200 - 100 * y),
     "Audacity, labels": "\n".join(f"{t:.6f}\t{t:.6f}\t{i}" for i, t in enumerate(TIMES)),
+    "Audacity, labels of regions with frequencies": "\n".join(
+        f"{t:.6f}\t{t + 0.02:.6f}\t\n\\\t100.000000\t200.000000" for t in TIMES
+    ),
+    "phyphox, acoustic stopwatch, intervals alone": '"Interval (s)"\n' + column([*FLIGHTS, 0]),
     "computed columns": "Time (s),Δt (s),Height ratio\n"
     + "\n".join(f"{t},{x},0.6724" for t, x in zip(TIMES[1:], FLIGHTS, strict=True)),
     "films below each other": "t,y\n" + track() + "\n\n" + track(),
@@ -465,6 +476,59 @@ def test_films_are_read_as_one_recording_of_all_impacts(tmp_path):
         assert len(fit(path).impacts.speed) == 12
     path.write_text("t,y\n" + track() + "\n" + track())
     with pytest.raises(Refused, match="leave an empty line before another film"):
+        fit(path)
+
+
+@pytest.mark.parametrize(
+    "headings",
+    [
+        '"Run 1: Time (s)","Run 1: Position (m)","Run 2: Time (s)","Run 2: Position (m)"',
+        '"Latest: Time (s)","Latest: Position (m)","Run 1: Time (s)","Run 1: Position (m)"',
+        '"Time (s) Run #1","Position (m) Run #1","Time (s) Run #2","Position (m) Run #2"',
+        "Data Set 1:Time(s),Data Set 1:Position(m),Data Set 2:Time(s),Data Set 2:Position(m)",
+    ],
+)
+def test_runs_side_by_side_are_recordings(headings, tmp_path):
+    """They were refused as two columns of times."""
+    path = tmp_path / "runs.csv"
+    first = track().split("\n")
+    second = [*track(shown=lambda y: 0.5 * y).split("\n")[:-40], *[","] * 40]
+    rows = [f"{one},{two}" for one, two in zip(first, second, strict=True)]
+    path.write_text("\n".join([headings, *rows]))
+    found = fit(path)
+    assert len(found.impacts.speed) == 10
+    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
+    assert not any("is missing" in note for note in found.notes)
+
+
+def test_runs_have_a_time_of_their_own_or_one_of_all(tmp_path):
+    path = tmp_path / "runs.csv"
+    lines = track("{0:.4f},{1:.5f},{1:.5f}")
+    path.write_text("Time (s),Position (m) Run #1,Position (m) Run #2\n" + lines)
+    assert len(fit(path).impacts.speed) == 12
+    path.write_text("Run 1: Time (s),Run 2: Time (s)\n" + "\n".join(f"{t},{t}" for t in TIMES))
+    assert len(fit(path).impacts.speed) == 10
+    # Times of one run are not those of the positions of another.
+    path.write_text("Run 1: Time (s),Run 2: Position (m)\n" + track())
+    with pytest.raises(Refused, match=r"Run 1 has Time \(s\) and Run 2 has Position \(m\): leave"):
+        fit(path)
+
+
+def test_an_interval_of_0_is_an_end_and_no_flight(tmp_path):
+    """Only behind the last event: within a series it is refused."""
+    path = tmp_path / "stopwatch.csv"
+    path.write_text("run,interval (s)\n1,0.9\n1,0.72\n1,0\n2,0.9\n2,0.72\n2,0")
+    found = fit(path)
+    assert len(found.impacts.speed) == 2 and not any("missing" in each for each in found.notes)
+    path.write_text("interval (s)\n0.9\n0\n0.72")
+    with pytest.raises(Refused, match="line 3: a time of 0 s"):
+        fit(path)
+
+
+def test_numbers_without_headings_are_labels_only_if_they_end_after_their_begin(tmp_path):
+    path = tmp_path / "pairs.txt"
+    path.write_text("0.500000\t0.320000\n0.900000\t0.600000\n1.200000\t0.800000")
+    with pytest.raises(Refused, match="a table begins with headings"):
         fit(path)
 
 

@@ -384,19 +384,20 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     ]
     # Upside down no flight is a parabola.
     ways = [
-        {
-            int(lines[i]): impact
+        [
+            (lines[i], impact)
             for t, y, lines in films
             for i, impact in _impacts_of_track(t, way * y).items()
-        }
+        ]
         for way in (1, -1)
     ]
     impacts = max(ways, key=len)
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    tracks, *speeds, gravities = zip(*impacts.values(), strict=True)
+    numbers, found = zip(*impacts, strict=True)
+    tracks, *speeds, gravities = zip(*found, strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    lines = np.array(list(impacts))
+    lines = np.array(numbers)
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
     long = "a flight of {} s is too long: is it in ms, or of slow motion?"
     table.refuse(lasts > 9, long, lasts, lines=lines)

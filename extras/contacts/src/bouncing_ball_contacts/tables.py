@@ -78,6 +78,10 @@ _SPELLED = {
 _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
 # Programs write the name of a series before a heading or behind it.
 _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
+# The monitor of a board writes its clock before each line.
+_STAMP = r"\d+:\d+:\d+\.\d{3} -> "
+# Labels of a sound track have a begin, an end and a text, and no heading.
+_LABEL = r"(\d+\.\d{6})\t(\d+\.\d{6})(?:\t|$)"
 _UNITS = {
     "interval": "s",
     "flight": "s",
@@ -210,6 +214,9 @@ class Table:
         what, bare, most, meant = _LARGEST[unit]
         # The sign of a velocity is its direction.
         values = column.scale * (np.abs(column.numbers) if unit == "m/s" else column.numbers)
+        # A stopwatch writes an interval of 0 behind the last event.
+        if column.role == "interval" and len(values) and values[-1] == 0:
+            values[-1] = math.nan
         said = f"a {what} of {{}} {unit}".strip() + f" below {column.name!r} is "
         small = "not positive, or too small: is the unit right?"
         large = f"large: is it in {meant}? write the unit behind the heading"
@@ -289,7 +296,8 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     """
     head: dict[str, str] = {}
     lines: dict[int, str] = {}
-    for i, line in enumerate(text.rstrip().splitlines(), 1):
+    for i, written in enumerate(text.rstrip().splitlines(), 1):
+        line = re.sub(f"^{_STAMP}", "", written)
         if line.startswith("#"):
             key, _, said = line.lstrip("# ").partition(":")
             key = key.strip().lower()
@@ -300,9 +308,11 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
-    if re.match(r"(\d+\.\d+)\t\1(\t|$)", next(iter(lines.values()), "")):
-        # Labels of points in a sound track have the same begin and end, and no heading.
-        begin, table = 0, {0: "time (s)\tend\tlabel", **lines}
+    # A line that begins with a backslash has the frequencies of a label.
+    labels = {i: line for i, line in lines.items() if not line.startswith("\\")}
+    ends = [re.match(_LABEL, line) for line in labels.values() if line]
+    if ends and all(each and float(each[1]) <= float(each[2]) for each in ends):
+        begin, table = 0, {0: "time (s)\tend\tlabel", **labels}
     if len(table) < 2:
         raise Refused(f"{name} has no line of numbers below a heading")
     sign = next((each for each in "\t;," if each in table[begin]), "\t")
@@ -311,6 +321,39 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
         (cells,) = csv.reader([line], delimiter=sign, skipinitialspace=True)
         rows[i] = [cell.strip() for cell in cells]
     return head, rows, sign != ","
+
+
+def _below_each_other(
+    name: str, headings: list[str], lines: list[int], rows: list[list[str]]
+) -> tuple[list[str], list[int], list[list[str]]]:
+    """Return the headings, line numbers and rows of series that a program wrote side by side.
+
+    A column without the name of a series, such as one time of all, belongs to each series.
+    """
+    found = [re.search(_SERIES, each, re.IGNORECASE) for each in headings]
+    names = [each[0].strip(": ") if each else "" for each in found]
+    series = {
+        each: [i for i, other in enumerate(names) if other in ("", each)]
+        for each in dict.fromkeys(filter(None, names))
+    }
+    if len(series) < 2:
+        return headings, lines, rows
+    plain = [re.sub(_SERIES, "", each, flags=re.IGNORECASE) for each in headings]
+    kinds = {tuple(plain[i] for i in columns) for columns in series.values()}
+    if len(kinds) > 1:
+        both = " and ".join(
+            f"{each} has {', '.join(plain[i] for i in columns)}" for each, columns in series.items()
+        )
+        raise Refused(f"{name}: {both}: leave the same columns of each")
+    numbers: list[int] = []
+    stacked: list[list[str]] = []
+    for each, columns in series.items():
+        # A shorter series ends with empty cells.
+        is_there = [any(row[i] for i in columns if names[i]) for row in rows]
+        length = max(itertools.compress(itertools.count(1), is_there), default=0)
+        numbers += lines[:length]
+        stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
+    return ["recording", *kinds.pop()], numbers, stacked
 
 
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
@@ -345,8 +388,10 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         ]
     )
     rows |= {i: [] for i in leave_out}
+    padded = [[*row, *[""] * (len(headings) - len(row))][: len(headings)] for row in rows.values()]
+    headings, lines, cells_of = _below_each_other(name, headings, lines, padded)
     columns = []
-    for heading, *cells in itertools.zip_longest(headings, *rows.values(), fillvalue=""):
+    for heading, *cells in zip(headings, *cells_of, strict=True):
         title, unit, role = _heading(heading)
         numbers = [_number(cell, is_decimal_comma) for cell in cells]
         if role and role not in TEXTS and None in numbers:

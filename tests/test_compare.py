@@ -158,7 +158,10 @@ def test_a_parameter_is_the_cause_and_names_no_file(project):
     ]
     assert "Not compared, because a dataset differs: figures/fig14.png" in found.text()
     # With the configuration in git these results are stale.
-    assert lines(project)[0] == ("fig14: stale, remove it and run again; changed since: n 2 → 1")
+    assert lines(project)[0] == (
+        "fig14: stale, remove it and run again; changed since: n 2 → 1 "
+        "(config/config.yaml or the Snakefile)"
+    )
 
 
 def test_a_result_of_other_code_is_stale(project):
@@ -190,9 +193,27 @@ def test_code_that_is_accepted_or_on_the_main_branch_is_no_cause(project):
     run(project)
     written = compare.accept(project, project.top / "results")
     assert written == []
-    shutil.rmtree(project.top / ".git")
+
+
+@pytest.mark.parametrize("left", ["nothing", "a branch master"])
+def test_without_a_main_branch_the_last_acceptance_is_what_is_known(project, left):
+    if left == "nothing":
+        shutil.rmtree(project.top / ".git")
+    else:
+        git(project.top, "branch", "-m", "master")
     assert changed(project).startswith("no parameter, code or version has changed")
     edit(project, "src/model.py")
+    assert changed(project) == (
+        "changed since the last acceptance (the main branch is not known here): src/model.py"
+    )
+
+
+def test_the_main_branch_of_another_name_is_that_of_origin(project, tmp_path):
+    git(project.top, "branch", "-m", "master")
+    git(project.top, "clone", "-q", str(project.top), str(tmp_path / "copy"))
+    shutil.rmtree(project.top / ".git")
+    shutil.move(tmp_path / "copy/.git", project.top / ".git")
+    edit(project, "src/drawing.py", "src/model.py")
     assert changed(project) == "changed: src/model.py"
 
 

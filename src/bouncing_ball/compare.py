@@ -36,6 +36,8 @@ from bouncing_ball.provenance import CHECKOUT, PACKAGES, contents, versions
 from bouncing_ball.variables import Variable
 from bouncing_ball.variables import described as descriptions
 
+FOLLOWING = ("claims", "choices")
+"""Datasets that are made of all others."""
 ACCEPTED = "figures/accepted.json"
 PROVENANCE = {"parameters", "code", "versions", "computed_on"}
 """Attributes of a dataset that are compared elsewhere, or not at all."""
@@ -69,12 +71,14 @@ class Project:
     describe: Callable[[str], Mapping[str, Variable]] = descriptions
 
     def files(self, *sides: Path) -> list[str]:
-        """All files that one of the folders has, datasets first, the claims after the others."""
+        """All files that one of the folders has: datasets first, and `FOLLOWING` last of them."""
         found = {text for text in self.texts if any((side / text).exists() for side in sides)}
         for side in sides:
             found.update(f"figures/{path.name}" for path in side.glob("figures/[!.]*"))
         found.discard(ACCEPTED)
-        return sorted(found, key=lambda file: (file[-3:] != ".nc", "claims" in file, file))
+        return sorted(
+            found, key=lambda file: (file[-3:] != ".nc", Path(file).stem in FOLLOWING, file)
+        )
 
     def today(self) -> dict[str, str]:
         """The files of code, each with the hash of its content."""
@@ -246,7 +250,8 @@ def stale(new: xr.Dataset, name: str, config: Mapping, descriptions: Mapping[str
             wanted |= stage.get(name, {})
     for word in ("title", "caption", "table"):
         wanted.pop(word, None)
-    found = changes(recorded, plain(wanted))
+    given_by = "config/config.yaml or the Snakefile"
+    found = [f"{line} ({given_by})" for line in changes(recorded, plain(wanted))]
     for each, variable in new.variables.items():
         if each in descriptions:
             today = attributes(descriptions[str(each)], variable.dtype)
@@ -278,9 +283,13 @@ def git(*arguments: str) -> str:
 
 
 def code_of_main() -> dict[str, str]:
-    """The hashes of the files on the main branch where this one left it; empty without git."""
-    fork = git("merge-base", "HEAD", "origin/main") or git("merge-base", "HEAD", "main")
-    tree = git("ls-tree", "-r", fork or "HEAD").splitlines()
+    """The hashes of the files on the main branch where this one left it; empty if no main branch is
+    known, as in a shallow checkout.
+    """
+    branches = ("origin/HEAD", "origin/main", "main")
+    forks = filter(None, (git("merge-base", "HEAD", branch) for branch in branches))
+    fork = next(forks, "")
+    tree = git("ls-tree", "-r", fork).splitlines() if fork else []
     return {line.partition("\t")[2]: line.split()[2] for line in tree}
 
 
@@ -300,14 +309,17 @@ class Causes:
         new = [file for file, content in code.items() if self.accepted["code"].get(file) != content]
         libraries = {name: made_with.get(name) for name in PACKAGES}
         before = {name: self.accepted["versions"].get(name) for name in PACKAGES}
+        since = "changed since the last acceptance"
         causes = {
             "changed parameter": parameters,
-            "changed": [file for file in new if self.main.get(file) != code[file]],
+            "changed": [file for file in new if self.main and self.main.get(file) != code[file]],
             "other versions": changes(before, libraries),
         }
-        if not any(causes.values()):
+        if not self.main:
+            causes[f"{since} (the main branch is not known here)"] = new
+        elif not any(causes.values()):
             # The main branch itself differs from its reference.
-            causes = {"changed since the last acceptance": new}
+            causes = {since: new}
         found = [f"{what}: {', '.join(which)}" for what, which in causes.items() if which]
         return "; ".join(found) or "no parameter, code or version has changed: edited by hand?"
 
@@ -395,7 +407,7 @@ def dataset_lines(
 ) -> list[str]:
     """Whether a dataset is stale, and where it differs most from the reference, with the cause.
 
-    The claims follow from the datasets that `differ`.
+    `FOLLOWING` datasets follow from those that `differ`.
     """
     name = Path(file).stem
     try:
@@ -418,7 +430,7 @@ def dataset_lines(
             now = project.today().items()
             code |= {file: content for file, content in now if file.endswith(about_data)}
         reason = why.of(parameters, code, record(new, "versions"))
-        if name == "claims" and differ:
+        if name in FOLLOWING and differ:
             reason = f"follows from {', '.join(differ)}"
         lines.append("; ".join([*found[:1], reason]))
     return lines

@@ -17,7 +17,7 @@ from snakemake.utils import min_version
 min_version("9.5")
 
 # The folder of this file. A run may have another folder (--directory), which gets its results.
-TOP = Path(workflow.basedir)
+TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
 from bouncing_ball.configuration import mistakes
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from tests.conftest import Checkout
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
@@ -78,6 +79,27 @@ def test_a_run_in_another_folder_has_its_own_results(fresh, tmp_path):
     command = ["--directory", str(mine), "--configfile", str(mine / "mine.yaml"), "--", "fig14"]
     assert fresh.run("--cores", "1", *command)[0] == 0
     assert "figures/fig14.png" in made(mine) and not (fresh.path / "results").exists()
+
+
+def test_another_workflow_has_it_as_a_module_with_a_prefix(fresh, tmp_path):
+    outer = Checkout(tmp_path / "outer")
+    outer.path.mkdir()
+    (outer.path / "Snakefile").write_text(
+        f"""
+configfile: "{fresh.path / "config/config.yaml"}"
+module ball:
+    snakefile: "{fresh.path / "Snakefile"}"
+    config: config
+    prefix: "ball"
+use rule * from ball as ball_*
+rule mine:
+    input: "ball/results/figures/fig14.png"
+""",
+        "utf-8",
+    )
+    assert outer.planned("mine") == {"ball_error_thresholds", "ball_fig14", "mine"}
+    assert outer.run("--cores", "1", "mine")[0] == 0
+    assert "figures/fig14.png" in made(outer.path / "ball")
 
 
 def test_the_page_of_an_earlier_comparison_is_removed(fresh):

@@ -9,7 +9,7 @@ from bouncing_ball.compare import accept
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 try:
-    written = accept(PROJECT, Path("results"))
+    written = accept(PROJECT, Path(snakemake.log[0]).parents[1])
 except ValueError as error:
     print(error)
     sys.exit(1)

@@ -46,4 +46,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
     given = snakemake.params.config, snakemake.params.names, snakemake.params.makers
-    sys.exit(report_of_run(PROJECT, Path("results"), *given))
+    results = Path(snakemake.log[0]).parents[1]
+    sys.exit(report_of_run(PROJECT, results, *given))

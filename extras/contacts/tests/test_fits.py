@@ -184,16 +184,18 @@ def test_traces_of_errors_are_those_of_whole_matrices():
     series = [(rng.normal(size=(n, n + 2)), rng.normal(size=(n, n + 2))) for n in (2, 1, 3)]
     bases = [np.linalg.qr(rng.normal(size=(len(m), len(m))))[0] for m, _ in series]
     weights = rng.uniform(1, 2, size=(1, 6))
-    of_r, of_x = ([u.T @ pair[i] for u, pair in zip(bases, series, strict=True)] for i in range(2))
-    of_bends = [np.repeat(each[..., None], 7, axis=2) for each in of_x]
+    of_r, of_speed = zip(*series, strict=True)
+    growth = rng.uniform(0.5, 2, size=(6, 7))
+    found = _by_errors(weights, bases, of_r, of_speed, np.split(growth, [2, 3]))
     basis = block_diag(*bases)
-    found = _by_errors(weights, basis.T @ np.ones(6), of_r, of_bends)
     w = basis @ np.diag(weights[0]) @ basis.T
     of_mean = w @ np.ones((6, 1))
     p = w - of_mean @ of_mean.T / of_mean.sum()
-    m, d = (block_diag(*(pair[i] for pair in series)) for i in range(2))
-    assert found[0][0] == pytest.approx(np.full(7, np.trace(p @ d @ m.T)))
-    assert found[1][0] == pytest.approx(np.full(7, np.trace(p @ d @ d.T)))
+    m = block_diag(*of_r)
+    for i in range(7):
+        x = growth[:, i : i + 1] * block_diag(*of_speed)
+        assert found[0][0, i] == pytest.approx(np.trace(p @ x @ m.T))
+        assert found[1][0, i] == pytest.approx(np.trace(p @ x @ x.T))
 
 
 def test_a_fit_is_a_bounce_for_an_engine():
@@ -217,6 +219,8 @@ def test_a_fit_is_a_bounce_for_an_engine():
         ({"height (mm)": [1000, 640, 412, 262, 260, 107]}, ("r = 0.996 at", "r = 0.642 at")),
         ({"height (mm)": [1000, 640, 410, 226, 168, 107, 69, 44]}, ("r = 0.742", "r = 0.862")),
         ({"height (mm)": [1000, 640, 412, 262, 107]}, ("r = 0.639 at",)),
+        # A top is missing in the middle.
+        ({"height (mm)": [1000, 640, 412, 168, 107, 69]}, ("r = 0.639 at",)),
         (
             {"time (s)": [0, 0.9, 1.62, 2.25, 2.65, 3.02, 3.32, 3.56]},
             ("r = 0.875", "r = 0.635", "r = 0.925"),
@@ -227,13 +231,13 @@ def test_one_wrong_reading_is_named_by_the_impacts_that_it_enters(readings, name
     """Of a top that was misread r was 0.83 for 0.80, and no line said so: one r was too high and
     the next one too low.
     """
-    (note,) = [note for note in fit(readings).notes if "as by one wrong number" in note]
+    (note,) = [note for note in fit(readings).notes if "as by one wrong or missing number" in note]
     assert note.count("r = ") == len(named) and all(each in note for each in named)
 
 
 def test_no_reading_of_the_experiments_is_called_wrong():
     for name in experiments():
-        assert not any("wrong number" in note for note in fit(name).notes)
+        assert not any("far from all others" in note for note in fit(name).notes)
 
 
 def test_what_a_table_lacks_is_explained(tmp_path):

@@ -385,8 +385,8 @@ def test_the_drag_is_said_only_where_it_matters():
     [
         (FILES["picture, y negative"], "downwards, as in a picture"),
         (
-            "drop [m],rebound [m]\n1,0.64\n0.5,\n\n0.8,0.5\n0.9,nan",
-            "missing in line 3, 4, 6, which",
+            "drop [m],rebound [m]\n1,0.64\n0.5,\n\n0.8,0.5\n0.9,nan\n0.7,NA\n0.6,-",
+            "missing in line 3, 4, 6, 7, 8, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
         (FILES["picture, pixels"], r"gravity, 68\d\d px/s² in this track, is the scale"),
@@ -619,6 +619,25 @@ def test_bottoms_of_a_track_stand_out_of_noise_and_of_a_fiftieth_of_its_height()
         found = [each for each in bottoms if each < end - 2]
         assert len(found) == len(impacts) and np.abs(np.array(found) - impacts).max() <= 4
         assert len(bottoms) <= len(found) + 1
+
+
+def test_a_ball_may_leave_the_picture(tmp_path):
+    """Frames without a position were a gap in the time, as between two films."""
+    path = tmp_path / "track.csv"
+    seen = [(t, position(t)) for t in FRAMES]
+    path.write_text("t,y\n" + "\n".join(f"{t:.4f},{y if y < 0.6 else ''}" for t, y in seen))
+    found = fit(path)
+    assert len(found.impacts.speed) == 6
+    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
+
+
+def test_bounces_with_a_unit_of_length_are_heights(tmp_path):
+    """They were numbers of bounces."""
+    assert fit({"bounce (cm)": [100, 67.24, 45.21]}).restitution == pytest.approx(0.82, abs=1e-3)
+    path = tmp_path / "drops.csv"
+    path.write_text("drop (cm),bounce 1 (cm),bounce 2 (cm)\n100,64,41\n80,51,33")
+    with pytest.raises(Refused, match="two columns are both height, 'bounce 1' and 'bounce 2'"):
+        fit(path)
 
 
 def test_times_of_one_film_may_lack_positions(tmp_path):

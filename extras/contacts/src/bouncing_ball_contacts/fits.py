@@ -336,8 +336,8 @@ def fit(
     notes = [
         (
             wrong,
-            f"{', '.join(wrong)}: far from all others, as by one wrong number; --leave-out leaves "
-            "its line out",
+            f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
+            "--leave-out leaves its line out",
         ),
         (r > 1, f"r = {r:.4f} is above 1 within its error: 1 is taken"),
         # A speed that is typed is rounded.

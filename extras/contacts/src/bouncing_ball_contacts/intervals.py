@@ -34,7 +34,7 @@ this distribution. Two impacts leave no deviation, and have the posterior for al
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -204,8 +204,8 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
 def misread(impacts: Impacts) -> Lines:
     """Return the impacts that one wrong reading moved away from all others; empty without one.
 
-    A top of a series enters two impacts with opposite signs, and a time enters three. The reading
-    moved them by much more than the deviations that remain without it.
+    A top of a series enters two impacts with opposite signs, and a time enters three. A top that is
+    missing moved one impact. They were moved by much more than the deviations that remain.
     """
     away = impacts.log_r - np.median(impacts.log_r)
     # The impact that is farthest away is moved by the reading, or is left.
@@ -213,7 +213,7 @@ def misread(impacts: Impacts) -> Lines:
     begins = np.cumsum([0, *map(len, impacts.readings)])
     i = int(np.searchsorted(begins, farthest, side="right")) - 1
     begin, end = begins[i : i + 2]
-    readings = impacts.readings[i]
+    readings = np.column_stack([impacts.readings[i], np.eye(end - begin)])
     # A reading of a speed that is exact moves nothing.
     squares = np.sum(readings**2, axis=0)
     moved = readings * (readings.T @ away[begin:end]) / np.where(squares > 0, squares, 1.0)
@@ -334,7 +334,11 @@ def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
 
 
 def _by_errors(
-    weights: Array, ones: Array, of_r: list[Array], of_bends: list[Array]
+    weights: Array,
+    bases: Sequence[Array],
+    of_r: list[Array],
+    of_speed: list[Array],
+    growth: list[Array],
 ) -> tuple[Array, Array]:
     """Return what errors of the readings add to the products of a regression, (ratio, exponent).
 
@@ -345,23 +349,29 @@ def _by_errors(
         E xᵀPy = c ξᵀPξ + τ² tr PC,    E xᵀPx = ξᵀPξ + τ² tr PD
 
     The ratio of both, each less its trace, is c (W. A. Fuller, Measurement Error Models, 1987,
-    section 2.2). The traces are returned. For each series, ``of_r`` (n, reading) and ``of_bends``
-    (n, reading, exponent) are derivatives with respect to the readings, in the basis of ``weights``
-    (ratio, n).
+    section 2.2). The traces are returned. The ``weights`` (ratio, n) are those of W in its basis.
+    For each series, ``of_r`` and ``of_speed`` (n, reading) are derivatives with respect to the
+    readings, and ``growth`` (n, exponent) has the derivatives of x with respect to ln v.
     """
     traces = np.zeros((2, len(weights), len(_EXPONENTS)))
-    total = (weights @ ones**2)[:, None]
+    of_means = np.zeros((2, len(weights), len(_EXPONENTS)))
+    total = np.zeros((len(weights), 1))
     begin = 0
-    for y, x in zip(of_r, of_bends, strict=True):
-        part = slice(begin, begin := begin + len(y))
+    for basis, m, of_v, g in zip(bases, of_r, of_speed, growth, strict=True):
+        w = weights[:, begin : (begin := begin + len(basis))]
+        mean = (w * basis.sum(axis=0)) @ basis.T
+        total += mean.sum(axis=1, keepdims=True)
         # The speed may be set, and have no error.
-        if np.any(x):
-            for trace, other in zip(traces, (y[..., None], x), strict=True):
-                trace += weights[:, part] @ np.sum(x * other, axis=1)
-                of_mean = weights[:, part] * ones[part]
-                both = (np.tensordot(of_mean, each, axes=1) for each in (x, other))
-                trace -= np.sum(math.prod(both), axis=1) / total
-    return traces[0], traces[1]
+        if np.any(of_v):
+            grown = g.T[:, :, None] * basis
+            grown_mean = g.T[:, None] * mean
+            both = ((m, basis, mean), (of_v, grown, grown_mean))
+            for i, (other, others, other_mean) in enumerate(both):
+                covariance = of_v @ other.T
+                traces[i] += w @ np.sum(grown * (covariance @ others), axis=1).T
+                of_means[i] += np.sum((grown_mean @ covariance) * other_mean, axis=-1).T
+    made, lost = traces - of_means / total
+    return made, lost
 
 
 def curves_of(
@@ -377,14 +387,14 @@ def curves_of(
     each_variance = [np.sum(each**2, axis=1) for each in impacts.errors(unit)[0]]
     error = math.sqrt(np.median(np.concatenate(each_variance)))
     errors, errors_of_speed = impacts.errors(unit / error)
-    parts = [np.linalg.eigh(each @ each.T) for each in errors]
-    eigenvalues = np.concatenate([part.eigenvalues for part in parts])
+    each_eigenvalues, bases = zip(*(np.linalg.eigh(each @ each.T) for each in errors), strict=True)
+    eigenvalues = np.concatenate(each_eigenvalues)
     ends = np.cumsum(list(map(len, errors)))[:-1]
 
-    def in_basis(columns: Iterable[Array]) -> list[Array]:
-        """Return columns of each series in the basis of the eigenvectors."""
-        both = zip(parts, columns, strict=True)
-        return [np.tensordot(part.eigenvectors, each, axes=(0, 0)) for part, each in both]
+    def in_basis(columns: Array) -> Array:
+        """Return columns in the basis of the eigenvectors of each series."""
+        both = zip(bases, np.split(columns, ends), strict=True)
+        return np.concatenate([np.tensordot(basis, each, axes=(0, 0)) for basis, each in both])
 
     # What is known of ln τ, or else of ln s, has a width of at least 1/√(2 n). Steps of 1/20 are
     # enough, because an error of 5 % in scatter is one of 5 % in the width.
@@ -406,7 +416,7 @@ def curves_of(
     # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
     # middle of ln r is subtracted against rounding errors.
     middle = float(np.mean(impacts.log_r))
-    y = np.concatenate(in_basis(np.split(impacts.log_r - middle, ends)))
+    y = in_basis(impacts.log_r - middle)
     # Speeds that differ by errors only are taken as one: then only the prior of c says how r
     # changes up to the speed that is asked.
     x = np.log(impacts.speed / at)
@@ -415,7 +425,7 @@ def curves_of(
     growths = np.outer(x, _EXPONENTS)
     bends = np.expm1(growths) / _EXPONENTS
     both = np.stack([np.ones_like(bends), bends], axis=-1)
-    columns = np.concatenate(in_basis(np.split(both, ends))).swapaxes(0, 1)
+    columns = in_basis(both).swapaxes(0, 1)
     weights = 1 / variances
     precision = (1 / sizes**2)[:, None]
     products = np.tensordot(weights, columns[..., None] * columns[..., None, :], axes=(1, 1))
@@ -424,10 +434,7 @@ def curves_of(
     shift = products[..., 0, 1] / ones
     # Errors of the readings enter the speeds also.
     growth = np.split(np.exp(growths) * has_slope, ends)
-    errors_of_bends = [
-        each[..., None] * part[:, None] for each, part in zip(errors_of_speed, growth, strict=True)
-    ]
-    traces = _by_errors(weights, columns[0, :, 0], in_basis(errors), in_basis(errors_of_bends))
+    traces = _by_errors(weights, bases, errors, errors_of_speed, growth)
     # Larger errors than the deviations have a posterior of about 0.
     largest = impacts.largest_error(known) * error / np.max(unit)
     made, lost = (each[:, None] * np.minimum(1.0, largest**2 * precision) for each in traces)

@@ -257,8 +257,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
             f"a {what} follows one of {{}}: an impact is missing, the first time is the release, "
-            "or another recording begins (leave an empty line before it, or --leave-out its line)"
-            f"{film}",
+            "or another recording begins (leave an empty line before it, or --leave-out its line); "
+            f"readings with such errors need --resolution{film}",
             values[1:],
             values[:-1],
             lines=lines[1:],
@@ -349,19 +349,17 @@ def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Line
         # A frame without a position is no end of a film.
         is_end = np.isnan(both).all(axis=1)
         for rows in np.split(np.arange(len(both)), np.flatnonzero(is_end)):
-            is_there = ~np.isnan(both[rows]).any(axis=1)
-            if is_there.any():
-                t, y = both[rows[is_there]].T
-                films.append((t - t[0], y, part.lines[rows[is_there]]))
+            frames = rows[~np.isnan(both[rows, 0])]
+            _refuse_gaps(table, both[frames, 0], part.lines[frames])
+            found = frames[~np.isnan(both[frames, 1])]
+            if len(found):
+                t, y = both[found].T
+                films.append((t - t[0], y, part.lines[found]))
     return films
 
 
-def _even(table: Table, t: Array, lines: Lines, digit: float) -> Array:
-    """Return the times of a film; rounded times are those of even frames."""
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(
-            f"{table.name}: too few lines of a track, {len(t)}; tops are one column, height"
-        )
+def _refuse_gaps(table: Table, t: Array, lines: Lines) -> None:
+    """Refuse times of frames that are not those of one film."""
     steps = np.diff(t)
     table.refuse(
         steps < 0,
@@ -369,8 +367,16 @@ def _even(table: Table, t: Array, lines: Lines, digit: float) -> Array:
         "another film",
         lines=lines[1:],
     )
-    gap = steps > 20 * np.mean(steps)
+    gap = steps * len(steps) > 20 * np.sum(steps)
     table.refuse(gap, "a gap in the time: leave an empty line before another film", lines=lines[1:])
+
+
+def _even(table: Table, t: Array, digit: float) -> Array:
+    """Return the times of a film; rounded times are those of even frames."""
+    if len(t) <= 2 * _FEWEST:
+        raise Refused(
+            f"{table.name}: too few lines of a track, {len(t)}; tops are one column, height"
+        )
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
     return np.where(np.abs(t - even).max() <= digit, even, t)
@@ -379,8 +385,7 @@ def _even(table: Table, t: Array, lines: Lines, digit: float) -> Array:
 def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
     films = [
-        (_even(table, t, lines, columns[0].digit), y, lines)
-        for t, y, lines in _films(table, columns)
+        (_even(table, t, columns[0].digit), y, lines) for t, y, lines in _films(table, columns)
     ]
     # Upside down no flight is a parabola.
     ways = [

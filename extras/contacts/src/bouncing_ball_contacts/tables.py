@@ -110,6 +110,8 @@ _LARGEST = {
     "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
 _SMALLEST = 1e-9
+# What programs and people write for a missing number.
+_MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 
 
 def experiments() -> list[str]:
@@ -272,17 +274,21 @@ def _heading(text: str) -> tuple[str, str, str]:
     key = re.sub(r"[ .]", "", name.lower())
     # h0, h1, h2 are counted, and v0 is a name of its own.
     role = _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
-    # Bounce 1 (s) is the time of a touch, and Bounce the number of one.
-    return name, unit, "touch" if role == "count" and unit in units_of("s") else role
+    # Bounce 1 (s) is the time of a touch, bounce 1 (cm) is a height, and Bounce is a number.
+    if role == "count" and unit in units_of("s") + units_of("m"):
+        role = "touch" if unit in units_of("s") else "height"
+    return name, unit, role
 
 
 def _number(cell: str, is_decimal_comma: bool) -> float | None:
-    """Return the number of a cell, NaN if it is empty, and None if it has another text."""
+    """Return the number of a cell, NaN if it is missing, and None if it has another text."""
     plain = cell.replace("−", "-")
     if is_decimal_comma:
         plain = plain.replace(",", ".")
+    if plain.lower() in _MISSING:
+        return math.nan
     try:
-        number = float(plain or "nan")
+        number = float(plain)
     except ValueError:
         return None
     # Nanoseconds since 1970 are about 2e18.

@@ -1,32 +1,53 @@
-// Balls that are dropped in engines that have a package for JavaScript. It prints the lines of
-// engine_drops.csv of these engines, measured again:
+// Balls that are dropped in engines that have a package for JavaScript, with text as it is pasted.
+// engine_drops.py runs this program. Its input is a list of drops as JSON, with the engine, the
+// text, the drop and the radius in m and the number of steps; its output are the heights of each
+// ball over the surface. The last line of a text is run in each step, and the others once. The
+// engines are installed in the working folder by
 //   npm install @dimforge/rapier3d-compat@0.21.0 jolt-physics@1.1.0 box2d3-wasm@5.2.0 \
 //     physx-js-webidl@2.7.3 planck@1.4.2 matter-js@0.20.0 cannon-es@0.20.0
-//   node engine_drops.mjs [ENGINE]...        (with engine_drops.csv, beside node_modules)
-// An engine takes r, a step in s, a drop and a radius in m, and the number of steps, and returns the
-// heights of the ball over the surface.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
 const G = 9.81;
-const INSTANTS = 8;
+const NOT_INSTALLED = 3;
 const place = createRequire(import.meta.url);
 const load = async (name) => {
-  const found = await import(name);
-  return found.default ?? found;
+  try {
+    const found = await import(name);
+    return found.default ?? found;
+  } catch (missing) {
+    if (missing.code !== "ERR_MODULE_NOT_FOUND") throw missing;
+    console.error(name);
+    process.exit(NOT_INSTALLED);
+  }
 };
+
+/** The lines that set parameters, and the line of a step, of C++ as of JavaScript. */
+function linesOf(text) {
+  const lines = text.replace(/(\d)f\b/g, "$1").replaceAll("->", ".").replaceAll("::", ".");
+  const all = lines.replaceAll("&", "").split("\n");
+  return [all.slice(0, -1).join("\n"), all.at(-1)];
+}
+
+/** Return the value of code in which some names have a meaning. */
+const value = (code, names) => new Function(...Object.keys(names), code)(...Object.values(names));
 
 async function rapier() {
   const Rapier = await load("@dimforge/rapier3d-compat");
   await Rapier.init();
-  return (r, step, drop, radius, steps) => {
+  return ({ text, drop, radius, steps }) => {
+    const [sets, advances] = linesOf(text);
     const world = new Rapier.World({ x: 0, y: -G, z: 0 });
-    world.timestep = step;
+    value(advances, { integration_parameters: world.integrationParameters });
+    const of = (shape) => {
+      const ball = () => ({ restitution: (r) => shape.setRestitution(r) });
+      return value(`return ${sets}`, { ColliderBuilder: { ball }, radius });
+    };
     const ground = Rapier.ColliderDesc.cuboid(9, 1, 9).setTranslation(0, -1, 0);
-    world.createCollider(ground.setRestitution(r));
+    world.createCollider(of(ground));
     const body = Rapier.RigidBodyDesc.dynamic().setTranslation(0, radius + drop, 0);
     const ball = world.createRigidBody(body.setCanSleep(false));
-    world.createCollider(Rapier.ColliderDesc.ball(radius).setRestitution(r), ball);
+    world.createCollider(of(Rapier.ColliderDesc.ball(radius)), ball);
     const heights = [];
     for (let k = 0; k < steps; k++) {
       world.step();
@@ -39,7 +60,8 @@ async function rapier() {
 
 async function jolt() {
   const Jolt = await (await load("jolt-physics"))();
-  return (r, step, drop, radius, steps) => {
+  return ({ text, drop, radius, steps }) => {
+    const [sets, advances] = linesOf(text);
     const settings = new Jolt.JoltSettings();
     const objects = new Jolt.ObjectLayerPairFilterTable(2);
     objects.EnableCollision(0, 1);
@@ -52,14 +74,15 @@ async function jolt() {
     );
     const engine = new Jolt.JoltInterface(settings);
     const bodies = engine.GetPhysicsSystem().GetBodyInterface();
-    engine.GetPhysicsSystem().SetGravity(new Jolt.Vec3(0, -G, 0));
+    const physicsSystem = engine.GetPhysicsSystem();
+    physicsSystem.SetGravity(new Jolt.Vec3(0, -G, 0));
+    const physicsSettings = physicsSystem.GetPhysicsSettings();
     const put = (shape, y, motion, layer) => {
       const still = new Jolt.Quat(0, 0, 0, 1);
       const made = new Jolt.BodyCreationSettings(
         shape, new Jolt.RVec3(0, y, 0), still, motion, layer,
       );
-      made.mRestitution = r;
-      made.mLinearDamping = 0;
+      value(sets, { bodySettings: made, physicsSettings });
       made.mAllowSleeping = false;
       const body = bodies.CreateBody(made);
       bodies.AddBody(body.GetID(), Jolt.EActivation_Activate);
@@ -67,9 +90,12 @@ async function jolt() {
     };
     put(new Jolt.BoxShape(new Jolt.Vec3(9, 1, 9)), -1, Jolt.EMotionType_Static, 0);
     const ball = put(new Jolt.SphereShape(radius), radius + drop, Jolt.EMotionType_Dynamic, 1);
+    physicsSystem.SetPhysicsSettings(physicsSettings);
+    const Update = (step, collisions) => engine.Step(step, collisions);
+    const names = { physicsSystem: { Update }, allocator: null, jobs: null };
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      engine.Step(step, 1);
+      value(advances, names);
       heights.push(ball.GetPosition().GetY() - radius);
     }
     Jolt.destroy(engine);
@@ -77,7 +103,7 @@ async function jolt() {
   };
 }
 
-async function physx(threshold, offset) {
+async function physx() {
   // The package is made for browsers, and refuses to start where it sees Node.js.
   const node = globalThis.process;
   globalThis.window = globalThis;
@@ -93,21 +119,22 @@ async function physx(threshold, offset) {
   const physics = PhysX.CreatePhysics(version, base, scale);
   const { eSCENE_QUERY_SHAPE, eSIMULATION_SHAPE } = PhysX.PxShapeFlagEnum;
   const flags = new PhysX.PxShapeFlags(eSCENE_QUERY_SHAPE | eSIMULATION_SHAPE);
-  return (r, step, drop, radius, steps) => {
+  return ({ text, drop, radius, steps, offset }) => {
+    const [sets, advances] = linesOf(text);
     const made = new PhysX.PxSceneDesc(scale);
     made.gravity = new PhysX.PxVec3(0, -G, 0);
     made.cpuDispatcher = PhysX.DefaultCpuDispatcherCreate(0);
     made.filterShader = PhysX.DefaultFilterShader();
-    made.bounceThresholdVelocity = threshold;
+    const material = physics.createMaterial(0.5, 0.5, 0);
+    value(sets, { material, sceneDesc: made });
     const scene = physics.createScene(made);
-    const material = physics.createMaterial(0.5, 0.5, r);
     const put = (geometry, y, create) => {
       const pose = new PhysX.PxTransform(PhysX.PxIDENTITYEnum.PxIdentity);
       pose.p = new PhysX.PxVec3(0, y, 0);
       const body = physics[create](pose);
       const shape = physics.createShape(geometry, material, true, flags);
       shape.setSimulationFilterData(new PhysX.PxFilterData(1, 1, 0, 0));
-      shape.setContactOffset(offset);
+      if (offset) shape.setContactOffset(offset);
       body.attachShape(shape);
       scene.addActor(body);
       return body;
@@ -116,7 +143,7 @@ async function physx(threshold, offset) {
     const ball = put(new PhysX.PxSphereGeometry(radius), radius + drop, "createRigidDynamic");
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      scene.simulate(step);
+      value(advances, { scene });
       scene.fetchResults(true);
       heights.push(ball.getGlobalPose().p.y - radius);
     }
@@ -127,29 +154,30 @@ async function physx(threshold, offset) {
 
 async function box2d() {
   const Box2D = await (await load("box2d3-wasm"))();
-  return (r, step, drop, radius, steps) => {
+  return ({ text, drop, radius, steps }) => {
+    const [sets, advances] = linesOf(text);
     const made = Box2D.b2DefaultWorldDef();
     made.gravity.Set(0, -G);
+    const shapeDef = Box2D.b2DefaultShapeDef();
+    value(sets, { worldDef: made, shapeDef });
     const world = Box2D.b2CreateWorld(made);
     const put = (y, type) => {
       const body = Box2D.b2DefaultBodyDef();
       body.type = type;
       body.enableSleep = false;
       body.position.Set(0, y);
-      const shape = Box2D.b2DefaultShapeDef();
-      shape.material.restitution = r;
-      return [Box2D.b2CreateBody(world, body), shape];
+      return Box2D.b2CreateBody(world, body);
     };
-    const [ground, floor] = put(-1, Box2D.b2BodyType.b2_staticBody);
-    Box2D.b2CreatePolygonShape(ground, floor, Box2D.b2MakeBox(9, 1));
-    const [ball, round] = put(radius + drop, Box2D.b2BodyType.b2_dynamicBody);
+    const ground = put(-1, Box2D.b2BodyType.b2_staticBody);
+    Box2D.b2CreatePolygonShape(ground, Box2D.b2DefaultShapeDef(), Box2D.b2MakeBox(9, 1));
+    const ball = put(radius + drop, Box2D.b2BodyType.b2_dynamicBody);
     const circle = new Box2D.b2Circle();
     circle.center.Set(0, 0);
     circle.radius = radius;
-    Box2D.b2CreateCircleShape(ball, round, circle);
+    Box2D.b2CreateCircleShape(ball, shapeDef, circle);
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      Box2D.b2World_Step(world, step, 4);
+      value(advances, { b2World_Step: Box2D.b2World_Step, world });
       heights.push(Box2D.b2Body_GetPosition(ball).y - radius);
     }
     Box2D.b2DestroyWorld(world);
@@ -159,15 +187,20 @@ async function box2d() {
 
 async function planck() {
   const Planck = await load("planck");
-  return (r, step, drop, radius, steps) => {
+  const { Settings } = Planck;
+  const { velocityThreshold } = Settings;
+  return ({ text, drop, radius, steps }) => {
+    const [sets, advances] = linesOf(text);
+    // Those of the drop before hold for all worlds.
+    Settings.velocityThreshold = velocityThreshold;
     const world = new Planck.World({ gravity: Planck.Vec2(0, -G) });
     const ground = new Planck.Box(9, 1, Planck.Vec2(0, -1));
-    world.createBody().createFixture({ shape: ground, restitution: r });
+    world.createBody().createFixture({ shape: ground });
     const ball = world.createDynamicBody({ position: Planck.Vec2(0, radius + drop) });
-    ball.createFixture({ shape: new Planck.Circle(radius), density: 1, restitution: r });
+    value(sets, { body: ball, shape: new Planck.Circle(radius), Settings });
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      world.step(step);
+      value(advances, { world });
       heights.push(ball.getPosition().y - radius);
     }
     return heights;
@@ -176,19 +209,27 @@ async function planck() {
 
 async function matter() {
   const Matter = await load("matter-js");
-  return (r, step, drop, radius, steps) => {
-    // A circle is a polygon of at most 200 sides there, one for each pixel of its radius.
-    const pixels = 200 / radius;
-    const engine = Matter.Engine.create({ gravity: { x: 0, y: 1, scale: G * pixels * 1e-6 } });
-    const bodies = Matter.Bodies;
-    const smooth = { restitution: r, friction: 0, frictionAir: 0 };
-    const ground = bodies.rectangle(0, 1e5, 2e6, 2e5, { ...smooth, isStatic: true });
-    const ball = bodies.circle(0, -(radius + drop) * pixels, radius * pixels, smooth, 200);
+  const { Bodies } = Matter;
+  const { _restingThresh } = Matter.Resolver;
+  return ({ text, drop, radius, steps, turn }) => {
+    const [sets, advances] = linesOf(text);
+    Matter.Resolver._restingThresh = _restingThresh;
+    const engine = Matter.Engine.create();
+    // The gravity of an engine, in pixels/s², is that of this place.
+    const pixels = (1e6 * engine.gravity.scale) / G;
+    const ground = Bodies.rectangle(0, 1e5, 2e6, 2e5, { isStatic: true });
+    const names = { Matter, Bodies, x: 0, y: 0, radius: radius * pixels };
+    const ball = value(`const body = ${sets}\nreturn body;`, names);
+    Matter.Body.rotate(ball, turn ?? 0);
+    // Its lowest corner is at this height.
+    Matter.Body.setPosition(ball, { x: 0, y: -drop * pixels - ball.bounds.max.y });
+    Matter.Body.setVelocity(ball, { x: 0, y: 0 });
+    const start = ball.position.y;
     Matter.Composite.add(engine.world, [ground, ball]);
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      Matter.Engine.update(engine, step * 1000);
-      heights.push(-ball.position.y / pixels - radius);
+      value(advances, { Matter, engine });
+      heights.push(drop - (ball.position.y - start) / pixels);
     }
     return heights;
   };
@@ -196,71 +237,34 @@ async function matter() {
 
 async function cannon() {
   const Cannon = await load("cannon-es");
-  return (r, step, drop, radius, steps) => {
+  return ({ text, drop, radius, steps }) => {
+    const [sets, advances] = linesOf(text);
     const world = new Cannon.World({ gravity: new Cannon.Vec3(0, -G, 0) });
-    world.defaultContactMaterial.restitution = r;
-    world.defaultContactMaterial.friction = 0;
-    const ground = new Cannon.Body({ mass: 0, shape: new Cannon.Plane() });
+    const { ContactMaterial, Material } = Cannon;
+    const [a, b] = [new Material(), new Material()];
+    const ground = new Cannon.Body({ mass: 0, shape: new Cannon.Plane(), material: a });
     ground.quaternion.setFromEuler(-Math.PI / 2, 0, 0);
     world.addBody(ground);
     const ball = new Cannon.Body({
       mass: 1,
       shape: new Cannon.Sphere(radius),
       position: new Cannon.Vec3(0, radius + drop, 0),
-      linearDamping: 0,
+      material: b,
     });
     world.addBody(ball);
+    const names = { ContactMaterial, a, b, body: ball };
+    world.addContactMaterial(value(`${sets}\nreturn contact;`, names));
     const heights = [];
     for (let k = 0; k < steps; k++) {
-      world.step(step);
+      value(advances, { world });
       heights.push(ball.position.y - radius);
     }
     return heights;
   };
 }
 
-const ENGINES = {
-  rapier,
-  jolt,
-  physx: () => physx(2, 0.02),
-  unity: () => physx(2, 0.01),
-  "isaac-lab": () => physx(0.5, 1),
-  // PhysX wants a threshold above 0; every impact here is faster than this one.
-  "isaac-sim": () => physx(0.2, 1),
-  box2d,
-  planck,
-  "matter-js": matter,
-  "cannon-es": cannon,
-};
-
-/** The height of the first top after the first impact; 0 if the ball does not fall again. */
-function rebound(heights) {
-  const first = heights.findIndex((z, i) => z > heights[i - 1]);
-  if (first < 0) return 0;
-  const top = heights.findIndex((z, i) => i > first && z < heights[i - 1]);
-  return top < 0 ? 0 : Math.max(heights[top - 1], 0);
-}
-
-function dropped(run, r, step, drop, radius) {
-  const speed = Math.sqrt(2 * G * drop);
-  const steps = Math.ceil((2.4 * speed) / G / step) + 6;
-  const found = [...Array(INSTANTS).keys()].map((k) => {
-    const height = drop + speed * step * (k / INSTANTS - 0.5);
-    return Math.sqrt(rebound(run(r, step, height, radius, steps)) / height);
-  });
-  return [found.reduce((a, b) => a + b) / INSTANTS, Math.min(...found), Math.max(...found)];
-}
-
-const table = readFileSync(new URL("engine_drops.csv", import.meta.url), "utf8");
-const lines = table.trim().split("\n").slice(1).map((line) => line.split(","));
-const cases = new Set(lines.map((line) => line.slice(1, 5).join(",")));
-const wanted = process.argv.slice(2);
-for (const [name, make] of Object.entries(ENGINES)) {
-  if (wanted.length && !wanted.includes(name)) continue;
-  const run = await make();
-  for (const each of cases) {
-    const [r, rate, drop, radius] = each.split(",").map(Number);
-    const numbers = dropped(run, r, 1 / rate, drop, radius).map((x) => x.toFixed(4));
-    console.log([name, each, ...numbers].join(","));
-  }
-}
+const ENGINES = { rapier, jolt, physx, box2d, planck, "matter-js": matter, "cannon-es": cannon };
+const jobs = JSON.parse(readFileSync(0, "utf8"));
+const run = await ENGINES[jobs[0].engine]();
+// An engine may write to the output as well.
+console.log(`\n${JSON.stringify(jobs.map(run))}`);

@@ -1,73 +1,92 @@
-"""Balls that are dropped in engines that have a wheel and whose restitution is a number.
+"""Balls that are dropped in engines whose restitution is a number, with text as it is pasted.
 
 ``python tests/engine_drops.py [ENGINE]...`` prints the lines of engine_drops.csv of the engines
-that are installed, measured again. ``engine_drops.mjs`` does the same for those of JavaScript.
+that are installed, measured again. Those of JavaScript are run by ``engine_drops.mjs``, which has
+the command that installs them.
 
-An engine takes r, a step in s, the heights of drops and a radius in m, and the number of steps, and
-returns the heights of the balls over the surface, of the shape (steps, drop).
+An engine takes a text, the heights of drops and a radius in m, and the number of steps, and returns
+the heights of the balls over the surface, of the shape (steps, drop). The last line of a text is
+run in each step, and the others once for each body. What they do not set is left to the engine.
 """
 
 import csv
+import functools
+import json
 import math
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 from glob import glob
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+from engine_runs import as_python, quiet_warp, rebound
+
+from bouncing_ball_contacts.rebounds import BY_NUMBER
 
 G = 9.81
 INSTANTS = 8
 FILE = Path(__file__).with_suffix(".csv")
 
 
-def chipmunk(r, step, drops, radius, steps):
+def lines_of(text):
+    """Return the code that sets the parameters, and the code of a step."""
+    *sets, steps = as_python(text)
+    return compile("\n".join(sets), "snippet", "exec"), compile(steps, "snippet", "exec")
+
+
+def chipmunk(text, drops, radius, steps):
     import pymunk
+
+    sets, advances = lines_of(text)
 
     space = pymunk.Space()
     space.gravity = (0, -G)
     floor = pymunk.Segment(space.static_body, (-1000, -1), (1000, -1), 1)
-    floor.elasticity = 1.0
+    exec(sets, {"shape": floor})
     space.add(floor)
     balls = []
     for place, drop in enumerate(drops):
         body = pymunk.Body(1.0, 1.0)
         body.position = (3 * place, radius + drop)
         shape = pymunk.Circle(body, radius)
-        shape.elasticity = r
+        exec(sets, {"shape": shape})
         space.add(body, shape)
         balls.append(body)
     heights = []
     for _ in range(steps):
-        space.step(step)
+        exec(advances, {"space": space})
         heights.append([ball.position.y - radius for ball in balls])
     return np.array(heights)
 
 
-def dart(r, step, drops, radius, steps):
+def dart(text, drops, radius, steps):
     from dartpy.dynamics import BoxShape, Skeleton, SphereShape
     from dartpy.simulation import World
 
+    sets, advances = lines_of(text)
     world = World("bounce")
     world.setGravity([0, 0, -G])
-    world.setTimeStep(step)
+    # The step is set, and not an argument of it.
+    exec(advances, {"world": world})
 
-    def add(skeleton, pair, shape, number):
+    def add(skeleton, pair, shape):
         node = pair[1].createShapeNode(shape)
         node.createCollisionAspect()
         node.createDynamicsAspect()
-        node.getDynamicsAspect().setRestitutionCoeff(number)
+        exec(sets, {"dynamicsAspect": node.getDynamicsAspect()})
         world.addSkeleton(skeleton)
 
     ground = Skeleton("ground")
-    add(ground, ground.createWeldJointAndBodyNodePair(), BoxShape([1000, 10, 1]), 1.0)
+    add(ground, ground.createWeldJointAndBodyNodePair(), BoxShape([1000, 10, 1]))
     balls = []
     for place, drop in enumerate(drops):
         ball = Skeleton(f"ball {place}")
         pair = ball.createTranslationalJointAndBodyNodePair()
-        add(ball, pair, SphereShape(radius), r)
+        add(ball, pair, SphereShape(radius))
         ball.setPositions([3 * place, 0, 0.5 + radius + drop])
         balls.append(ball)
     heights = []
@@ -77,36 +96,43 @@ def dart(r, step, drops, radius, steps):
     return np.array(heights)
 
 
-def box2d_2(r, step, drops, radius, steps):
+def box2d_2(text, drops, radius, steps):
     import Box2D
 
+    sets, advances = lines_of(text)
     world = Box2D.b2World(gravity=(0, -G))
     ground = Box2D.b2PolygonShape(box=(1000, 1, (0, -1), 0))
-    world.CreateStaticBody(fixtures=Box2D.b2FixtureDef(shape=ground, restitution=0.0))
+    world.CreateStaticBody(fixtures=Box2D.b2FixtureDef(shape=ground))
     circle = Box2D.b2CircleShape(radius=radius)
-    fixture = Box2D.b2FixtureDef(shape=circle, density=1.0, restitution=r)
+    fixture = Box2D.b2FixtureDef(shape=circle, density=1.0)
+    exec(sets, {"fixtureDef": fixture})
     balls = [
         world.CreateDynamicBody(position=(3 * place, radius + drop), fixtures=fixture)
         for place, drop in enumerate(drops)
     ]
     heights = []
     for _ in range(steps):
-        world.Step(step, 8, 3)
+        exec(advances, {"world": world})
         heights.append([ball.position.y - radius for ball in balls])
     return np.array(heights)
 
 
-def rapier(r, step, drops, radius, steps):
+def rapier(text, drops, radius, steps):
     import rapier3d
 
+    sets, advances = as_python(text)
+
+    def of(shape):
+        return eval(sets, {"ColliderBuilder": SimpleNamespace(ball=lambda _: shape), "radius": 0})
+
     world = rapier3d.PhysicsWorld(gravity=(0, -G, 0))
-    world.integration_parameters.dt = step
+    exec(advances, {"integration_parameters": world.integration_parameters})
     ground = rapier3d.Collider.cuboid(1000, 1, 10).translation((0, -1, 0))
-    world.add_collider(ground.restitution(r))
+    world.add_collider(of(ground))
     balls = []
     for place, drop in enumerate(drops):
         ball = rapier3d.RigidBody.dynamic(translation=(3 * place, radius + drop, 0))
-        shape = rapier3d.Collider.ball(radius).density(1.0).restitution(r)
+        shape = of(rapier3d.Collider.ball(radius).density(1.0))
         balls.append(world.add_body(ball, colliders=[shape]))
     heights = []
     for _ in range(steps):
@@ -115,14 +141,13 @@ def rapier(r, step, drops, radius, steps):
     return np.array(heights)
 
 
-def newton_xpbd(r, step, drops, radius, steps):
+def newton_xpbd(text, drops, radius, steps):
+    warp = quiet_warp()
     import newton
-    import warp
 
+    sets, advances = as_python(text)
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, -G))
-    material = newton.ModelBuilder.ShapeConfig(
-        density=1000.0, mu=0.0, mu_torsional=0.0, mu_rolling=0.0, restitution=r
-    )
+    material = eval(sets, {"ShapeConfig": newton.ModelBuilder.ShapeConfig})
     for place, drop in enumerate(drops):
         at = warp.transform(warp.vec3(3.0 * place, 0.0, radius + drop), warp.quat_identity())
         builder.add_shape_sphere(builder.add_body(xform=at), radius=radius, cfg=material)
@@ -133,11 +158,12 @@ def newton_xpbd(r, step, drops, radius, steps):
     after = model.state()
     pipeline = newton.CollisionPipeline(model)
     contacts = pipeline.contacts()
+    names = dict(solver=solver, control=model.control(), contacts=contacts)
     heights = []
     for _ in range(steps):
         before.clear_forces()
         pipeline.collide(before, contacts)
-        solver.step(before, after, model.control(), contacts, step)
+        exec(advances, {**names, "state": before, "following": after})
         before, after = after, before
         heights.append(before.body_q.numpy()[:, 2].astype(float) - radius)
     return np.array(heights)
@@ -146,36 +172,64 @@ def newton_xpbd(r, step, drops, radius, steps):
 _MODEL = """<model name="{name}"><static>{is_static}</static><pose>{x!r} 0 {z!r} 0 0 0</pose>
 <link name="link"><inertial><inertia><ixx>{inertia!r}</ixx><iyy>{inertia!r}</iyy>
 <izz>{inertia!r}</izz></inertia></inertial><collision name="shape"><geometry>{shape}</geometry>
-<surface><bounce><restitution_coefficient>{r!r}</restitution_coefficient></bounce></surface>
-</collision></link></model>"""
+<surface>{bounce}</surface></collision></link></model>"""
 
 
-def gazebo_sim(r, step, drops, radius, steps):
+def gazebo_sim(text, drops, radius, steps):
     """Gazebo's physics with DART, by the program engine_gz_sim.cpp."""
     program = shutil.which("engine_gz_sim")
     plugins = glob("/usr/lib/*/ign-physics-*/engine-plugins/*dartsim-plugin.so*")
     if program is None or not plugins:
         raise ModuleNotFoundError("engine_gz_sim", name="engine_gz_sim")
+    bounce, physics = text.splitlines()
+    (step,) = re.findall("<max_step_size>(.*)</max_step_size>", physics)
     box = "<box><size>1000 10 1</size></box>"
     models = [
-        _MODEL.format(name="ground", is_static=True, x=0.0, z=-0.5, inertia=1.0, shape=box, r=1.0)
+        _MODEL.format(
+            name="ground", is_static=True, x=0.0, z=-0.5, inertia=1.0, shape=box, bounce=bounce
+        )
     ]
     ball = f"<sphere><radius>{radius!r}</radius></sphere>"
     for place, drop in enumerate(drops):
         at = dict(x=3.0 * place, z=float(radius + drop), inertia=0.4 * radius**2)
-        models.append(_MODEL.format(name=f"ball{place}", is_static=False, shape=ball, r=r, **at))
+        models.append(
+            _MODEL.format(name=f"ball{place}", is_static=False, shape=ball, bounce=bounce, **at)
+        )
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "world.sdf")
         file.write_text(
             f"""<sdf version="1.6"><world name="drop"><gravity>0 0 {-G}</gravity>
-            <physics name="dart" type="dart"><max_step_size>{step!r}</max_step_size></physics>
+            {physics}
             {"".join(models)}</world></sdf>"""
         )
-        command = [program, plugins[0], str(file), repr(step), str(steps)]
+        command = [program, plugins[0], str(file), step, str(steps)]
         ran = subprocess.run(command, capture_output=True, check=True, text=True)
     return np.loadtxt(ran.stdout.splitlines()) - radius
 
 
+def by_node(name, text, drops, radius, steps, **more):
+    """Return the heights in an engine of JavaScript; `more` is what another adapter needs."""
+    node = shutil.which("node")
+    if node is None:
+        raise ModuleNotFoundError("Node.js", name="Node.js")
+    drop = dict(engine=name, text=text, radius=radius, steps=steps, **more)
+    jobs = json.dumps([{**drop, "drop": float(each)} for each in drops])
+    # Node.js looks for packages beside a program: here in the working folder.
+    with tempfile.NamedTemporaryFile(suffix=".mjs", dir=".") as program:
+        program.write(FILE.with_suffix(".mjs").read_bytes())
+        program.flush()
+        command = [node, program.name]
+        ran = subprocess.run(command, input=jobs, capture_output=True, text=True)
+    if ran.returncode == NOT_INSTALLED:
+        raise ModuleNotFoundError(ran.stderr.strip(), name=ran.stderr.strip())
+    if ran.returncode:
+        raise RuntimeError(ran.stderr)
+    return np.array(json.loads(ran.stdout.splitlines()[-1])).T
+
+
+NOT_INSTALLED = 3
+"""Exit status of engine_drops.mjs without the package of an engine."""
+OF_NODE = ("jolt", "physx", "box2d", "planck", "matter-js", "cannon-es")
 ENGINES = {
     "chipmunk": chipmunk,
     "dart": dart,
@@ -183,23 +237,38 @@ ENGINES = {
     "box2d-2": box2d_2,
     "rapier": rapier,
     "newton-xpbd": newton_xpbd,
+    **{name: functools.partial(by_node, name) for name in OF_NODE},
 }
+STANDS_FOR = {
+    "unity": dict(offset=0.01),
+    "isaac-lab": dict(offset=1.0, threshold=0.5),
+    # PhysX has no threshold of 0; every impact here is faster than this one.
+    "isaac-sim": dict(offset=1.0, threshold=0.2),
+}
+"""The contact offset in m and the threshold in m/s with which PhysX is run for other rows."""
 
 
-def rebound(heights):
-    """Return the height of the first top after the impact; 0 if the ball does not fall again."""
-    rising = np.flatnonzero(np.diff(heights) > 0)
-    if not rising.size:
-        return 0.0
-    falling = np.flatnonzero(np.diff(heights[rising[0] + 1 :]) < 0)
-    return max(heights[rising[0] + 1 + falling[0]], 0.0) if falling.size else 0.0
+def text_of(name, r, step, threshold=None):
+    """Return the lines of an engine for r of both bodies, without damping."""
+    row = BY_NUMBER[name]
+    values = {row.parameter: row.pair.alike(r), row.damped_by: 0.0, "step": step}
+    if threshold is not None:
+        values[row.set_by] = threshold
+    return "\n".join(
+        line.format(name=key, value=repr(values[key]), bodies="both bodies", rate=1 / step)
+        for key, line in row.lines.items()
+        if key in values
+    )
 
 
-def dropped(run, r, step, drop, radius):
-    """Return mean, least and greatest r of balls that meet the ground at instants within a step."""
+def dropped(run, text, step, drop, radius):
+    """Return mean, least and greatest r of balls that meet the ground at instants within a step.
+
+    ``run`` is an engine, and ``step`` is that of the text.
+    """
     speed = math.sqrt(2 * G * drop)
     drops = drop + speed * step * (np.arange(INSTANTS) / INSTANTS - 0.5)
-    heights = run(r, step, drops, radius, math.ceil(2.4 * speed / G / step) + 6)
+    heights = run(text, drops, radius, math.ceil(2.4 * speed / G / step) + 6)
     tops = [rebound(column) for column in heights.T]
     got = np.sqrt(np.array(tops) / drops)
     return got.mean(), got.min(), got.max()
@@ -209,11 +278,16 @@ def main():
     with FILE.open(newline="") as file:
         _, *lines = csv.reader(file)
     cases = dict.fromkeys(tuple(line[1:5]) for line in lines)
-    for name in sys.argv[1:] or ENGINES:
+    for name in sys.argv[1:] or [*ENGINES, *STANDS_FOR]:
+        more = dict(STANDS_FOR.get(name, {}))
+        threshold = more.pop("threshold", None)
+        of = "physx" if more else name
         try:
             for case in cases:
                 r, rate, drop, radius = map(float, case)
-                found = dropped(ENGINES[name], r, 1 / rate, drop, radius)
+                run = functools.partial(ENGINES[of], **more)
+                text = text_of(of, r, 1 / rate, threshold)
+                found = dropped(run, text, 1 / rate, drop, radius)
                 print(name, *case, *(f"{each:.4f}" for each in found), sep=",", flush=True)
         except ImportError as missing:
             print(f"{name}: {missing.name} is not installed", file=sys.stderr)

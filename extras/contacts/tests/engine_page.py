@@ -8,17 +8,24 @@ DOCS = Path(__file__).parents[1] / "docs"
 TABLES = DOCS / "validation"
 PAGE = DOCS / "validation.md"
 KEPT = {True: "kept", False: "differs", None: "not promised"}
-"""The last cell of a row."""
+NOT_RUN = "not run"
+"""The last cell of a row; of an engine that was not run, whose second cell has the reason."""
 
 
 def save(name, head, rows):
-    """Save rows whose first cell is an engine; those of other engines stay as they are."""
+    """Save rows whose first cell is an engine.
+
+    Those of other engines stay as they are, and those of a run that cannot be made again.
+    """
     path = TABLES / f"{name}.csv"
-    engines = {row[0] for row in rows}
     others = []
     if path.exists():
         with path.open(newline="", encoding="utf-8") as file:
-            others = [row for row in list(csv.reader(file))[1:] if row[0] not in engines]
+            others = list(csv.reader(file))[1:]
+    ran = {row[0] for row in others if row[-1] != NOT_RUN}
+    rows = [row for row in rows if row[-1] != NOT_RUN or row[0] not in ran]
+    engines = {row[0] for row in rows}
+    others = [row for row in others if row[0] not in engines]
     TABLES.mkdir(exist_ok=True)
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
@@ -34,8 +41,12 @@ def _count():
             rows = list(csv.reader(file))[1:]
         for engine in dict.fromkeys(row[0] for row in rows):
             last = [row[-1] for row in rows if row[0] == engine]
-            promised = len(last) - last.count("not promised")
             link = f"[{path.stem}](validation/{path.name})"
+            if last == [NOT_RUN]:
+                (reason,) = (row[1] for row in rows if row[0] == engine)
+                lines.append(f"| {link} | {engine} | not run: {reason} | | |")
+                continue
+            promised = len(last) - last.count("not promised")
             counts = f"{len(last)} | {promised} | {last.count('kept')}"
             lines.append(f"| {link} | {engine} | {counts} |")
     part = "\n".join(["<!-- counts -->", "", *lines, "", "<!-- end of counts -->"])

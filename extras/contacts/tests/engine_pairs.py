@@ -125,14 +125,23 @@ def run_alone(run, seconds):
     return lambda one, other, height, step, rub: run(trial(one, height, step, seconds, rub))[0]
 
 
-def trial(one, height, step, seconds, rub):
-    written = SimpleNamespace(parameters=one, bounce=BALL, time_step=step)
+def trial(one, height, step, seconds, rub, snippet=""):
+    written = SimpleNamespace(parameters=one, snippet=snippet, bounce=BALL, time_step=step)
     steps = int(seconds / step)
     rubs = (rub.friction or 0.0, rub.slide)
     return engine_runs.Trial(written, "ball", float(height), 0.0, steps, G, *rubs)
 
 
-ODE = run_alone(engine_runs.ode, 60.0)
+def ode(one, other, height, step, rub):
+    modes = ("Bounce", "SoftERP", "SoftCFM", "Approx1")
+    lines = [f"contact.surface.mode = {' | '.join(f'dContact{mode}' for mode in modes)};"]
+    # Those of a world of double precision, and no bounce.
+    values = {"bounce": 0.0, "bounce_vel": 0.0, **ENGINES["ode"].defaults, **one}
+    lines += [f"contact.surface.{name} = {value!r};" for name, value in values.items()]
+    lines += [f"dWorldStep(world, {step!r});"]
+    return engine_runs.ode(trial(one, height, step, 60.0, rub, "\n".join(lines)))[0]
+
+
 GAZEBO = run_alone(engine_runs.gazebo, 20.0)
 
 
@@ -184,7 +193,7 @@ CASES = [
     ),
     ("pybullet", pybullet, {"restitution": 0.9}, {"restitution": 0.7}, LONG),
     *(
-        ("ode", ODE, both, both, 0.01)
+        ("ode", ode, both, both, 0.01)
         for both in (
             {"bounce": 0.9},
             {"bounce": 0.9, "soft_cfm": 1e-3},

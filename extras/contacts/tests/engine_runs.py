@@ -14,6 +14,7 @@ import sys
 import tempfile
 import warnings
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -24,9 +25,10 @@ from bouncing_ball_contacts.engines import ENGINES
 class Trial(NamedTuple):
     """A design with the shape "ball", "box" or "two", and how it starts.
 
-    In SI units: the gap and the speed downwards at the start, gravity, friction, the speed `slide`
-    along x and the angular velocity `spin` about y; the angles `tilt` of a box about y and `slope`
-    of the table in degrees. The table is an infinite "plane", or a "slab" that is 2 cm thick.
+    In SI units: the gap and the speed downwards at the start, gravity, friction (None: that of the
+    engine), the speed `slide` along x and the angular velocity `spin` about y; the angles `tilt` of
+    a box about y and `slope` of the table in degrees. The table is an infinite "plane", or a "slab"
+    that is 2 cm thick.
     """
 
     design: object
@@ -35,7 +37,7 @@ class Trial(NamedTuple):
     speed: float
     steps: int
     gravity: float
-    friction: float = 0.0
+    friction: float | None = 0.0
     slide: float = 0.0
     spin: float = 0.0
     tilt: float = 0.0
@@ -129,10 +131,12 @@ def _mujoco_model(trial):
 
     r = trial.size
     form = f'type="box" size="{r!r} {r!r} {r!r}"' if trial.shape == "box" else f'size="{r!r}"'
-    # The snippet is a geom, whose attributes both geoms have.
-    (pasted,) = re.findall(r"<geom (.*?)/>", trial.design.snippet)
-    pasted = re.sub(' friction="[^"]*"', "", pasted)
-    rough = f'{pasted} friction="{trial.friction!r} 0.005 0.0001"'
+    # The snippet is an option, and a geom whose attributes both geoms have.
+    option, rough = re.findall(r"<(?:option|geom) .*?/>", trial.design.snippet)
+    rough = rough.removeprefix("<geom ").removesuffix("/>")
+    if trial.friction is not None:
+        rough = re.sub(' friction="[^"]*"', "", rough)
+        rough += f' friction="{trial.friction!r} 0.005 0.0001"'
     below = f'<geom {rough} type="plane" size="9 9 1"/>'
     if trial.table == "slab":
         below = f'<geom {rough} type="box" size="9 9 0.01" pos="0 0 -0.01"/>'
@@ -144,7 +148,7 @@ def _mujoco_model(trial):
         return " ".join(map(repr, values))
 
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="{trial.step!r}" gravity="{numbers(trial.weight)}"/>
+        f"""<mujoco>{option}<option gravity="{numbers(trial.weight)}"/>
         <worldbody><body pos="{numbers(trial.place)}" quat="{numbers(trial.turned)}"><freejoint/>
         <geom {rough} {form} mass="{trial.mass!r}"/></body>{below}</worldbody></mujoco>"""
     )
@@ -171,7 +175,7 @@ def mujoco(trial):
 
 
 @functools.cache
-def _warp():
+def quiet_warp():
     import warp
 
     warp.config.quiet = True
@@ -180,7 +184,7 @@ def _warp():
 
 def mujoco_warp(trial):
     """The designs of MuJoCo in mujoco_warp, which computes in single precision."""
-    _warp()
+    quiet_warp()
     import mujoco_warp
 
     model, data = _mujoco_model(trial)
@@ -198,9 +202,12 @@ def mujoco_warp(trial):
 def pybullet(trial):
     import pybullet
 
-    if not pybullet.isConnected():
-        pybullet.connect(pybullet.DIRECT)
-    pybullet.resetSimulation()
+    # A world that is only reset keeps the parameters that a snippet has set.
+    if pybullet.isConnected():
+        pybullet.disconnect()
+    pybullet.connect(pybullet.DIRECT)
+    # All worlds of a process share this one, whose default is 0.02.
+    pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.02)
     r = trial.size
     form = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=r)
     if trial.shape == "box":
@@ -219,17 +226,9 @@ def pybullet(trial):
         trial.mass, form, basePosition=trial.place, baseOrientation=[*xyz, w]
     )
     pybullet.setGravity(*trial.weight)
-    # The world keeps its parameters, and these are not in every snippet.
-    pybullet.setPhysicsEngineParameter(
-        fixedTimeStep=trial.step,
-        numSubSteps=1,
-        contactBreakingThreshold=0.02,
-        contactERP=0.08,
-        contactSlop=1e-5,
-        restitutionVelocityThreshold=0.2,
-    )
     for body in (one, other):
-        pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
+        if trial.friction is not None:
+            pybullet.changeDynamics(body, -1, lateralFriction=math.sqrt(trial.friction))
     pybullet.resetBaseVelocity(other, [trial.slide, 0, -trial.speed], [0, trial.spin, 0])
     exec(trial.design.snippet, {"pybullet": pybullet, "one": one, "other": other})
 
@@ -341,7 +340,7 @@ def lammps(trial):
 
 
 def newton(trial):
-    warp = _warp()
+    warp = quiet_warp()
     import newton
 
     names = {"newton": newton}
@@ -351,9 +350,8 @@ def newton(trial):
     r = trial.size
     material = names["material"]
     material.density = trial.mass / trial.volume
-    material.mu = trial.friction
-    if trial.friction:
-        material.kf = newton.ModelBuilder.ShapeConfig().kf
+    if trial.friction is not None:
+        material.mu = trial.friction
     # The table is where single precision is best.
     w, *xyz = trial.turned
     place = warp.transform(warp.vec3(*trial.place), warp.quat(*xyz, w))
@@ -392,7 +390,7 @@ def newton(trial):
     def advance():
         states[0].clear_forces()
         pipeline.collide(states[0], contacts)
-        solver.step(states[0], states[1], control, contacts, trial.step)
+        solver.step(states[0], states[1], control, contacts, names["time_step"])
         states.reverse()
         found = states[0].body_q.numpy()
         *center_and_axis, w = found[0]
@@ -400,6 +398,14 @@ def newton(trial):
         return pose, found[-1, :3].copy(), math.nan
 
     return followed(trial, advance)
+
+
+def as_python(text):
+    """Return lines of C++ or Rust as lines of Python."""
+    text = re.sub(r"(\d)f\b", r"\1", text)
+    for mark, ours in (("//", "#"), ("->", "."), ("::", "."), (";", "")):
+        text = text.replace(mark, ours)
+    return text.splitlines()
 
 
 def ode(trial):
@@ -444,12 +450,13 @@ def ode(trial):
             shapes.append(odepy.dCreatePlane(space, 0, 0, 1, 0))
     group = odepy.dJointGroupCreate(0)
     contact = odepy.dContact()
-    surface = contact.surface
-    surface.mode = odepy.dContactSoftERP | odepy.dContactSoftCFM | odepy.dContactBounce
-    surface.mode |= odepy.dContactApprox1
-    surface.mu = trial.friction
-    for name, value in (ENGINES["ode"].defaults | trial.design.parameters).items():
-        setattr(surface, name, value)
+    # A contact of C has no default.
+    contact.surface.mu = 1.0 if trial.friction is None else trial.friction
+    names = {**vars(odepy), "contact": contact, "world": world}
+    lines = as_python(trial.design.snippet)
+    (advances,) = (line for line in lines if line.startswith("dWorldStep"))
+    exec("\n".join(line for line in lines if line != advances), names)
+    advances = compile(advances, "snippet", "exec")
     size = ctypes.sizeof(odepy.dContactGeom)
     points = (odepy.dContactGeom * 8)()
 
@@ -458,7 +465,7 @@ def ode(trial):
             contact.geom = point
             joint = odepy.dJointCreateContact(world, group, ctypes.byref(contact))
             odepy.dJointAttach(joint, *bodies)
-        odepy.dWorldStep(world, trial.step)
+        exec(advances, names)
         odepy.dJointGroupEmpty(group)
         center = odepy.dBodyGetPosition(bodies[0])[:3]
         turned = odepy.dBodyGetQuaternion(bodies[0])[:4]
@@ -494,7 +501,7 @@ def Xform "World"
     {{
         vector3f physics:gravityDirection = {down}
         float physics:gravityMagnitude = {gravity!r}
-        uniform token physxScene:solverType = "PGS"
+        uniform token physxScene:solverType = "{solver}"
         bool physxScene:enableGPUDynamics = 0
         float physxScene:bounceThreshold = {bounceThresholdVelocity!r}
         uniform token physxScene:broadphaseType = "MBP"
@@ -552,15 +559,40 @@ def _physx():
     return engine, ovphysx.types.TensorType.RIGID_BODY_POSE, ovstage
 
 
+def _isaac_lab(text):
+    """Return what a snippet for Isaac Lab sets, by the names of a stage."""
+    given = {}
+
+    def configuration(**values):
+        given.update(values)
+
+    kinds = dict.fromkeys(("SimulationCfg", "PhysxCfg", "RigidBodyMaterialCfg"), configuration)
+    exec(text, {**kinds, "sim_utils": SimpleNamespace(**kinds)})
+    names = {
+        "compliant_contact_stiffness": "compliantContactStiffness",
+        "compliant_contact_damping": "compliantContactDamping",
+        "bounce_threshold_velocity": "bounceThresholdVelocity",
+    }
+    solvers = {0: "PGS", 1: "TGS"}
+    return {
+        **{names.get(name, name): value for name, value in given.items()},
+        "solver": solvers[given.get("solver_type", 1)],
+    }
+
+
 def physx(trial, other=None):
     engine, poses, ovstage = _physx()
-    threshold = trial.design.parameters.get("PhysxCfg.bounce_threshold_velocity", 0.5)
+    # Those of Isaac Lab.
     defaults = {
         "restitution": 0.0,
-        "bounceThresholdVelocity": threshold,
+        "bounceThresholdVelocity": 0.5,
+        "solver": "PGS",
         **ENGINES["physx"].defaults,
     }
-    one = defaults | trial.design.parameters
+    friction = 0.5 if trial.friction is None else trial.friction
+    snippet = trial.design.snippet
+    one = defaults | (_isaac_lab(snippet) if snippet else trial.design.parameters)
+    step = one.get("dt", trial.step)
     of_table = one if other is None else defaults | other
     r = trial.size
     gap = max(trial.gap, 0.0)
@@ -600,8 +632,9 @@ def physx(trial, other=None):
         down=tuple(x / (trial.gravity or 1) for x in trial.weight),
         bodies=bodies,
         bounceThresholdVelocity=one["bounceThresholdVelocity"],
+        solver=one["solver"],
         materials="".join(
-            _MATERIAL.format(of=of, friction=trial.friction, **values)
+            _MATERIAL.format(of=of, friction=friction, **values)
             for of, values in (("OfBody", one), ("OfTable", of_table))
         ),
     )
@@ -623,7 +656,7 @@ def physx(trial, other=None):
     read = np.zeros((len(found), *found[0].shape), np.float32)
 
     def advance():
-        engine.step_sync(trial.step)
+        engine.step_sync(step)
         for body, pose in zip(found, read, strict=True):
             body.read(pose)
         pose = read[0, 0]
@@ -669,7 +702,8 @@ def genesis(trial):
     exec(of_geoms, {"one": one, "other": other})
     for entity in (one, other):
         # Genesis takes the larger friction of both, and no material has less than 0.01.
-        entity.set_friction(max(trial.friction, 0.01))
+        if trial.friction is not None:
+            entity.set_friction(max(trial.friction, 0.01))
     other.set_mass(trial.mass)
     other.set_pos(trial.place)
     other.set_quat(trial.turned)
@@ -708,6 +742,20 @@ def gazebo(trial):
     return _by_program("engine_gazebo", trial, *(values[name] for name in names), is_box)
 
 
+def generic(trial):
+    """A script of one's own, of a body above a table."""
+    names = {}
+    exec(trial.design.snippet, names)
+    force, step = names["force"], names["step"]
+    z, v = trial.gap, -trial.speed
+    heights = []
+    for _ in range(trial.steps):
+        v += step * (trial.design.bounce.points * force(-z, -v) / trial.mass - trial.gravity)
+        z += step * v
+        heights.append(z)
+    return Motion(np.array(heights))
+
+
 RUNS = {
     "mujoco": mujoco,
     "mujoco-warp": mujoco_warp,
@@ -723,6 +771,7 @@ RUNS = {
     "physx": physx,
     "ode": ode,
     "gazebo": gazebo,
+    "generic": generic,
 }
 
 
@@ -760,6 +809,15 @@ def first_bounce(heights):
     return -heights[start:end].min(), after[:again], end
 
 
+def rebound(heights):
+    """Return the height of the first top after the impact; 0 if the ball does not fall again."""
+    rising = np.flatnonzero(np.diff(heights) > 0)
+    if not rising.size:
+        return 0.0
+    falling = np.flatnonzero(np.diff(heights[rising[0] + 1 :]) < 0)
+    return max(heights[rising[0] + 1 + falling[0]], 0.0) if falling.size else 0.0
+
+
 def measure(design, shape, slide=0.0, instants=13):
     """Return what a design does in its engine, over instants of the impact within a step.
 
@@ -771,13 +829,13 @@ def measure(design, shape, slide=0.0, instants=13):
     outcome = design.outcome
     speed = bounce.impact_speed
     g = bounce.load
-    rubs = bounce.friction or 0.0
+    rubs = bounce.friction
     deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
     found = []
     for share in np.linspace(0.01, 0.99, instants):
         lasts = 8 * deepest / speed + 6 * step
         if g:
-            gap = float(speed**2 / (2 * g) + share * speed * step)
+            gap = float(speed**2 / (2 * g) + (share - 0.5) * speed * step)
             fall = math.sqrt(2 * gap / g)
             seconds = fall * (1.05 + outcome.restitution[2]) + lasts
             steps = int(seconds / step)
@@ -788,10 +846,8 @@ def measure(design, shape, slide=0.0, instants=13):
             trial = Trial(design, shape, gap, speed, int(seconds / step), 0, rubs)
         heights, peak, *_ = run(trial)
         depth, after, end = first_bounce(heights)
-        r = 0.0
-        if after is not None and g:
-            r = math.sqrt(max(after.max(), 0.0) / gap)
-        elif after is not None:
+        r = math.sqrt(rebound(heights) / gap) if g else 0.0
+        if not g and after is not None:
             r = (heights[end + 1] - heights[end]) / step / speed
         if math.isnan(peak):
             # From the positions, as in the scheme v⁺ = v - h g + h a, z⁺ = z + h v⁺.

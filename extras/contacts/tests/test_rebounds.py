@@ -35,7 +35,7 @@ LARGEST = {
     "box2d": 3e-4,
     "box2d-2": 0.006,
     "planck": 0.006,
-    "matter-js": 0.006,
+    "matter-js": 0.001,
 }
 
 
@@ -45,10 +45,11 @@ def drops():
 
 
 def by_rule(line):
-    # Balls of matter-js have a radius of 200 pixels.
-    engine = BY_NUMBER[line["engine"]].scaled(G, 200 / float(line["radius in m"]))
     # The heights of the file are counted from the surface, also where there is a skin.
-    engine = replace(engine, skin=0.0)
+    engine = replace(BY_NUMBER[line["engine"]].scaled(G), skin=0.0)
+    sides = math.ceil(max(10, min(25, float(line["radius in m"]) * engine.pixels)))
+    # A circle of matter-js is made with a side below if a quarter of their even number is whole.
+    turn = float((sides + sides % 2) % 4 == 0)
     drop = float(line["drop in m"])
     at = Fall(
         number=float(line["r"]),
@@ -56,7 +57,7 @@ def by_rule(line):
         gravity=G,
         threshold=engine.threshold,
         radius=float(line["radius in m"]),
-        settings=engine.settings,
+        settings={**engine.settings, "pixels": engine.pixels, "turn": turn},
     )
     r = restitutions(engine, at, math.sqrt(2 * G * drop), instants=8)
     return np.array([r.mean(), r.min(), r.max()])
@@ -90,7 +91,7 @@ def test_the_rule_of_an_engine_is_what_it_does(name):
     apart = distances(name)
     assert len(apart) == 30
     assert apart.max() < LARGEST.get(name, EXACT)
-    assert np.median(apart) < (0.0015 if name == "matter-js" else EXACT)
+    assert np.median(apart) < EXACT
 
 
 def test_every_rule_was_measured():
@@ -106,8 +107,10 @@ BALL = dict(drop_height="1 m", restitution=0.8)
 
 @pytest.mark.parametrize("name", BY_NUMBER)
 def test_the_number_that_is_written_gives_what_is_said(name):
-    found = design(Bounce(**BALL), name, "1/240")
-    again = diagnose(Bounce(**BALL), name, found.parameters, "1/240")
+    # In matter-js r of a small ball depends on how it is turned.
+    ball = Bounce(**BALL, radius=0.3)
+    found = design(ball, name, "1/240")
+    again = diagnose(ball, name, found.parameters, "1/240")
     assert again.outcome.restitution == pytest.approx(found.outcome.restitution, abs=1e-3)
     assert found.outcome.restitution[1] == pytest.approx(0.8, abs=0.003)
     assert bool(found.also) != found.is_kept
@@ -170,24 +173,22 @@ def test_at_some_instants_a_threshold_just_above_the_speed_is_reached(typed):
         (0.8, 1 / 60, 7, (0.0, 0.0, 0.0)),
         (0.8, 1 / 120, 6, (0.0, 0.0, 0.0)),
         (0.95, 1 / 240, 5, (0.0, 0.0, 0.0)),
-        (0.8, 1 / 60, 10, (0.7004, 0.7422, 0.7842)),
-        (0.3, 1 / 120, 12, (0.2551, 0.2640, 0.2718)),
-        (0.8, 1 / 240, 9, (0.7705, 0.7813, 0.7922)),
+        (0.8, 1 / 60, 10.3, (0.6974, 0.7214, 0.7436)),
+        (0.3, 1 / 120, 12, (0.2220, 0.2429, 0.2608)),
+        (0.8, 1 / 240, 9, (0.7724, 0.7784, 0.7850)),
     ],
 )
 def test_the_threshold_of_matter_is_120_pixels_per_second(number, step, drop, measured):
-    """Of its default gravity, with lengths in pixels, a radius of 200 and no frictionAir: least,
-    mean and greatest r in matter-js 0.20.
+    """Of its default gravity, with lengths in pixels, a radius of 200, a corner below and no
+    frictionAir: least, mean and greatest r in matter-js 0.20.
     """
     engine = BY_NUMBER["matter-js"].scaled(1000.0)
     assert (engine.threshold, engine.pixels) == (pytest.approx(120), 1)
     ball = Bounce(drop_height=drop, gravity=1000.0, radius=200)
-    at = Fall(number, step, 1000.0, engine.threshold, ball.size)
+    settings = {"pixels": 1.0, "turn": 0.0}
+    at = Fall(number, step, 1000.0, engine.threshold, ball.size, settings=settings)
     r = restitutions(engine, at, ball.impact_speed, instants=8)
-    # A body at rest lies 0.075 pixels deep, and the sides of this polygon are 0.025 pixels farther
-    # in than its corners, both before the impact and after it.
-    tops = drop * np.array([r.min(), r.mean(), r.max()]) ** 2
-    assert tops == pytest.approx(drop * np.array(measured) ** 2, abs=0.2)
+    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=LARGEST["matter-js"])
 
 
 def test_the_threshold_of_matter_is_in_the_answer(typed):
@@ -198,9 +199,9 @@ def test_the_threshold_of_matter_is_in_the_answer(typed):
     assert "threshold of 1.18 m/s, 2 pixels in 1/60 s, Resolver._restingThresh" in out
     assert "a metre of 102 pixels" in out and "flights are damped" not in out
     out = typed(f"{said} --gravity 0 pixels=200")[1]
-    assert "r = 1.000" in out and "a metre of 200 pixels" in out
+    assert "r = 0.972 (0.954 to 1.000)" in out and "a metre of 200 pixels" in out
     out = typed(f"{said} --gravity 0 Matter.Resolver._restingThresh=0.5")[1]
-    assert "r = 1.000" in out
+    assert "threshold of" not in out and "to 1.000)" in out
 
 
 @pytest.mark.parametrize("name", BY_NUMBER)
@@ -271,8 +272,9 @@ def test_without_gravity_r_is_the_ratio_of_speeds():
         if name == "gazebo":
             given["threshold"] = 0
         found = diagnose(wall, name, given, "1/240")
-        # The relaxed spring of cannon-es has 12/13 of 1 + r, and takes the depth back.
-        tolerance = 0.16 if name == "cannon-es" else 1e-6
+        # The relaxed spring of cannon-es has 12/13 of 1 + r, and takes the depth back. A ball of
+        # matter-js is a polygon.
+        tolerance = {"cannon-es": 0.16, "matter-js": 0.09}.get(name, 1e-6)
         expected = pytest.approx(found.numbers["number"], abs=tolerance)
         assert found.outcome.restitution[1] == expected, name
 
@@ -431,19 +433,19 @@ if __name__ == "__main__":
         ("jolt", 0.05, 0.8, 1 / 240, 2, (0.7850, 0.7864, 0.7878)),
         ("cannon-es", 0.01, 0.8, 1 / 60, 5, (0.6812, 0.8119, 0.9446)),
         ("cannon-es", 0.1, 0.5, 1 / 120, 5, (0.3828, 0.5058, 0.6247)),
-        ("matter-js", 0.01, 0.8, 1 / 60, 5, (0.5653, 0.5684, 0.5712)),
-        ("matter-js", 0.01, 0.9, 1 / 60, 3, (0.6721, 0.6754, 0.6798)),
-        ("matter-js", 0.01, 0.8, 1 / 240, 2, (0.6412, 0.6424, 0.6436)),
+        ("matter-js", 0.01, 0.8, 1 / 60, 5, (0.5261, 0.5290, 0.5316)),
+        ("matter-js", 0.01, 0.9, 1 / 60, 3, (0.6280, 0.6311, 0.6352)),
+        ("matter-js", 0.01, 0.8, 1 / 240, 2, (0.5960, 0.5972, 0.5983)),
     ],
 )
 def test_the_linear_damping_of_an_engine_lowers_r(name, damping, number, step, drop, measured):
     """The default of Jolt lowers r of a drop from 5 m by 0.024, and 0.799 was promised. Measured in
-    the engines with a radius of 0.1 m.
+    the engines with a radius of 0.1 m; in matter-js 12 sides, one of them below.
     """
-    engine = BY_NUMBER[name]
+    engine = BY_NUMBER[name].scaled(G)
     ball = Bounce(drop_height=drop, gravity=G)
     keeps = engine.kept(damping, step)
-    settings = engine.settings
+    settings = {**engine.settings, "pixels": engine.pixels, "turn": 1.0}
     at = Fall(number, step, G, engine.threshold, ball.size, keeps, settings=settings)
     r = restitutions(engine, at, ball.impact_speed, instants=8)
     exact = LARGEST.get(name, EXACT)
@@ -505,18 +507,19 @@ def test_a_relaxation_of_cannon_keeps_r(wanted):
 
 
 @pytest.mark.parametrize(
-    ("name", "line"),
+    ("name", "wanted", "line"),
     [
-        ("jolt", "bodySettings.mLinearDamping = 0.0f;"),
-        ("godot-jolt", "physics/3d/default_linear_damp=0.0"),
-        ("matter-js", "body.frictionAir = 0.0;"),
+        ("jolt", 1.0, "bodySettings.mLinearDamping = 0.0f;"),
+        ("godot-jolt", 1.0, "physics/3d/default_linear_damp=0.0"),
+        # Its polygon takes a little more.
+        ("matter-js", 0.9, "body.frictionAir = 0.0;"),
     ],
 )
-def test_where_the_damping_is_in_the_way_the_least_change_is_without(name, line):
+def test_where_the_damping_is_in_the_way_the_least_change_is_without(name, wanted, line):
     """The least change of Jolt at r = 1 from 5 m repeated the number that was given."""
     engine = BY_NUMBER[name]
-    written = engine.pair.alike(1.0)
-    ball = Bounce(drop_height="5 m", restitution=1.0, radius="0.5 m")
+    written = engine.pair.alike(wanted)
+    ball = Bounce(drop_height="5 m", restitution=wanted, radius="0.5 m")
     found = diagnose(ball, name, {engine.parameter: written}, "1/60")
     assert not found.is_kept and found.change.is_kept
     assert line in found.change.snippet
@@ -580,3 +583,31 @@ def test_what_is_assumed_of_a_ball_is_listed(typed):
 def test_a_number_needs_no_mass_and_a_wrong_name_is_said_before_the_step(typed):
     assert typed("diagnose --engine pybullet restitution=0.8 --time-step 1/240")[0] == 0
     assert "'foo' is not computed here" in typed("diagnose --engine unity foo=3 bounciness=0.8")[2]
+
+
+@pytest.mark.parametrize(
+    ("number", "rate", "pixels", "drop", "turn", "measured"),
+    [
+        (0.65, 60, 10, 1.5, 0, (0.5032, 0.5376, 0.6264)),
+        (0.65, 60, 10, 1.5, 1, (0.5473, 0.5546, 0.5623)),
+        (0.5, 120, 15, 0.8, 0.5, (0.4525, 0.4608, 0.4770)),
+        (0.9, 240, 30, 2.5, 0.5, (0.8782, 0.8815, 0.8911)),
+        (0.3, 120, 40, 0.5, 0.75, (0.2734, 0.2762, 0.2794)),
+        (0.8, 60, 12, 3, 0.25, (0.6992, 0.7139, 0.7774)),
+    ],
+)
+def test_a_circle_of_matter_is_a_polygon(number, rate, pixels, drop, turn, measured):
+    """Least, mean and greatest r in matter-js 0.20 of circles of as many pixels, less a half,
+    that are turned by shares of half a side.
+    """
+    engine = BY_NUMBER["matter-js"].scaled(G)
+    at = Fall(
+        number=number,
+        step=1 / rate,
+        gravity=G,
+        threshold=engine.threshold,
+        radius=(pixels - 0.5) / engine.pixels,
+        settings={"pixels": engine.pixels, "turn": turn},
+    )
+    r = restitutions(engine, at, math.sqrt(2 * G * drop), instants=8)
+    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=LARGEST["matter-js"])

@@ -314,9 +314,12 @@ class Problem:
         If every one is too deep, return the contact of the short step.
         """
         while True:
-            contact = self.keeping(functools.partial(_same, step))
-            if not self.keeps(contact.outcome, self.permitted):
-                contact = self.stiffest(step)
+            # With the fewest steps a contact is the least deep.
+            contact = self.at(_FINE_COUNTS[0] * step / self.duration, step)
+            if contact.outcome.depth[1] <= self.usable_depth:
+                contact = self.keeping(functools.partial(_same, step))
+                if not self.keeps(contact.outcome, self.permitted):
+                    contact = self.stiffest(step)
             # Beyond its size the ground swallows a body at rest.
             is_held = not contact.outcome.rest >= self.bounce.size
             if is_held and self.keeps(contact.outcome, self.usable_depth):

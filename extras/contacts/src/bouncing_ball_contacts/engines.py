@@ -802,6 +802,7 @@ ENGINES: Mapping[str, Engine] = {
             scheme=Implicit(),
             write=_write_ode,
             read=_read_ode,
+            rubs="\ncontact.surface.mu = {mu:g};",
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
             units={"soft_cfm": "m/N/s"},

@@ -58,8 +58,7 @@ SETTLED = 1.1
 """Thresholds over the least with which a body comes to rest: near it, that takes many bounces."""
 _CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
 INSTANTS = 24
-"""Of the impact within a step, in a search; a sixth of them in short steps, where r hardly depends
-on them."""
+"""Of the impact within a step, in a search; a sixth of them if gravity hardly acts in a step."""
 SHORTEST_STEP = 1e-4
 """Step in s below which no other step is tried: at shorter ones an answer takes minutes, and few
 users run so many steps."""
@@ -87,6 +86,8 @@ class ByNumber:
         the rebound counts.
     set_by : str
         Name of the threshold; empty if it has none.
+    has_defaults : bool
+        Whether the threshold has a default. A contact of ODE is a struct of C, which has none.
     lines : mapping
         Lines to paste, by the names of the number, the threshold, the settings, and "step" in s. A
         threshold without a line is a constant.
@@ -110,6 +111,8 @@ class ByNumber:
         a body come to rest; and a setting with which it comes to rest.
     pixels : float
         Number of pixels in a metre, of an engine whose lengths are pixels.
+    turns : tuple of float
+        How a ball that is a polygon may be turned, in half sides: 0 with a corner below.
     skin : float
         Height in m above the surface at which a ball touches. A ball lies there, so heights are
         counted from it.
@@ -125,6 +128,7 @@ class ByNumber:
     threshold: float = 0.0
     is_of_rebound: bool = False
     set_by: str = ""
+    has_defaults: bool = True
     settings: Mapping[str, float] = field(default_factory=dict)
     designed: tuple[Mapping[str, float], ...] = ()
     damped_by: str = ""
@@ -137,6 +141,7 @@ class ByNumber:
     is_restless: bool = False
     calmed_by: str = ""
     pixels: float = 0.0
+    turns: tuple[float, ...] = ()
     skin: float = 0.0
     notes: tuple[str, ...] = ()
     not_for: tuple[str, ...] = ()
@@ -220,6 +225,8 @@ _PHYSX = ByNumber(
     is_restless=True,
 )
 _AHEAD = "The contact offset is taken as longer than the way of the body in a step"
+# Drops from 1 m at 1/60 s in PhysX 5.12: 0.34 to 0.66 for 0.70; slow balls did not bounce at all.
+_PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
 _HAS_A_SKIN = (
     "Heights are counted from where a ball lies, which is up to "
     f"{1000 * step_rules.SKIN:g} mm above the surface, because there is a skin around polygons"
@@ -314,12 +321,13 @@ BY_NUMBER = {
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
             lines={
-                "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}",
+                "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}\n"
+                "PhysxCfg(solver_type=0)  # PGS, of SimulationCfg(physx=…)",
                 "PhysxCfg.bounce_threshold_velocity": "PhysxCfg(bounce_threshold_velocity={value})"
                 "  # of SimulationCfg(physx=…)",
                 "step": "SimulationCfg(dt={value})",
             },
-            notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD),
+            notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD, _PGS),
         ),
         replace(
             _PHYSX,
@@ -328,13 +336,15 @@ BY_NUMBER = {
             threshold=0.0,
             set_by="physxScene:bounceThreshold",
             lines={
-                "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}",
+                "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}\n"
+                'uniform token physxScene:solverType = "PGS"',
                 "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
                 "step": "World(physics_dt={value})",
             },
             notes=(
                 "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold",
                 _AHEAD,
+                _PGS,
             ),
         ),
         _RAPIER,
@@ -412,13 +422,15 @@ BY_NUMBER = {
                 "step": "Matter.Engine.update(engine, 1000 * {value});",
             },
             pixels=_PIXELS / STANDARD_GRAVITY,
+            turns=(0.0, 0.5, 1.0),
             settings={"frictionAir": 0.01},
             designed=({"frictionAir": 0.0},),
             damped_by="frictionAir",
             kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
             notes=(
-                "A circle is a polygon there: one of a radius of 20 pixels has 20 sides, and an r "
-                "that is lower by 0.02",
+                "A circle is a polygon there, of 10 to 26 sides: r is over all ways to turn it, "
+                "which matter below a radius of 20 pixels. With inertia: Infinity it cannot turn, "
+                "and has the r of a large circle",
                 "Below the threshold a ball with a number above 0.98 may also leave faster than "
                 "it came",
             ),
@@ -470,6 +482,7 @@ BY_NUMBER = {
             parameter="bounce",
             pair=PAIR,
             set_by="bounce_vel",
+            has_defaults=False,
             lines={
                 "bounce": "contact.surface.mode = dContactBounce | dContactApprox1;\n"
                 "contact.surface.bounce = {value};",
@@ -636,7 +649,7 @@ def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
 def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, Array]:
     """Return heights above the start, and velocities, after the steps of free flights."""
     n = np.arange(math.ceil(steps) + 10)
-    if engine.free is None:
+    if engine.free is None or not at.settings["linearDamping"]:
         # A step far above the surface.
         pull = -next(engine.rule(at, 1e6, 0.0))[1]
         left = at.keeps**n
@@ -644,7 +657,7 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
     else:
         free = engine.free
         each = itertools.accumulate(n[1:], lambda u, _: free(at, u), initial=v)
-        speeds = np.concatenate([np.broadcast_to(u, v.shape) for u in each], axis=-1)
+        speeds = np.concatenate(list(each), axis=-1)
     moves = speeds + (1 - engine.sinks) * at.added
     return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
@@ -673,8 +686,9 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     0.83
     """
     way = speed * at.step
-    # Of 0.1 mm.
-    instants = instants or (INSTANTS if way > 1e-4 else INSTANTS // 6)
+    # Within a step r changes by about g h/v.
+    is_short = 0 < at.added < 1e-3 * speed
+    instants = instants or (INSTANTS // 6 if is_short else INSTANTS)
     height = speed**2 / (2 * at.gravity) if at.gravity else _REACH + way
     refuse(
         [
@@ -728,7 +742,7 @@ def _snippet(case: "Case", number: float) -> str:
     one = f"one body, with {case.other or 0:g} of the other one"
     bodies = alike if case.other is None else one
     changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
-    if case.threshold != row.threshold:
+    if case.threshold != row.threshold or not row.has_defaults:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
     step = float(f"{case.step:.6g}")
     values = {row.parameter: float(f"{number:.4g}"), **changed, "step": step}
@@ -780,7 +794,7 @@ class Case(NamedTuple):
         """Return r of impacts with a speed in m/s, at instants within a step."""
         row = self.engine
         bounce = self.bounce
-        settings = dict(self.settings)
+        settings = {**self.settings, "pixels": row.pixels}
         if row.free and not bounce.load:
             # The speeds of two free bodies are those at the impact.
             settings["linearDamping"] = 0.0
@@ -797,7 +811,8 @@ class Case(NamedTuple):
             mass=bounce.reduced_mass if bounce.mass else 1.0,
             settings=settings,
         )
-        return restitutions(row, at, speed, instants)
+        turned = [replace(at, settings={**settings, "turn": turn}) for turn in row.turns] or [at]
+        return np.concatenate([restitutions(row, each, speed, instants) for each in turned])
 
     def slower(self, written: float) -> Range:
         """Return r at a third of the speed; NaN if the step is too long for it."""
@@ -806,87 +821,97 @@ class Case(NamedTuple):
         except Refused:
             return Range(math.nan, math.nan, math.nan)
 
-    def range(self, written: float) -> Range:
-        """Return the range of r of a number."""
-        return Range.of(self.restitutions(written, self.bounce.impact_speed, MOST_INSTANTS))
+    def tried(self, written: float) -> "Tried":
+        """Return a number with the range of its r."""
+        speed = self.bounce.impact_speed
+        return Tried(self, written, Range.of(self.restitutions(written, speed, MOST_INSTANTS)))
 
-    def nearest(self) -> float:
+    def nearest(self) -> "Tried":
         """Return the number whose mean r is nearest to the wanted one, by bisection."""
         speed = self.bounce.impact_speed
+        if self.restitutions(1.0, speed).mean() < self.bounce.restitution:
+            return self.tried(1.0)
         place = bisect_left(
             range(10_000),
             self.bounce.restitution,
             key=lambda place: self.restitutions(place / 10_000, speed).mean(),
         )
-        return place / 10_000
+        return self.tried(place / 10_000)
 
-    def deviation(self, written: float) -> float:
-        """Return the largest distance of r from the wanted one."""
-        return self.range(written).deviation(self.bounce.restitution)
-
-    def does_it(self, written: float) -> bool:
-        """Whether the mean of r is the wanted one, and the ball bounces at every instant."""
-        wanted = self.bounce.restitution
-        r = self.range(written)
-        return abs(r.mean - wanted) <= TOLERANCE and r.low >= wanted / 2
-
-    def with_threshold(self) -> "tuple[Case, float]":
-        """Return the case and the nearest number, with another threshold if r needs it.
+    def with_threshold(self) -> "Tried":
+        """Return the nearest number, with another threshold if r needs it.
 
         Lower the threshold to a quarter of the speed, or raise it until the ball comes to rest.
         """
-        number = self.nearest()
+        best = self.nearest()
         row = self.engine
         speed = self.bounce.impact_speed
         if row.is_constant or not row.set_by:
-            return self, number
-        tried = [(self, number)]
-        if self.deviation(number) > TOLERANCE and speed < 1.5 * self.threshold:
+            return best
+        if best.deviation > TOLERANCE and speed < 1.5 * self.threshold:
             lower = self._replace(threshold=float(f"{speed / 4:.2g}"))
-            tried.append((lower, lower.nearest()))
-        best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
-        settled = SETTLED * best.settling(number)
-        if best.threshold < settled < 0.9 * speed:
-            best = best._replace(threshold=float(f"{settled:.2g}"))
-            number = best.nearest()
-        return best, number
+            best = min(best, lower.nearest(), key=lambda each: each.deviation)
+        settled = SETTLED * best.case.settling(best.number)
+        if best.case.threshold < settled < 0.9 * speed:
+            best = best.case._replace(threshold=float(f"{settled:.2g}")).nearest()
+        return best
 
-    def wanted(self) -> "tuple[Case, float]":
-        """Return the case and the number that keep r, with other settings if r needs them."""
-        tried = [self.with_threshold()]
+    def wanted(self) -> "Tried":
+        """Return the number that keeps r, with other settings if r needs them."""
+        found = [self.with_threshold()]
         for settings in self.engine.designed:
-            if tried[-1][0].deviation(tried[-1][1]) <= TOLERANCE:
+            if found[-1].deviation <= TOLERANCE:
                 break
-            tried.append(self._replace(settings={**self.settings, **settings}).with_threshold())
-        return min(tried, key=lambda each: each[0].deviation(each[1]))
+            found.append(self._replace(settings={**self.settings, **settings}).with_threshold())
+        return min(found, key=lambda each: each.deviation)
 
-    def answer(self, number: float) -> Answer:
-        """Return the answer for a number."""
-        row = self.engine
-        bounce = self.bounce
+
+class Tried(NamedTuple):
+    """Number in a case, and the range of r that it gives."""
+
+    case: Case
+    number: float
+    restitution: Range
+
+    @property
+    def deviation(self) -> float:
+        """Largest distance of r from the wanted one."""
+        return self.restitution.deviation(self.case.bounce.restitution)
+
+    @property
+    def does_it(self) -> bool:
+        """Whether the mean of r is the wanted one, and the ball bounces at every instant."""
+        wanted = self.case.bounce.restitution
+        r = self.restitution
+        return abs(r.mean - wanted) <= TOLERANCE and r.low >= wanted / 2
+
+    def answer(self) -> Answer:
+        """Return the answer for the number."""
+        case, number, r = self
+        row = case.engine
+        bounce = case.bounce
         settings = {
             name: value
-            for name, value in self.settings.items()
+            for name, value in case.settings.items()
             if value != BY_NUMBER[row.name].settings[name]
         }
-        if self.threshold != row.threshold:
-            settings[row.set_by] = self.threshold / row.unit
-        r = self.range(number)
+        if case.threshold != row.threshold:
+            settings[row.set_by] = case.threshold / row.unit
         each = [f" and {name} = {value:.2g}" for name, value in settings.items()]
         named = "".join(each) if len(each) < 3 else f" with {len(each)} settings"
-        step = show(self.step, "s")
+        step = show(case.step, "s")
         return Answer(
             engine=row.name,
             bounce=bounce,
-            time_step=self.step,
+            time_step=case.step,
             parameters={row.parameter: number, **settings},
             outcome=Outcome(r),
-            snippet=_snippet(self, number),
-            warnings=tuple(_warnings(self, number, r)),
+            snippet=_snippet(case, number),
+            warnings=tuple(_warnings(case, number, r)),
             not_for=row.not_for,
-            remarks=tuple(_remarks(self, number)),
+            remarks=tuple(_remarks(case, number)),
             gives=f"{row.parameter} = {number:.4g}{named} at {step} gives r = {r}",
-            numbers={"number": self.number(number), "threshold": self.threshold},
+            numbers={"number": case.number(number), "threshold": case.threshold},
         )
 
 
@@ -995,7 +1020,7 @@ def _causes(case: Case, written: float, r: float) -> Iterator[str]:
     for name, value in designed.items():
         was = case.settings[name]
         case = case._replace(settings={**case.settings, name: value})
-        less = case.range(written).mean
+        less = case.tried(written).restitution.mean
         if abs(r - less) > TOLERANCE / 2:
             how = "lowers" if r < less else "raises"
             yield f"{name} = {was:g} {how} r from {less:.3f} to {r:.3f}; {value:g} if r needs it"
@@ -1048,30 +1073,32 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
             f"no number bounces in {engine.name} at {show(bounce.impact_speed, 'm/s')}: it has a "
             f"threshold of {engine.limit(engine.threshold)}, a constant"
         )
-    best, number = case.wanted()
-    found = best.answer(number)
+    best = case.wanted()
+    found = best.answer()
     way = show(bounce.impact_speed * asked, "m")
     far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
     warnings = (*found.warnings, *holding([(step != asked, far)]))
-    also = _shorter(best, number)
-    found = replace(found, asked_step=asked, warnings=warnings, also=also)
-    if best.does_it(number):
+    found = replace(found, asked_step=asked, warnings=warnings, also=_other_step(best))
+    if best.does_it:
         return found
-    nothing = f"at {show(best.step, 's')} no number gives this r: nothing is written to paste"
+    nothing = f"at {show(step, 's')} no number gives this r: nothing is written to paste"
     return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 
 
-def _shorter(case: Case, number: float) -> tuple[Answer, ...]:
-    """Return the answer at a half, a quarter, … of the step that keeps r, if this one does not."""
-    if case.deviation(number) <= TOLERANCE:
+def _other_step(found: Tried) -> tuple[Answer, ...]:
+    """Return the answer at another step that keeps r, if this one does not.
+
+    It is a half, a quarter, … of the step, or else 2, 4, … times a step below 1 ms.
+    """
+    if found.deviation <= TOLERANCE:
         return ()
-    for halvings in range(1, 8):
-        step = case.step / 2**halvings
-        if step < SHORTEST_STEP:
-            break
-        best, number = case._replace(step=step).wanted()
-        if best.deviation(number) <= TOLERANCE:
-            return (best.answer(number),)
+    asked = found.case.step
+    shorter = [asked / 2**n for n in range(1, 8) if asked / 2**n >= SHORTEST_STEP]
+    longer = [asked * 2**n for n in range(1, 5) if asked * 2**n <= 1e-3]
+    for step in (*shorter, *longer):
+        best = found.case._replace(step=step).wanted()
+        if best.deviation <= TOLERANCE:
+            return (best.answer(),)
     return ()
 
 
@@ -1122,26 +1149,25 @@ def diagnose_number(
         other=None if other is None else _given(engine, other).get("number", engine.default),
     )
     number = given.get("number", engine.default)
-    found = case.answer(number)
+    found = case.tried(number).answer()
     causes = tuple(_causes(case, number, found.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
     found = replace(found, snippet="", not_for=(), warnings=causes + found.warnings)
     if found.is_kept or case.never_bounces:
         return found
-    best, number = case.wanted()
-    if other is not None and best.deviation(number) > TOLERANCE:
+    best = case.wanted()
+    if other is not None and best.deviation > TOLERANCE:
         # The number of one body may not be enough.
-        tried = (best, number), case._replace(other=None).wanted()
-        best, number = min(tried, key=lambda each: each[0].deviation(each[1]))
+        tried = best, case._replace(other=None).wanted()
+        best = min(tried, key=lambda each: each.deviation)
     # What is given already is no change, nor is what does not do it.
-    is_change = (best, number) != (case, given.get("number")) and best.does_it(number)
-    change = best.answer(number) if is_change else None
-    if change and best.other is None and other is not None:
+    is_change = (best.case, best.number) != (case, given.get("number")) and best.does_it
+    change = best.answer() if is_change else None
+    if change and best.case.other is None and other is not None:
         change = replace(change, gives=f"{change.gives} (of both bodies)")
-    is_beyond = best.deviation(number) > TOLERANCE
-    beyond = (f"no number keeps r within {TOLERANCE:g} at this step",) * is_beyond
-    shorter = _shorter(best, number)
-    return replace(found, change=change, warnings=found.warnings + beyond, also=shorter)
+    beyond = (f"no number keeps r within {TOLERANCE:g} at this step",)
+    warnings = found.warnings + beyond * (best.deviation > TOLERANCE)
+    return replace(found, change=change, warnings=warnings, also=_other_step(best))
 
 
 def _later(engine: ByNumber, bodies: Sequence[Mapping[str, Any]]) -> Rule:

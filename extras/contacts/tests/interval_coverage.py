@@ -442,6 +442,11 @@ KINDS = [
         partial(power, 0.8, -0.1),
         partial(falls, heights=np.geomspace(0.2, 2, 40), error=0.02, scatter=0),
     ),
+    (
+        "60 pairs of speeds from 1 to 5 m/s to 0.2 m/s",
+        flat(0.8),
+        partial(speeds, v=np.geomspace(1, 5, 60), error=0.2, scatter=0),
+    ),
 ]
 
 

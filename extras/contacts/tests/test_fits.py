@@ -13,6 +13,7 @@ from scipy.special import chdtrc
 from bouncing_ball_contacts import Refused, design, fit
 from bouncing_ball_contacts.intervals import (
     _by_errors,
+    are_told,
     curves_of,
     deviations,
     estimate,
@@ -262,6 +263,18 @@ def test_errors_of_pooled_pairs_make_no_slope(typed):
     for kind in (-6, -4, -1):
         held, _, _ = coverage.study(coverage.KINDS[kind], 40, seed=4)
         assert held >= 33
+
+
+@pytest.mark.parametrize(("spread", "told"), [(0.078, False), (0.09, True)])
+def test_speeds_are_told_if_errors_make_a_twentieth_of_the_squares_at_most(spread, told):
+    """Of readings to 0.1 m/s about 3 m/s the covariance is -0.01/9; r scatters by exp(± 0.06)."""
+    signs = np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
+    x, y = (signs * [spread, 0.06]).T
+    v = 3 * np.exp(x)
+    pairs = np.column_stack([v, 0.8 * v * np.exp(y)])
+    share = (0.01 / 9) ** 2 / (spread * 0.06) ** 2
+    assert (share < 1 / 20) == told
+    assert are_told(impacts_of(Recording("", "speeds", (pairs,))), 0.1) == told
 
 
 def test_series_are_fitted_as_by_one_matrix_of_all():

@@ -508,6 +508,10 @@ def test_runs_have_a_time_of_their_own_or_one_of_all(tmp_path):
     assert len(fit(path).impacts.speed) == 12
     path.write_text("Run 1: Time (s),Run 2: Time (s)\n" + "\n".join(f"{t},{t}" for t in TIMES))
     assert len(fit(path).impacts.speed) == 10
+    # A last bounce without its height is no end of the run.
+    headings = "Run 1: n,Run 1: height (m),Run 2: n,Run 2: height (m)"
+    path.write_text(headings + "\n0,1,0,1\n1,.64,1,.64\n2,.41,2,\n3,.26,,")
+    assert any("missing in line 4, which" in note for note in fit(path).notes)
     # Times of one run are not those of the positions of another.
     path.write_text("Run 1: Time (s),Run 2: Position (m)\n" + track())
     with pytest.raises(Refused, match=r"Run 1 has Time \(s\) and Run 2 has Position \(m\): leave"):

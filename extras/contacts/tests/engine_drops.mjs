@@ -1,7 +1,7 @@
 // Balls that are dropped in engines that have a package for JavaScript, with text as it is pasted.
 // engine_drops.py runs this program. Its input is a list of drops as JSON, with the engine, the
-// text, the drop and the radius in m and the number of steps; its output are the heights of each
-// ball over the surface. The last line of a text is run in each step, and the others once. The
+// text, the drop and the radius in m, the number of steps, and the shape and the spin of the body;
+// its output are the heights of each body over the surface. The last line of a text is run in each step, and the others once. The
 // engines are installed in the working folder by
 //   npm install @dimforge/rapier3d-compat@0.21.0 jolt-physics@1.1.0 box2d3-wasm@5.2.0 \
 //     physx-js-webidl@2.7.3 planck@1.4.2 matter-js@0.20.0 cannon-es@0.20.0
@@ -35,7 +35,7 @@ const value = (code, names) => new Function(...Object.keys(names), code)(...Obje
 async function rapier() {
   const Rapier = await load("@dimforge/rapier3d-compat");
   await Rapier.init();
-  return ({ text, drop, radius, steps }) => {
+  return ({ text, drop, radius, steps, shape, spin }) => {
     const [sets, advances] = linesOf(text);
     const world = new Rapier.World({ x: 0, y: -G, z: 0 });
     value(advances, { integration_parameters: world.integrationParameters });
@@ -46,8 +46,15 @@ async function rapier() {
     const ground = Rapier.ColliderDesc.cuboid(9, 1, 9).setTranslation(0, -1, 0);
     world.createCollider(of(ground));
     const body = Rapier.RigidBodyDesc.dynamic().setTranslation(0, radius + drop, 0);
+    body.setAngvel({ x: 0, y: 0, z: spin });
+    if (shape === "capsule") body.setRotation({ x: Math.SQRT1_2, y: 0, z: 0, w: Math.SQRT1_2 });
     const ball = world.createRigidBody(body.setCanSleep(false));
-    world.createCollider(of(Rapier.ColliderDesc.ball(radius)), ball);
+    const made = {
+      ball: () => Rapier.ColliderDesc.ball(radius),
+      box: () => Rapier.ColliderDesc.cuboid(radius, radius, radius),
+      capsule: () => Rapier.ColliderDesc.capsule(2 * radius, radius),
+    }[shape]();
+    world.createCollider(of(made), ball);
     const heights = [];
     for (let k = 0; k < steps; k++) {
       world.step();
@@ -60,7 +67,7 @@ async function rapier() {
 
 async function jolt() {
   const Jolt = await (await load("jolt-physics"))();
-  return ({ text, drop, radius, steps }) => {
+  return ({ text, drop, radius, steps, shape, spin }) => {
     const [sets, advances] = linesOf(text);
     const settings = new Jolt.JoltSettings();
     const objects = new Jolt.ObjectLayerPairFilterTable(2);
@@ -77,19 +84,26 @@ async function jolt() {
     const physicsSystem = engine.GetPhysicsSystem();
     physicsSystem.SetGravity(new Jolt.Vec3(0, -G, 0));
     const physicsSettings = physicsSystem.GetPhysicsSettings();
+    const lies = shape === "capsule" ? Math.SQRT1_2 : 0;
     const put = (shape, y, motion, layer) => {
-      const still = new Jolt.Quat(0, 0, 0, 1);
+      const still = new Jolt.Quat(layer * lies, 0, 0, Math.sqrt(1 - layer * lies * lies));
       const made = new Jolt.BodyCreationSettings(
         shape, new Jolt.RVec3(0, y, 0), still, motion, layer,
       );
       value(sets, { bodySettings: made, physicsSettings });
+      made.mAngularVelocity = new Jolt.Vec3(0, 0, layer * spin);
       made.mAllowSleeping = false;
       const body = bodies.CreateBody(made);
       bodies.AddBody(body.GetID(), Jolt.EActivation_Activate);
       return body;
     };
     put(new Jolt.BoxShape(new Jolt.Vec3(9, 1, 9)), -1, Jolt.EMotionType_Static, 0);
-    const ball = put(new Jolt.SphereShape(radius), radius + drop, Jolt.EMotionType_Dynamic, 1);
+    const form = {
+      ball: () => new Jolt.SphereShape(radius),
+      box: () => new Jolt.BoxShape(new Jolt.Vec3(radius, radius, radius)),
+      capsule: () => new Jolt.CapsuleShape(2 * radius, radius),
+    }[shape]();
+    const ball = put(form, radius + drop, Jolt.EMotionType_Dynamic, 1);
     physicsSystem.SetPhysicsSettings(physicsSettings);
     const Update = (step, collisions) => engine.Step(step, collisions);
     const names = { physicsSystem: { Update }, allocator: null, jobs: null };
@@ -119,7 +133,7 @@ async function physx() {
   const physics = PhysX.CreatePhysics(version, base, scale);
   const { eSCENE_QUERY_SHAPE, eSIMULATION_SHAPE } = PhysX.PxShapeFlagEnum;
   const flags = new PhysX.PxShapeFlags(eSCENE_QUERY_SHAPE | eSIMULATION_SHAPE);
-  return ({ text, drop, radius, steps, offset }) => {
+  return ({ text, drop, radius, steps, shape, spin, offset }) => {
     const [sets, advances] = linesOf(text);
     const made = new PhysX.PxSceneDesc(scale);
     made.gravity = new PhysX.PxVec3(0, -G, 0);
@@ -128,9 +142,10 @@ async function physx() {
     const material = physics.createMaterial(0.5, 0.5, 0);
     value(sets, { material, sceneDesc: made });
     const scene = physics.createScene(made);
-    const put = (geometry, y, create) => {
+    const put = (geometry, y, create, turned) => {
       const pose = new PhysX.PxTransform(PhysX.PxIDENTITYEnum.PxIdentity);
       pose.p = new PhysX.PxVec3(0, y, 0);
+      if (turned) pose.q = new PhysX.PxQuat(0, Math.SQRT1_2, 0, Math.SQRT1_2);
       const body = physics[create](pose);
       const shape = physics.createShape(geometry, material, true, flags);
       shape.setSimulationFilterData(new PhysX.PxFilterData(1, 1, 0, 0));
@@ -140,7 +155,15 @@ async function physx() {
       return body;
     };
     put(new PhysX.PxBoxGeometry(9, 1, 9), -1, "createRigidStatic");
-    const ball = put(new PhysX.PxSphereGeometry(radius), radius + drop, "createRigidDynamic");
+    const geometry = {
+      ball: () => new PhysX.PxSphereGeometry(radius),
+      box: () => new PhysX.PxBoxGeometry(radius, radius, radius),
+      // Along x; turned about y it lies along z.
+      capsule: () => new PhysX.PxCapsuleGeometry(radius, 2 * radius),
+    }[shape]();
+    const ball = put(geometry, radius + drop, "createRigidDynamic", shape === "capsule");
+    PhysX.PxRigidBodyExt.prototype.updateMassAndInertia(ball, 1000);
+    ball.setAngularVelocity(new PhysX.PxVec3(0, 0, spin));
     const heights = [];
     for (let k = 0; k < steps; k++) {
       value(advances, { scene });
@@ -154,7 +177,7 @@ async function physx() {
 
 async function box2d() {
   const Box2D = await (await load("box2d3-wasm"))();
-  return ({ text, drop, radius, steps }) => {
+  return ({ text, drop, radius, steps, shape, spin }) => {
     const [sets, advances] = linesOf(text);
     const made = Box2D.b2DefaultWorldDef();
     made.gravity.Set(0, -G);
@@ -166,15 +189,26 @@ async function box2d() {
       body.type = type;
       body.enableSleep = false;
       body.position.Set(0, y);
+      if (type === Box2D.b2BodyType.b2_dynamicBody) body.angularVelocity = spin;
       return Box2D.b2CreateBody(world, body);
     };
     const ground = put(-1, Box2D.b2BodyType.b2_staticBody);
     Box2D.b2CreatePolygonShape(ground, Box2D.b2DefaultShapeDef(), Box2D.b2MakeBox(9, 1));
     const ball = put(radius + drop, Box2D.b2BodyType.b2_dynamicBody);
-    const circle = new Box2D.b2Circle();
-    circle.center.Set(0, 0);
-    circle.radius = radius;
-    Box2D.b2CreateCircleShape(ball, shapeDef, circle);
+    if (shape === "box") {
+      Box2D.b2CreatePolygonShape(ball, shapeDef, Box2D.b2MakeBox(radius, radius));
+    } else if (shape === "capsule") {
+      const capsule = new Box2D.b2Capsule();
+      capsule.center1.Set(-2 * radius, 0);
+      capsule.center2.Set(2 * radius, 0);
+      capsule.radius = radius;
+      Box2D.b2CreateCapsuleShape(ball, shapeDef, capsule);
+    } else {
+      const circle = new Box2D.b2Circle();
+      circle.center.Set(0, 0);
+      circle.radius = radius;
+      Box2D.b2CreateCircleShape(ball, shapeDef, circle);
+    }
     const heights = [];
     for (let k = 0; k < steps; k++) {
       value(advances, { b2World_Step: Box2D.b2World_Step, world });
@@ -189,15 +223,20 @@ async function planck() {
   const Planck = await load("planck");
   const { Settings } = Planck;
   const { velocityThreshold } = Settings;
-  return ({ text, drop, radius, steps }) => {
+  return ({ text, drop, radius, steps, shape, spin }) => {
     const [sets, advances] = linesOf(text);
     // Those of the drop before hold for all worlds.
     Settings.velocityThreshold = velocityThreshold;
     const world = new Planck.World({ gravity: Planck.Vec2(0, -G) });
     const ground = new Planck.Box(9, 1, Planck.Vec2(0, -1));
     world.createBody().createFixture({ shape: ground });
-    const ball = world.createDynamicBody({ position: Planck.Vec2(0, radius + drop) });
-    value(sets, { body: ball, shape: new Planck.Circle(radius), Settings });
+    const position = Planck.Vec2(0, radius + drop);
+    const ball = world.createDynamicBody({ position, angularVelocity: spin });
+    const form = {
+      ball: () => new Planck.Circle(radius),
+      box: () => new Planck.Box(radius, radius),
+    }[shape]();
+    value(sets, { body: ball, shape: form, Settings });
     const heights = [];
     for (let k = 0; k < steps; k++) {
       value(advances, { world });
@@ -211,19 +250,23 @@ async function matter() {
   const Matter = await load("matter-js");
   const { Bodies } = Matter;
   const { _restingThresh } = Matter.Resolver;
-  return ({ text, drop, radius, steps, turn }) => {
+  return ({ text, drop, radius, steps, shape, spin, turn }) => {
     const [sets, advances] = linesOf(text);
     Matter.Resolver._restingThresh = _restingThresh;
     const engine = Matter.Engine.create();
     // The gravity of an engine, in pixels/s², is that of this place.
     const pixels = (1e6 * engine.gravity.scale) / G;
     const ground = Bodies.rectangle(0, 1e5, 2e6, 2e5, { isStatic: true });
-    const names = { Matter, Bodies, x: 0, y: 0, radius: radius * pixels };
+    // With the text of a circle a square is made.
+    const circle = (x, y, r, of) => Bodies.rectangle(x, y, 2 * r, 2 * r, of);
+    const made = shape === "box" ? { circle } : Bodies;
+    const names = { Matter, Bodies: made, x: 0, y: 0, radius: radius * pixels };
     const ball = value(`const body = ${sets}\nreturn body;`, names);
     Matter.Body.rotate(ball, turn ?? 0);
     // Its lowest corner is at this height.
     Matter.Body.setPosition(ball, { x: 0, y: -drop * pixels - ball.bounds.max.y });
     Matter.Body.setVelocity(ball, { x: 0, y: 0 });
+    Matter.Body.setAngularVelocity(ball, spin / 60);
     const start = ball.position.y;
     Matter.Composite.add(engine.world, [ground, ball]);
     const heights = [];
@@ -237,7 +280,7 @@ async function matter() {
 
 async function cannon() {
   const Cannon = await load("cannon-es");
-  return ({ text, drop, radius, steps }) => {
+  return ({ text, drop, radius, steps, shape, spin }) => {
     const [sets, advances] = linesOf(text);
     const world = new Cannon.World({ gravity: new Cannon.Vec3(0, -G, 0) });
     const { ContactMaterial, Material } = Cannon;
@@ -247,8 +290,12 @@ async function cannon() {
     world.addBody(ground);
     const ball = new Cannon.Body({
       mass: 1,
-      shape: new Cannon.Sphere(radius),
+      shape: {
+        ball: () => new Cannon.Sphere(radius),
+        box: () => new Cannon.Box(new Cannon.Vec3(radius, radius, radius)),
+      }[shape](),
       position: new Cannon.Vec3(0, radius + drop, 0),
+      angularVelocity: new Cannon.Vec3(0, 0, spin),
       material: b,
     });
     world.addBody(ball);

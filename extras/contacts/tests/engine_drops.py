@@ -4,9 +4,10 @@
 that are installed, measured again. Those of JavaScript are run by ``engine_drops.mjs``, which has
 the command that installs them.
 
-An engine takes a text, the heights of drops and a radius in m, and the number of steps, and returns
-the heights of the balls over the surface, of the shape (steps, drop). The last line of a text is
-run in each step, and the others once for each body. What they do not set is left to the engine.
+An engine takes a text, the heights of drops and a radius in m, the number of steps and the kind of
+body, and returns the heights of the bodies over the surface, of the shape (steps, drop). The last
+line of a text is run in each step, and the others once for each body. What they do not set is left
+to the engine.
 """
 
 import csv
@@ -21,6 +22,7 @@ import tempfile
 from glob import glob
 from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 from engine_runs import as_python, quiet_warp, rebound
@@ -32,13 +34,26 @@ INSTANTS = 8
 FILE = Path(__file__).with_suffix(".csv")
 
 
+class Body(NamedTuple):
+    """A "ball", a flat "box" or a lying "capsule" with four radii between its centres.
+
+    ``spin`` is an angular velocity in rad/s about a horizontal axis.
+    """
+
+    shape: str = "ball"
+    spin: float = 0.0
+
+
+BALL = Body()
+
+
 def lines_of(text):
     """Return the code that sets the parameters, and the code of a step."""
     *sets, steps = as_python(text)
     return compile("\n".join(sets), "snippet", "exec"), compile(steps, "snippet", "exec")
 
 
-def chipmunk(text, drops, radius, steps):
+def chipmunk(text, drops, radius, steps, kind=BALL):
     import pymunk
 
     sets, advances = lines_of(text)
@@ -48,11 +63,19 @@ def chipmunk(text, drops, radius, steps):
     floor = pymunk.Segment(space.static_body, (-1000, -1), (1000, -1), 1)
     exec(sets, {"shape": floor})
     space.add(floor)
+    side = 2 * radius
+    shapes = {
+        "ball": lambda body: pymunk.Circle(body, radius),
+        "box": lambda body: pymunk.Poly.create_box(body, (side, side)),
+        "capsule": lambda body: pymunk.Segment(body, (-side, 0), (side, 0), radius),
+    }
     balls = []
     for place, drop in enumerate(drops):
-        body = pymunk.Body(1.0, 1.0)
+        body = pymunk.Body()
         body.position = (3 * place, radius + drop)
-        shape = pymunk.Circle(body, radius)
+        body.angular_velocity = kind.spin
+        shape = shapes[kind.shape](body)
+        shape.mass = 1.0
         exec(sets, {"shape": shape})
         space.add(body, shape)
         balls.append(body)
@@ -63,8 +86,9 @@ def chipmunk(text, drops, radius, steps):
     return np.array(heights)
 
 
-def dart(text, drops, radius, steps):
-    from dartpy.dynamics import BoxShape, Skeleton, SphereShape
+def dart(text, drops, radius, steps, kind=BALL):
+    from dartpy.collision import OdeCollisionDetector
+    from dartpy.dynamics import BoxShape, CapsuleShape, Inertia, Skeleton, SphereShape
     from dartpy.simulation import World
 
     sets, advances = lines_of(text)
@@ -72,42 +96,58 @@ def dart(text, drops, radius, steps):
     world.setGravity([0, 0, -G])
     # The step is set, and not an argument of it.
     exec(advances, {"world": world})
+    if kind.shape == "capsule":
+        # The default detector makes a ball of a capsule, with a message.
+        world.getConstraintSolver().setCollisionDetector(OdeCollisionDetector())
 
     def add(skeleton, pair, shape):
         node = pair[1].createShapeNode(shape)
         node.createCollisionAspect()
         node.createDynamicsAspect()
         exec(sets, {"dynamicsAspect": node.getDynamicsAspect()})
+        pair[1].setInertia(Inertia(1.0, [0, 0, 0], shape.computeInertia(1.0)))
         world.addSkeleton(skeleton)
 
+    shapes = {
+        "ball": lambda: SphereShape(radius),
+        "box": lambda: BoxShape([2 * radius] * 3),
+        "capsule": lambda: CapsuleShape(radius, 4 * radius),
+    }
     ground = Skeleton("ground")
     add(ground, ground.createWeldJointAndBodyNodePair(), BoxShape([1000, 10, 1]))
     balls = []
     for place, drop in enumerate(drops):
         ball = Skeleton(f"ball {place}")
-        pair = ball.createTranslationalJointAndBodyNodePair()
-        add(ball, pair, SphereShape(radius))
-        ball.setPositions([3 * place, 0, 0.5 + radius + drop])
+        add(ball, ball.createFreeJointAndBodyNodePair(), shapes[kind.shape]())
+        # The axis of a capsule is z, and its quarter turn is about x.
+        turn = math.pi / 2 if kind.shape == "capsule" else 0.0
+        ball.setPositions([turn, 0, 0, 3 * place, 0, 0.5 + radius + drop])
+        ball.setVelocities([0, kind.spin, 0, 0, 0, 0])
         balls.append(ball)
     heights = []
     for _ in range(steps):
         world.step()
-        heights.append([ball.getPositions()[2] - 0.5 - radius for ball in balls])
+        heights.append([ball.getPositions()[5] - 0.5 - radius for ball in balls])
     return np.array(heights)
 
 
-def box2d_2(text, drops, radius, steps):
+def box2d_2(text, drops, radius, steps, kind=BALL):
     import Box2D
 
     sets, advances = lines_of(text)
     world = Box2D.b2World(gravity=(0, -G))
     ground = Box2D.b2PolygonShape(box=(1000, 1, (0, -1), 0))
     world.CreateStaticBody(fixtures=Box2D.b2FixtureDef(shape=ground))
-    circle = Box2D.b2CircleShape(radius=radius)
-    fixture = Box2D.b2FixtureDef(shape=circle, density=1.0)
+    shapes = {
+        "ball": lambda: Box2D.b2CircleShape(radius=radius),
+        "box": lambda: Box2D.b2PolygonShape(box=(radius, radius)),
+    }
+    fixture = Box2D.b2FixtureDef(shape=shapes[kind.shape](), density=1.0)
     exec(sets, {"fixtureDef": fixture})
     balls = [
-        world.CreateDynamicBody(position=(3 * place, radius + drop), fixtures=fixture)
+        world.CreateDynamicBody(
+            position=(3 * place, radius + drop), angularVelocity=kind.spin, fixtures=fixture
+        )
         for place, drop in enumerate(drops)
     ]
     heights = []
@@ -117,7 +157,7 @@ def box2d_2(text, drops, radius, steps):
     return np.array(heights)
 
 
-def rapier(text, drops, radius, steps):
+def rapier(text, drops, radius, steps, kind=BALL):
     import rapier3d
 
     sets, advances = as_python(text)
@@ -129,10 +169,17 @@ def rapier(text, drops, radius, steps):
     exec(advances, {"integration_parameters": world.integration_parameters})
     ground = rapier3d.Collider.cuboid(1000, 1, 10).translation((0, -1, 0))
     world.add_collider(of(ground))
+    shapes = {
+        "ball": lambda: rapier3d.Collider.ball(radius),
+        "box": lambda: rapier3d.Collider.cuboid(radius, radius, radius),
+        "capsule": lambda: rapier3d.Collider.capsule_z(2 * radius, radius),
+    }
     balls = []
     for place, drop in enumerate(drops):
-        ball = rapier3d.RigidBody.dynamic(translation=(3 * place, radius + drop, 0))
-        shape = of(rapier3d.Collider.ball(radius).density(1.0))
+        ball = rapier3d.RigidBody.dynamic(
+            translation=(3 * place, radius + drop, 0), angvel=(0, 0, kind.spin)
+        )
+        shape = of(shapes[kind.shape]().density(1.0))
         balls.append(world.add_body(ball, colliders=[shape]))
     heights = []
     for _ in range(steps):
@@ -141,21 +188,31 @@ def rapier(text, drops, radius, steps):
     return np.array(heights)
 
 
-def newton_xpbd(text, drops, radius, steps):
+def newton_xpbd(text, drops, radius, steps, kind=BALL):
     warp = quiet_warp()
     import newton
 
     sets, advances = as_python(text)
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, -G))
     material = eval(sets, {"ShapeConfig": newton.ModelBuilder.ShapeConfig})
+    half = math.sqrt(0.5)
+    turned = warp.quat(half, 0.0, 0.0, half) if kind.shape == "capsule" else warp.quat_identity()
     for place, drop in enumerate(drops):
-        at = warp.transform(warp.vec3(3.0 * place, 0.0, radius + drop), warp.quat_identity())
-        builder.add_shape_sphere(builder.add_body(xform=at), radius=radius, cfg=material)
+        at = warp.transform(warp.vec3(3.0 * place, 0.0, radius + drop), turned)
+        body = builder.add_body(xform=at)
+        if kind.shape == "box":
+            builder.add_shape_box(body, hx=radius, hy=radius, hz=radius, cfg=material)
+        elif kind.shape == "capsule":
+            builder.add_shape_capsule(body, radius=radius, half_height=2 * radius, cfg=material)
+        else:
+            builder.add_shape_sphere(body, radius=radius, cfg=material)
     builder.add_ground_plane(cfg=material)
     model = builder.finalize(device="cpu")
+    model.joint_qd.assign([0, 0, 0, 0, kind.spin, 0] * len(drops))
     solver = newton.solvers.SolverXPBD(model, enable_restitution=True)
     before = model.state()
     after = model.state()
+    newton.eval_fk(model, model.joint_q, model.joint_qd, before)
     pipeline = newton.CollisionPipeline(model)
     contacts = pipeline.contacts()
     names = dict(solver=solver, control=model.control(), contacts=contacts)
@@ -207,12 +264,12 @@ def gazebo_sim(text, drops, radius, steps):
     return np.loadtxt(ran.stdout.splitlines()) - radius
 
 
-def by_node(name, text, drops, radius, steps, **more):
+def by_node(name, text, drops, radius, steps, kind=BALL, **more):
     """Return the heights in an engine of JavaScript; `more` is what another adapter needs."""
     node = shutil.which("node")
     if node is None:
         raise ModuleNotFoundError("Node.js", name="Node.js")
-    drop = dict(engine=name, text=text, radius=radius, steps=steps, **more)
+    drop = dict(engine=name, text=text, radius=radius, steps=steps, **kind._asdict(), **more)
     jobs = json.dumps([{**drop, "drop": float(each)} for each in drops])
     # Node.js looks for packages beside a program: here in the working folder.
     with tempfile.NamedTemporaryFile(suffix=".mjs", dir=".") as program:

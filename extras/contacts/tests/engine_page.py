@@ -1,4 +1,4 @@
-"""What runs in engines write: docs/validation/*.csv, and the counts in docs/validation.md."""
+"""What runs in engines write: docs/validation/*.csv, and tables of them in docs/validation.md."""
 
 import csv
 import re
@@ -12,16 +12,22 @@ NOT_RUN = "not run"
 """The last cell of a row; of an engine that was not run, whose second cell has the reason."""
 
 
+def rows_of(name):
+    """Return the saved rows, without the head."""
+    path = TABLES / f"{name}.csv"
+    if not path.exists():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.reader(file))[1:]
+
+
 def save(name, head, rows):
     """Save rows whose first cell is an engine.
 
     Those of other engines stay as they are, and those of a run that cannot be made again.
     """
     path = TABLES / f"{name}.csv"
-    others = []
-    if path.exists():
-        with path.open(newline="", encoding="utf-8") as file:
-            others = list(csv.reader(file))[1:]
+    others = rows_of(name)
     ran = {row[0] for row in others if row[-1] != NOT_RUN}
     rows = [row for row in rows if row[-1] != NOT_RUN or row[0] not in ran]
     engines = {row[0] for row in rows}
@@ -37,8 +43,7 @@ def _count():
     """Write how many promises are kept, by table and engine, into the page."""
     lines = ["| table | engine | rows | promised | kept |", "| --- | --- | --- | --- | --- |"]
     for path in sorted(TABLES.glob("*.csv")):
-        with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))[1:]
+        rows = rows_of(path.stem)
         for engine in dict.fromkeys(row[0] for row in rows):
             last = [row[-1] for row in rows if row[0] == engine]
             link = f"[{path.stem}](validation/{path.name})"
@@ -49,7 +54,11 @@ def _count():
             promised = len(last) - last.count("not promised")
             counts = f"{len(last)} | {promised} | {last.count('kept')}"
             lines.append(f"| {link} | {engine} | {counts} |")
-    part = "\n".join(["<!-- counts -->", "", *lines, "", "<!-- end of counts -->"])
-    page = PAGE.read_text("utf-8")
-    pattern = re.compile("<!-- counts -->.*<!-- end of counts -->", re.DOTALL)
-    PAGE.write_text(pattern.sub(lambda _: part, page), "utf-8")
+    write_part("counts", lines)
+
+
+def write_part(name, lines):
+    """Write lines between two comments of the page."""
+    part = "\n".join([f"<!-- {name} -->", "", *lines, "", f"<!-- end of {name} -->"])
+    pattern = re.compile(f"<!-- {name} -->.*<!-- end of {name} -->", re.DOTALL)
+    PAGE.write_text(pattern.sub(lambda _: part, PAGE.read_text("utf-8")), "utf-8")

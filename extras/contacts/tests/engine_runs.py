@@ -23,12 +23,13 @@ from bouncing_ball_contacts.engines import ENGINES
 
 
 class Trial(NamedTuple):
-    """A design with the shape "ball", "box" or "two", and how it starts.
+    """A design with the shape "ball", "box", "capsule" or "two", and how it starts.
 
-    In SI units: the gap and the speed downwards at the start, gravity, friction (None: that of the
-    engine), the speed `slide` along x and the angular velocity `spin` about y; the angles `tilt` of
-    a box about y and `slope` of the table in degrees. The table is an infinite "plane", or a "slab"
-    that is 2 cm thick.
+    A capsule lies along y, with four radii between its centres. In SI units: the gap and the speed
+    downwards at the start, gravity, friction (None: that of the engine), the speed `slide` along x
+    and the angular velocity `spin` about y; the angles `tilt` of a box about y and `slope` of the
+    table in degrees. The table is an infinite "plane", or a "slab" that is 2 cm thick. PyBullet has
+    a "GEOM_PLANE", too, because there boxes lie on a "block".
     """
 
     design: object
@@ -66,7 +67,9 @@ class Trial(NamedTuple):
 
     @property
     def turned(self):
-        """The quaternion (w, x, y, z) at the start."""
+        """The quaternion (w, x, y, z) at the start; the axis of a capsule is z in all engines."""
+        if self.shape == "capsule":
+            return [math.sqrt(0.5), math.sqrt(0.5), 0.0, 0.0]
         half = math.radians(self.tilt) / 2
         return [math.cos(half), 0.0, math.sin(half), 0.0]
 
@@ -78,7 +81,9 @@ class Trial(NamedTuple):
 
     @property
     def volume(self):
-        return 8 * self.size**3 if self.shape == "box" else 4 / 3 * math.pi * self.size**3
+        between = 4 * self.size if self.shape == "capsule" else 0.0
+        of_round = math.pi * self.size**2 * (4 / 3 * self.size + between)
+        return 8 * self.size**3 if self.shape == "box" else of_round
 
     @property
     def mass(self):
@@ -130,7 +135,11 @@ def _mujoco_model(trial):
     import mujoco
 
     r = trial.size
-    form = f'type="box" size="{r!r} {r!r} {r!r}"' if trial.shape == "box" else f'size="{r!r}"'
+    forms = {
+        "box": f'type="box" size="{r!r} {r!r} {r!r}"',
+        "capsule": f'type="capsule" size="{r!r} {2 * r!r}"',
+    }
+    form = forms.get(trial.shape, f'size="{r!r}"')
     # The snippet is an option, and a geom whose attributes both geoms have.
     option, rough = re.findall(r"<(?:option|geom) .*?/>", trial.design.snippet)
     rough = rough.removeprefix("<geom ").removesuffix("/>")
@@ -212,9 +221,11 @@ def pybullet(trial):
     form = pybullet.createCollisionShape(pybullet.GEOM_SPHERE, radius=r)
     if trial.shape == "box":
         form = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[r, r, r])
+    if trial.shape == "capsule":
+        form = pybullet.createCollisionShape(pybullet.GEOM_CAPSULE, radius=r, height=4 * r)
     if trial.shape == "two":
         one = pybullet.createMultiBody(trial.other, form, basePosition=[0, 0, -r])
-    elif trial.shape == "box" or trial.table == "slab":
+    elif trial.table in ("slab", "block") or (trial.shape, trial.table) == ("box", "plane"):
         # On a box a box gets its four points at once, on a plane one by one.
         half = 0.01 if trial.table == "slab" else 9
         table = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[9, 9, half])
@@ -251,13 +262,16 @@ def drake(trial):
     plant, _ = pydrake.AddMultibodyPlant(names["config"], builder)
     plant.mutable_gravity_field().set_gravity_vector(trial.weight)
     r = trial.size
-    shape = pydrake.Box(2 * r, 2 * r, 2 * r) if trial.shape == "box" else pydrake.Sphere(r)
+    shapes = {"box": pydrake.Box(2 * r, 2 * r, 2 * r), "capsule": pydrake.Capsule(r, 4 * r)}
+    shape = shapes.get(trial.shape, pydrake.Sphere(r))
     bodies = []
     masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
     for i, mass in enumerate(masses):
         inertia = pydrake.SpatialInertia.SolidSphereWithMass(mass, r)
         if trial.shape == "box":
             inertia = pydrake.SpatialInertia.SolidBoxWithMass(mass, 2 * r, 2 * r, 2 * r)
+        if trial.shape == "capsule":
+            inertia = pydrake.SpatialInertia.SolidCapsuleWithMass(mass, r, 4 * r, [0, 0, 1])
         body = plant.AddRigidBody(f"body{i}", inertia)
         here = pydrake.RigidTransform()
         plant.RegisterCollisionGeometry(body, here, shape, f"shape{i}", names["properties"])
@@ -360,6 +374,8 @@ def newton(trial):
     body = builder.add_body(xform=place)
     if trial.shape == "box":
         builder.add_shape_box(body, hx=r, hy=r, hz=r, cfg=material, **more)
+    elif trial.shape == "capsule":
+        builder.add_shape_capsule(body, radius=r, half_height=2 * r, cfg=material, **more)
     else:
         builder.add_shape_sphere(body, radius=r, cfg=material, **more)
     at_rest = []
@@ -430,6 +446,9 @@ def ode(trial):
         if trial.shape == "box":
             odepy.dMassSetBoxTotal(ctypes.byref(inertia), mass, *sides)
             shape = odepy.dCreateBox(space, *sides)
+        elif trial.shape == "capsule":
+            odepy.dMassSetCapsuleTotal(ctypes.byref(inertia), mass, 3, r, 4 * r)
+            shape = odepy.dCreateCapsule(space, r, 4 * r)
         else:
             odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
             shape = odepy.dCreateSphere(space, r)
@@ -524,6 +543,7 @@ _BODY = """    def {kind} "{name}" (
     )
     {{
         double {measure} = {extent!r}
+        {more}
         double3 xformOp:translate = {place}
         quatd xformOp:orient = {turned}
         uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:orient"]
@@ -600,9 +620,10 @@ def physx(trial, other=None):
     ahead = 2 * (math.sqrt(2 * trial.gravity * gap) + trial.speed) * trial.step
     both = dict(
         ahead=max(ahead, 1e-3),
-        kind="Cube" if trial.shape == "box" else "Sphere",
+        kind={"box": "Cube", "capsule": "Capsule"}.get(trial.shape, "Sphere"),
         measure="size" if trial.shape == "box" else "radius",
         extent=2 * r if trial.shape == "box" else r,
+        more=f"double height = {4 * r!r}" if trial.shape == "capsule" else "",
     )
     bodies = _BODY.format(
         name="Body",

@@ -46,7 +46,7 @@ _BODY = [
     click.Option(
         ["--gravity"],
         default=str(STANDARD_GRAVITY),
-        help=f"{STANDARD_GRAVITY} m/s² if not given; 0 with a speed.",
+        help=f"{STANDARD_GRAVITY} m/s² if not given; 0 needs the speed.",
     ),
 ]
 _FRICTION = click.Option(["--friction"], help="Coefficient of friction.")

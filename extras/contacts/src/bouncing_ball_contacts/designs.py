@@ -439,13 +439,14 @@ def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
     is_wider = max(outcome.restitution.low - low, high - outcome.restitution.high) > TOLERANCE
     # The widest range is that of the largest speed.
     low, high = problem.promised(outcome, max(engine.sliding.speeds, default=None))
+    is_ball = bounce.points == 1 and not bounce.other_mass
     return tuple(
         holding(
             [
                 (is_wider, f"bodies that slide (r = {span(low, high)})"),
                 (bounce.points > 1, "boxes off flat or that slide fast"),
                 (bounce.other_mass, "bodies that slide past each other"),
-                *((True, text) for text in engine.not_for),
+                *((is_ball or "--points" not in text, text) for text in engine.not_for),
             ]
         )
     )

@@ -259,6 +259,7 @@ _DART = ByNumber(
     is_of_rebound=True,
     is_restless=True,
     notes=(_CONSTANT,),
+    not_for=("lying capsules",),
 )
 _RAPIER = ByNumber(
     name="rapier",
@@ -271,8 +272,6 @@ _RAPIER = ByNumber(
     sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
     remembers=2000,
     notes=("Before 0.35 Rapier had another rule",),
-    # For 0.65 from 1.5 m at 1/60 s, where a ball has 0.64 to 0.66: a cube 0.63 to 0.64, a capsule
-    # of four radii between the centres 0.57 to 0.81.
     not_for=("flat boxes", "lying capsules"),
 )
 _BULLET = "    pybullet.changeDynamics(body, -1, {name}={value})"
@@ -362,6 +361,7 @@ BY_NUMBER = {
             },
             sinks=_RAPIER.sinks,
             notes=("Box2D 2 has another rule: --engine box2d-2",),
+            not_for=_RAPIER.not_for,
         ),
         _BOX2D_2,
         replace(
@@ -434,8 +434,7 @@ BY_NUMBER = {
                 "Below the threshold a ball with a number above 0.98 may also leave faster than "
                 "it came",
             ),
-            # A flat square of a half side of 10 pixels had 0.25 for 0.65, from 1.5 m at 1/60 s.
-            not_for=("boxes",),
+            not_for=("boxes", "spinning circles"),
         ),
         ByNumber(
             name="pybullet",
@@ -473,7 +472,11 @@ BY_NUMBER = {
             calmed_by="contactProcessingThreshold",
             # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
             # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
-            not_for=("three touching bodies", "boxes on GEOM_PLANE", "tilted capsules"),
+            not_for=(
+                "three touching bodies",
+                "boxes or lying capsules on GEOM_PLANE",
+                "tilted capsules",
+            ),
         ),
         ByNumber(
             name="ode",
@@ -529,6 +532,7 @@ BY_NUMBER = {
                 "enable_restitution=True)",
                 "step": "solver.step(state, following, control, contacts, {value})",
             },
+            not_for=("flat boxes", "lying capsules", "spinning balls"),
         ),
         ByNumber(
             name="cannon-es",
@@ -924,7 +928,8 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     slower = case.slower(written)
     slowest = case.threshold / (max(number, 1e-9) if row.is_of_rebound else 1.0)
     is_slow = 0 < speed <= slowest
-    lowest = slowest**2 / (2 * bounce.gravity) if bounce.gravity else 0.0
+    lowest = slowest**2 / (2 * bounce.load) if bounce.load else 0.0
+    slow = f"drops under {show(lowest, 'm')}" if lowest else f"impacts below {show(slowest, 'm/s')}"
     way = speed * case.step
     settling = case.settling(written)
     hops = bounce.load and 0 < number < 1 and slowest < settling
@@ -961,8 +966,8 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
                 f"it may hop for ever, by about {show(height, 'm', 2)}: {rests} it comes to rest",
             ),
             (
-                number > 0 and not is_slow and lowest > 0,
-                f"drops under {show(lowest, 'm')} do not bounce: threshold {limit}",
+                number > 0 and not is_slow and slowest > 0,
+                f"{slow} do not bounce: threshold {limit}",
             ),
             (
                 way > bounce.size,

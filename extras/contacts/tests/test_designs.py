@@ -326,6 +326,7 @@ def test_what_holds_of_boxes_is_said_of_them_alone():
         assert "--points" not in str(four.not_for)
     two = Bounce(**ball, other_mass=1, speed=1)
     assert "of gravity" not in diagnose(two, "mujoco", {}, "1 ms").explained
+    assert "--points" not in str(design(two, "ode").not_for)
 
 
 def test_friction_is_named_where_it_changes_the_bounce(of_ball):

@@ -611,3 +611,40 @@ def test_a_circle_of_matter_is_a_polygon(number, rate, pixels, drop, turn, measu
     )
     r = restitutions(engine, at, math.sqrt(2 * G * drop), instants=8)
     assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=LARGEST["matter-js"])
+
+
+SHAPES = Path(__file__).parents[1] / "docs" / "validation" / "shapes.csv"
+
+
+def test_shapes_that_left_the_range_in_an_engine_are_excepted():
+    words = {"flat box": "boxes", "lying capsule": "capsules", "ball with 30 rad/s": "spinning"}
+    with SHAPES.open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    left = set()
+    for row in rows:
+        low, high = map(float, row["r promised"].split(" to "))
+        least, most = map(float, row["r in the engine"].split(" to "))
+        if low - least > 1e-3 or most - high > 1e-3:
+            left.add((row["engine"], words[row["shape"]]))
+    assert len(left) > 10
+    for name, word in left:
+        found = design(Bounce(restitution=0.65, mass=1.0, radius=0.1), name, "4 ms")
+        assert any(word in text for text in found.not_for), (name, word)
+
+
+@pytest.mark.parametrize(
+    ("bounce", "said"),
+    [
+        (dict(drop_height=1.0), "drops under 51 mm do not bounce"),
+        (dict(speed=3.0), "drops under 51 mm do not bounce"),
+        (dict(speed=3.0, gravity=0), "impacts below 1 m/s do not bounce"),
+    ],
+)
+def test_a_threshold_is_a_height_under_gravity_and_a_speed_without(bounce, said):
+    found = design(Bounce(restitution=0.8, radius=0.1, **bounce), "jolt", 1 / 240)
+    assert any(said in text for text in found.warnings)
+
+
+def test_two_free_bodies_meet_without_gravity():
+    two = Bounce(restitution=0.8, radius=0.1, mass=1, other_mass=1, speed=3)
+    assert "drops" not in design(two, "pybullet", 1 / 240).explained

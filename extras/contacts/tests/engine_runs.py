@@ -856,18 +856,28 @@ def measure(design, shape, slide=0.0, instants=13):
     for share in np.linspace(0.01, 0.99, instants):
         lasts = 8 * deepest / speed + 6 * step
         if g:
-            gap = float(speed**2 / (2 * g) + (share - 0.5) * speed * step)
-            fall = math.sqrt(2 * gap / g)
+            height = speed**2 / (2 * g)
+            late = float(share * step)
+            if "stiffness" in design.numbers:
+                # A design of springs is for this height: a share of a step after the start of the
+                # drop. The velocity of LAMMPS is that at the start of a step, and the velocity of
+                # the others that of half a step before.
+                gap = height - g * late**2 / 2
+                start = g * (late - (0.0 if "lammps" in design.engine else step / 2))
+            else:
+                gap = height = height + float((share - 0.5) * speed * step)
+                start = 0.0
+            fall = math.sqrt(2 * height / g)
             seconds = fall * (1.05 + outcome.restitution[2]) + lasts
             steps = int(seconds / step)
-            trial = Trial(design, shape, gap, 0.0, steps, g, rubs, slide)
+            trial = Trial(design, shape, gap, start, steps, g, rubs, slide)
         else:
             gap = float((10 + share) * speed * step)
             seconds = 2 * gap / speed + lasts + gap / speed / max(bounce.restitution, 0.05)
             trial = Trial(design, shape, gap, speed, int(seconds / step), 0, rubs)
         heights, peak, *_ = run(trial)
         depth, after, end = first_bounce(heights)
-        r = math.sqrt(rebound(heights) / gap) if g else 0.0
+        r = math.sqrt(rebound(heights) / height) if g else 0.0
         if not g and after is not None:
             r = (heights[end + 1] - heights[end]) / step / speed
         if math.isnan(peak):

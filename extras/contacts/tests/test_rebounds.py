@@ -35,7 +35,6 @@ LARGEST = {
     "box2d": 3e-4,
     "box2d-2": 0.006,
     "planck": 0.006,
-    "matter-js": 0.001,
 }
 
 
@@ -188,7 +187,7 @@ def test_the_threshold_of_matter_is_120_pixels_per_second(number, step, drop, me
     settings = {"pixels": 1.0, "turn": 0.0}
     at = Fall(number, step, 1000.0, engine.threshold, ball.size, settings=settings)
     r = restitutions(engine, at, ball.impact_speed, instants=8)
-    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=LARGEST["matter-js"])
+    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=EXACT)
 
 
 def test_the_threshold_of_matter_is_in_the_answer(typed):
@@ -610,7 +609,7 @@ def test_a_circle_of_matter_is_a_polygon(number, rate, pixels, drop, turn, measu
         settings={"pixels": engine.pixels, "turn": turn},
     )
     r = restitutions(engine, at, math.sqrt(2 * G * drop), instants=8)
-    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=LARGEST["matter-js"])
+    assert (r.min(), r.mean(), r.max()) == pytest.approx(measured, abs=EXACT)
 
 
 SHAPES = Path(__file__).parents[1] / "docs" / "validation" / "shapes.csv"
@@ -648,3 +647,30 @@ def test_a_threshold_is_a_height_under_gravity_and_a_speed_without(bounce, said)
 def test_two_free_bodies_meet_without_gravity():
     two = Bounce(restitution=0.8, radius=0.1, mass=1, other_mass=1, speed=3)
     assert "drops" not in design(two, "pybullet", 1 / 240).explained
+
+
+def test_a_spring_is_written_where_no_number_gives_r():
+    """ODE takes back a fifth of the penetration in a step: no number had 0.058 from 97 mm."""
+    ball = dict(drop_height="97 mm", radius="91 mm", restitution=0.058)
+    assert not design(Bounce(**ball), "ode", "1/50").snippet
+    found = design(Bounce(**ball, mass="5 g"), "ode", "1/50")
+    assert found.is_kept and "soft_cfm" in found.snippet
+
+
+@pytest.mark.parametrize(
+    ("engine", "needed"),
+    [
+        # With TGS, their default, balls had 0.34 to 0.66 for 0.70 in PhysX 5.12.
+        ("isaac-lab", "PhysxCfg(solver_type=0)"),
+        ("isaac-sim", 'uniform token physxScene:solverType = "PGS"'),
+        # A struct of C has no default.
+        ("ode", "contact.surface.bounce_vel = 0.0;"),
+    ],
+)
+def test_what_a_promise_needs_is_in_the_text(engine, needed):
+    assert needed in design(Bounce(**BALL), engine, "1/240").snippet
+
+
+def test_a_step_that_is_too_short_for_a_contact_has_a_longer_one():
+    found = design(Bounce(**{**BALL, "restitution": 0.9}), "cannon-es", "0.1 ms")
+    assert not found.snippet and found.also[0].time_step > 1e-4 and found.also[0].is_kept

@@ -45,7 +45,10 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
     is_spring = bounce.gives_contact or bounce.restitution == 0
     if number is None or (springs is not None and is_spring):
         return design_spring(bounce, springs or ENGINES["generic"], time_step)
-    return design_number(bounce, number, time_step)
+    found = design_number(bounce, number, time_step)
+    if found.snippet or found.also or springs is None or bounce.mass is None:
+        return found
+    return design_spring(bounce, springs, time_step)
 
 
 def diagnose(

@@ -336,8 +336,8 @@ def _corners(at: Fall) -> tuple[list[float], float, float]:
     They are the places along the ground of the lowest corner and of its lower neighbour, the height
     in m of the neighbour above it, and the squared radius of gyration, four times that of a disc.
     """
-    pixels = at.settings["pixels"]
-    sides = math.ceil(max(10.0, min(25.0, at.radius * pixels)))
+    pixels = round(at.radius * at.settings["pixels"], 6)
+    sides = math.ceil(max(10.0, min(25.0, pixels)))
     sides += sides % 2
     half = math.pi / sides
     angle = half * at.settings["turn"]
@@ -350,17 +350,22 @@ def matter(at: Fall, z: float, v: float) -> Steps:
     """Six iterations put the body out, and four reverse the velocity of its lowest corners.
 
     The height is that of the lowest corner. With one corner below the surface a quarter of the
-    depth is left. A corner beside the centre turns the body and takes less of its velocity.
+    depth is left. A corner beside the centre turns the body and takes less of its velocity. While
+    the body rises, 0.8 of what put it out is repeated in the next step.
     """
     corners, apart, gyration = _corners(at)
     slop = 0.05 / at.settings["pixels"] * min(60 * at.step, 1.0)
     pushes = [0.0, 0.0]
+    out = 0.0
     while True:
         v = at.keeps * v - at.added
         z += at.step * v
-        if z < 0:
-            places = corners if z < -apart else corners[:1]
-            z = -slop + (z + slop) * (1 - 1.8 / len(places)) ** 6
+        places = corners if z < -apart else corners[: z < 0]
+        for _ in range(6 * bool(places)):
+            out -= 1.8 / len(places) * (z + out + slop)
+        z += out
+        out *= 0.8 * (out * v >= 0)
+        if places:
             spin = sum(x * push for x, push in zip(places, pushes, strict=False)) / gyration
             v += sum(pushes[: len(places)])
             for _ in range(4):

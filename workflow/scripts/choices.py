@@ -48,7 +48,7 @@ EXPONENTS = (2, 3, 6)
 RATIOS_OF_FIG_12 = ([1.0, 2.0, 10.0, 100.0], [2.0, 10.0, 100.0, 1e3], [5.0, 10.0, 100.0, 1e4])
 PER_DECADE = 20
 """Points of an axis of ϖ, of which 1, 10 and 100 are some."""
-POINTS = 201
+POINTS = 101
 """Points of a branch."""
 NOT_TRIED = "not tried in this run"
 """What is said instead of the changed verdicts if this run has other parameters."""

@@ -35,6 +35,14 @@ def test_every_engine_has_a_contact_at_a_given_step(name, of_ball):
     assert found.also[0].outcome.depth[1] <= 3e-3
 
 
+def test_the_search_of_a_contact_ends_where_a_body_would_sink_too_far():
+    """More steps in a contact make r wrong again: the contact is softer, and the body heavy."""
+    bounce = Bounce(mass="0.5 kg", restitution=0.05, radius="0.1 m", drop_height="1 m")
+    found = design(bounce, "drake", time_step="1/60")
+    assert found.time_step == pytest.approx(1 / 120, rel=1e-4)
+    assert found.is_kept and found.outcome.depth[1] < 0.1
+
+
 def test_a_step_between_the_extremes_is_found():
     """At 5 ms 245 µs were written, 20 times the cost."""
     ball = Bounce(mass=1, radius=0.1, restitution=0.8)

@@ -286,20 +286,23 @@ class Problem:
             ),
         )
 
-    def stiffest(self, step: float) -> Candidate:
+    def stiffest(self, step: float, deepest: float) -> Candidate:
         """Return the stiffest contact at a time step in s with which r is within the tolerance.
 
-        Bisect the number of steps of a contact: more steps have a smaller error of r. If no contact
-        keeps r, return the most compliant one.
+        Bisect the number of steps of a contact: more steps have a smaller error of r, as long as
+        the body does not sink too far. If no contact keeps r down to the depth `deepest` in m,
+        return one that does not.
         """
 
         @functools.cache
         def contact(count: float) -> Candidate:
             return self.at(count * step / self.duration, step)
 
-        place = bisect_left(
-            _FINE_COUNTS, True, key=lambda count: self.keeps(contact(count).outcome, math.inf)
-        )
+        def is_enough(count: float) -> bool:
+            found = contact(count).outcome
+            return self.keeps(found, math.inf) or found.depth[1] > deepest
+
+        place = bisect_left(_FINE_COUNTS, True, key=is_enough)
         return contact(_FINE_COUNTS[min(place, len(_FINE_COUNTS) - 1)])
 
     def written(self, contact: Candidate) -> Parameters:
@@ -319,7 +322,7 @@ class Problem:
             if contact.outcome.depth[1] <= self.usable_depth:
                 contact = self.keeping(functools.partial(_same, step))
                 if not self.keeps(contact.outcome, self.permitted):
-                    contact = self.stiffest(step)
+                    contact = self.stiffest(step, self.usable_depth)
             # Beyond its size the ground swallows a body at rest.
             is_held = not contact.outcome.rest >= self.bounce.size
             if is_held and self.keeps(contact.outcome, self.usable_depth):
@@ -378,7 +381,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     is_less = short.outcome.depth[1] < 0.99 * found.outcome.depth[1] and short.step < chosen.step
     also = (answer(problem, short, asked),) * is_less
     if asked is not None and bounce.gives_contact and chosen is short:
-        stiffest = problem.stiffest(asked)
+        stiffest = problem.stiffest(asked, problem.deepest)
         if problem.keeps(stiffest.outcome, problem.deepest):
             also = (answer(problem, stiffest, asked),)
     return replace(found, also=also)

@@ -215,8 +215,9 @@ class Problem:
         # No law needs more than 1/r, to which that of Hunt and Crossley tends.
         most = 1 / max(wanted, LEAST_RESTITUTION)
         ratios = np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
-        for _ in range(2):
-            found = self.drops(self.law(depth, ratios), step, _SEARCH)
+        # A contact of 80 steps tells the neighbours, and is over sooner than one of 600.
+        for each in (max(step, self.duration * depth / 80), step):
+            found = self.drops(self.law(depth, ratios), each, _SEARCH)
             falling = np.minimum.accumulate(found.mean)
             ratio = float(np.interp(-wanted, -falling, ratios))
             if wanted <= self.tolerance or wanted < falling[-1]:

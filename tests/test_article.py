@@ -497,5 +497,5 @@ def test_shares_that_are_decimal_numbers_stay():
 
 def test_missing_labels_give_a_dash():
     values = xr.DataArray([1.0, 2.0], {"n": [1, 2]}, ("n",))
-    assert article.fixed(article.at(values, n=2), 1) == "2.0"
-    assert article.fixed(article.at(values, n=3), 1) == "–"
+    assert article.fixed(measures.at(values, n=2), 1) == "2.0"
+    assert article.fixed(measures.at(values, n=3), 1) == "–"

@@ -37,7 +37,7 @@ def environment(templates: Path) -> jinja2.Environment:
         keep_trailing_newline=True,
     )
     found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
-    found.filters.update(listed=listed, at=at, zip=zip)
+    found.filters.update(listed=listed, at=measures.at, zip=zip)
     return found
 
 
@@ -132,21 +132,15 @@ def word(value: float, digits: int | None) -> str:
     return short(value) if digits is None else fixed(value, digits)
 
 
-def at(values: xr.DataArray, **labels) -> xr.DataArray | float:
-    """Select values at labels of coordinates; NaN if there is no such label."""
-    try:
-        return values.sel(labels)
-    except KeyError:
-        return np.nan
-
-
 # Numbers that several datasets give together
 
 
 def durations(datasets: Datasets, ratio: float) -> NDArray:
     """Return the durations of all contacts of Figs. 8 and 9 at a frequency ratio."""
     figures = [datasets[name].contact_duration for name in ("fig08", "fig09")]
-    return np.concatenate([np.ravel(at(figure, frequency_ratio=ratio)) for figure in figures])
+    return np.concatenate(
+        [np.ravel(measures.at(figure, frequency_ratio=ratio)) for figure in figures]
+    )
 
 
 def failing(validity_map: xr.Dataset, quantity: str) -> str:

@@ -16,13 +16,13 @@ from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.measures import (
     ROUNDING,
     STIFF_CONTACTS,
+    at,
     at_ratio,
     branches,
     crossing,
     departure,
     error_of_eq_8,
     from_the_stiffest,
-    labelled,
     largest,
     last_special,
     residual,
@@ -192,9 +192,9 @@ def direct_map():
     remark="the three balls move by the map of Eq. 5",
 )
 def complete_study(balls):
-    wild = chaotic(balls).sum(skipna=False)
+    found = chaotic(balls).sum(skipna=False)
     return [
-        at_most("a study of every motion: chaotic motions among three", wild, 0),
+        at_most("a study of every motion: chaotic motions among three", found, 0),
         argued("the n-T orbits and their first bifurcations", True, "Eqs. 6-8 are formulas"),
     ]
 
@@ -483,7 +483,7 @@ def dip_at_12(fig06):
     "the amplitude",
 )
 def compliant_end(fig06):
-    return labelled(fig06["apparent_restitution"].isel(case=-1), frequency_ratio=1.0)
+    return at(fig06["apparent_restitution"].isel(case=-1), frequency_ratio=1.0)
 
 
 @claim(
@@ -964,7 +964,7 @@ def table1_ends(
                     "Table 1",
                     f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
                     {"table1": PARAMETERS["table1"]},
-                    lambda table1, where=where: labelled(table1["computed"], **where),
+                    lambda table1, where=where: at(table1["computed"], **where),
                     printed=text,
                     remark="the printed end is that of Eq. 8 (*stiff row*)" if of_eq_8 else "",
                     beside="table1",

@@ -32,8 +32,8 @@ def smallest(values: ArrayLike) -> float:
     return -largest(-np.asarray(values, dtype=float))
 
 
-def labelled(values: xr.DataArray, **labels: float | str) -> xr.DataArray | float:
-    """Select a number by the labels of its coordinates; NaN if there is none."""
+def at(values: xr.DataArray, **labels: float | str) -> xr.DataArray | float:
+    """Select values at labels of coordinates; NaN if there is no such label."""
     has_them = all(label in values[name].values for name, label in labels.items())
     return values.sel(labels) if has_them else np.nan
 

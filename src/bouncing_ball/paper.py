@@ -60,6 +60,20 @@ def cases(*pairs: tuple[float, float]) -> list[dict]:
     return [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs]
 
 
+QUANTITIES = {
+    "max_height": "maximum height",
+    "summit": "maximum height in flight",
+    "bounce_velocity": "bouncing-off velocity",
+    "phase": "phase of the impact, relative to its value",
+    "phase_in_periods": "phase of the impact",
+    "apparent_restitution": "apparent restitution coefficient",
+    "saddle_node": "Λ of the saddle-node",
+    "period_doubling": "Λ of the period doubling",
+    "permanent_contact": "Λ of permanent contact",
+}
+"""Names of the quantities that both models have (Eqs. 37 and 38), for texts and figures. The
+maximum height is that of a whole cycle: the table can lift the ball higher than it flies.
+"""
 ALONG_RATIO = {"min": 1.0, "max": 1000.0}
 ROWS_OF_TABLE_1 = [1e4, 10.0, 2.0]
 PARAMETERS = {
@@ -98,15 +112,8 @@ PARAMETERS = {
         n=1,
         restitution=0.65,
         amplitude=1.0,
-        quantities={
-            "max_height",
-            "bounce_velocity",
-            "phase",
-            "apparent_restitution",
-            "saddle_node",
-            "period_doubling",
-            "permanent_contact",
-        },
+        # The map has two quantities of its own.
+        quantities={*QUANTITIES} - {"summit", "phase_in_periods"},
         tolerances={LIMIT},
         frequency_ratio={"min": 1.0, "max": 1e4},
     ),
@@ -118,22 +125,6 @@ PARAMETERS = {
 """The parameters that the claims need of each dataset: those of the paper, and where its axes
 cannot be read, the ends of the ranges to which the conditions refer. Those of the three balls are
 ours.
-"""
-
-
-QUANTITIES = {
-    "max_height": "maximum height",
-    "summit": "maximum height in flight",
-    "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of the impact, relative to its value",
-    "phase_in_periods": "phase of the impact",
-    "apparent_restitution": "apparent restitution coefficient",
-    "saddle_node": "Λ of the saddle-node",
-    "period_doubling": "Λ of the period doubling",
-    "permanent_contact": "Λ of permanent contact",
-}
-"""Names of the quantities that both models have (Eqs. 37 and 38), for texts and figures. The
-maximum height is that of a whole cycle: the table can lift the ball higher than it flies.
 """
 
 

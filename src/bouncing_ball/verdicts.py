@@ -243,8 +243,9 @@ def listed(readings: list[Reading]) -> list[str]:
     texts = []
     for reading in sorted(readings, key=lambda reading: not reading.holds):
         found = reading.found
-        printed = "" if found is None or np.isinf(found) else rounded(found, reading.is_share)
-        number = f"{printed}, " if printed else ""
+        number = ""
+        if found is not None and np.isfinite(found):
+            number = f"{rounded(found, reading.is_share)}, "
         word = "yes" if reading.holds else "no"
         texts.append(f"{word}: {reading.name} ({number}{reading.required})")
     return texts

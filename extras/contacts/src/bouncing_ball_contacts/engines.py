@@ -161,6 +161,8 @@ class Engine:
         What a diagnosis takes for granted.
     not_for : tuple of str
         Scenes in which r is another one.
+    not_of_one_point : tuple of str
+        Scenes in which r of a contact for one point is another one.
     """
 
     name: str
@@ -187,6 +189,7 @@ class Engine:
     friction: str = "friction acts along the surface only, and leaves r as it is"
     caution: str = ""
     not_for: tuple[str, ...] = ()
+    not_of_one_point: tuple[str, ...] = ()
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
         """Return the parameters of the contact of two bodies."""
@@ -561,7 +564,7 @@ _SINGLE = 10 * float(np.finfo(np.float32).eps)
 # 42, 0.76 to 0.81 with 162 and 0.78 to 0.81 with 642, where 0.78 to 0.82 was designed.
 # With a ball's spring at each of its points a box had 0.36 to 0.43 and a capsule 0.48 to 0.52 for
 # 0.60, in ODE, PhysX and Newton.
-_ONE_POINT = ("boxes or lying capsules (--points 4 or 2)",)
+_SPRING_OF_ONE_POINT = ("boxes or lying capsules (--points 4 or 2)",)
 _NOT_MUJOCO = (
     "three touching bodies",
     "free plates",
@@ -640,7 +643,8 @@ ENGINES: Mapping[str, Engine] = {
             rubs=", lateralFriction={root:.6g}",
             # On a plate of 1 to 5 times its mass a ball had 0.60 to 0.78 for 0.80; a box with a
             # ball's spring at each of its points had 0.39 to 0.42 for 0.60.
-            not_for=("free plates", "boxes (--points 4)"),
+            not_for=("free plates",),
+            not_of_one_point=("boxes (--points 4)",),
         ),
         Engine(
             name="drake-sap",
@@ -733,7 +737,7 @@ ENGINES: Mapping[str, Engine] = {
             box="The points are those of a face: r is that of a box which falls flat on a plane "
             "and does not slide; on a box, on an edge or sliding it had 0.78 to 0.91 for 0.80",
             flat_only=True,
-            not_for=_ONE_POINT,
+            not_of_one_point=_SPRING_OF_ONE_POINT,
         ),
         NewtonMujoco(
             name="newton-mujoco",
@@ -799,7 +803,7 @@ ENGINES: Mapping[str, Engine] = {
             box="r is that of a box which falls flat on a plane and does not slide; on springs, "
             "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
             flat_only=True,
-            not_for=_ONE_POINT,
+            not_of_one_point=_SPRING_OF_ONE_POINT,
             caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
@@ -815,7 +819,7 @@ ENGINES: Mapping[str, Engine] = {
             rules=dict.fromkeys(("soft_cfm", "soft_erp"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2},
             sets_pair=True,
-            not_for=_ONE_POINT,
+            not_of_one_point=_SPRING_OF_ONE_POINT,
             notes=("These are numbers of a contact joint",),
             box="dCollide has to be asked for at least 4 contacts: with 1, 2 or 3 a box on a plane "
             "tilts, and r is wrong (0.89, 0.85 and 0.83 for 0.80); on springs a box on an edge or "
@@ -843,7 +847,7 @@ ENGINES: Mapping[str, Engine] = {
                 "contact_max_correcting_vel": 100.0,
                 "min_depth": 0.0,
             },
-            not_for=_ONE_POINT,
+            not_of_one_point=_SPRING_OF_ONE_POINT,
             notes=(
                 "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default, and "
                 "contact_max_correcting_vel of the world, which caps stiff contacts at short steps",

@@ -16,6 +16,8 @@ from bouncing_ball_contacts.engines import as_compared
 from bouncing_ball_contacts.rebounds import (
     BY_NUMBER,
     NAMES,
+    Case,
+    _after,
     restitutions,
     rows_of,
 )
@@ -287,6 +289,30 @@ def test_a_shorter_step_is_named_where_none_keeps_r():
 
 
 WITHOUT_ANSWER = [name for name, row in NAMES.items() if row not in {*ENGINES, *BY_NUMBER}]
+
+
+def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
+    """A circle of 19 pixels has 20 sides, and r is another one on a corner than on a side."""
+    steps = []
+
+    class Counted(Case):
+        def wanted(self):
+            steps.append(self.step)
+            return super().wanted()
+
+    monkeypatch.setattr("bouncing_ball_contacts.rebounds.Case", Counted)
+    circle = Bounce(restitution=0.285, radius=0.0191, drop_height=0.0644)
+    found = design(circle, "matter-js", "1/60 s")
+    assert found.snippet and not found.also
+    # Seven more steps are allowed, and the last ones take longest.
+    assert len(steps) < 5
+
+
+def test_a_ball_at_rest_is_not_followed():
+    """Most of the time of a search was spent on them."""
+    steps = iter([(0.01, -1.0), (0.0, 0.0)] + 1000 * [(0.0, 0.0)])
+    assert _after(steps, 0.02, 0.01) == (0.0, 0.0)
+    assert len(list(steps)) > 900
 
 
 @pytest.mark.parametrize("name", ["planck", "box2d-2"])

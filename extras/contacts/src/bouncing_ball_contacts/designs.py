@@ -5,11 +5,12 @@ ratio of damping (:mod:`.schemes`). Without damping it lasts T ∝ δ/v, and a s
 steps of it. Two of δ, h and n are given in each question, and the third follows:
 
 * *Short step.* δ keeps a permitted depth, or is that of a given stiffness or contact time; n is the
-  least number of steps with which r is within half of the tolerance.
+  least number of steps with which r is within half of the tolerance. If none is, the weight
+  changes r by g δ/v², and δ keeps a sixteenth of the depth.
 * *Your step.* δ is the same, and h is yours. If r leaves the tolerance, h is yours, and n is the
   least one, which is the stiffest contact, with which r does not.
-* *A step between.* If the body sinks too deep at your step, the step is halved until
-  the stiffest contact sinks no deeper than the size of the body allows.
+* *A step between.* If the body sinks too deep at your step, it is the longest of its half, its
+  quarter, … at which the stiffest contact sinks no deeper than the size of the body allows.
 
 The ratio of damping is always the one with which the mean r is the wanted one. It is read from a
 scan: the engine's own scheme is stepped for many ratios at once, over all instants of the impact
@@ -30,6 +31,7 @@ from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.engines import Engine, Parameters, Setting, filled, snippet_of
 from bouncing_ball_contacts.schemes import (
+    Array,
     Drops,
     Impedance,
     Implicit,
@@ -46,17 +48,22 @@ STEP_ONLY = "The numbers take back what this time step damps, and hold for it on
 VAGUE = "The depth at rest is less than the engine resolves: its positions have single precision"
 
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
-_COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250, 400, 600)
-_FINE_COUNTS = tuple(2.5 * 40 ** (np.arange(117) / 78))
+_COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250)
+_FINE_COUNTS = tuple(np.geomspace(2.5, 250, 98))
+_BESIDE = np.linspace(0.65, 1.5, 17)
 _SEARCH = nearby(2, 15)
 _ALL = nearby(9, 201)
+# Of the permitted depth, where the weight changes r too much.
+_SHARE = 1 / 16
 # A permitted depth is aimed at from below: it is found to within half a percent.
 _AIM = 0.995
 
 
 class Candidate(NamedTuple):
-    """Contact at a step in s, with its outcome before its numbers are rounded."""
+    """Contact of an undamped depth in m and a ratio, with its outcome before rounding."""
 
+    depth: float
+    ratio: float
     law: Law
     step: float
     outcome: Outcome
@@ -67,6 +74,11 @@ def _written(value: Any) -> Any:
     if isinstance(value, tuple):
         return tuple(map(_written, value))
     return float(f"{value:.6g}")
+
+
+def _up_to(most: float) -> Array:
+    """Return ratios of damping from 0 to `most`."""
+    return np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
 
 
 def _same(step: float, _: float) -> float:
@@ -203,35 +215,47 @@ class Problem:
             time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
         return None if time is None else time / self.duration
 
-    def ratio(self, depth: float, step: float) -> float:
+    def ratio(self, depth: float, step: float, near: float = 0.0) -> float:
         """Return the ratio of damping with which the mean r is the wanted one.
+
+        It is looked for beside the ratio of a contact `near` this one, and then among all.
 
         The ratio is interpolated where r falls below the wanted one. If r may be 0 within the
         tolerance, or never falls below, it is the middle of the ratios with the smallest error. A
         contact that no body leaves does not depend on where in a step it begins, and too much
         damping throws the body away.
         """
+        # A linear damper needs about 1/(2 √r), and no law more than 1/r, to which that of Hunt and
+        # Crossley tends. Many ratios above it would take long to come to rest.
+        most = 1 / max(self.bounce.restitution, LEAST_RESTITUTION)
+        among = [_up_to(math.sqrt(most)), _up_to(most)]
+        if near:
+            among.insert(0, near * _BESIDE)
+        # A first scan needs at most 80 steps in a contact.
+        coarse = max(step, self.duration * depth / 80)
+        for ratios in among:
+            ratio, falls = self._scanned(depth, ratios, coarse)
+            if falls and (ratio > ratios[0] or ratio == 0):
+                break
+        # Its neighbours in the scan are not farther off.
+        return self._scanned(depth, ratio * _BESIDE, step)[0]
+
+    def _scanned(self, depth: float, ratios: Array, step: float) -> tuple[float, bool]:
+        """Return the ratio of damping of a scan, and whether r falls to the wanted one in it."""
         wanted = self.bounce.restitution
-        # No law needs more than 1/r, to which that of Hunt and Crossley tends.
-        most = 1 / max(wanted, LEAST_RESTITUTION)
-        ratios = np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
-        # The first scan needs at most 80 steps in a contact.
-        for each in (max(step, self.duration * depth / 80), step):
-            found = self.drops(self.law(depth, ratios), each, _SEARCH)
-            falling = np.minimum.accumulate(found.mean)
-            ratio = float(np.interp(-wanted, -falling, ratios))
-            if wanted <= self.tolerance or wanted < falling[-1]:
-                errors = found.error(wanted)
-                # r is printed with three digits.
-                ratio = float(np.median(ratios[errors <= errors.min() + 1e-3]))
-            # Its neighbours in the first scan are not farther off.
-            ratios = ratio * np.linspace(0.65, 1.5, 17)
-        return ratio
+        found = self.drops(self.law(depth, ratios), step, _SEARCH)
+        falling = np.minimum.accumulate(found.mean)
+        falls = bool(falling[-1] <= wanted)
+        if falls and wanted > self.tolerance:
+            return float(np.interp(-wanted, -falling, ratios)), falls
+        errors = found.error(wanted)
+        # r is printed with three digits.
+        return float(np.median(ratios[errors <= errors.min() + 1e-3])), falls
 
     def candidate(self, depth: float, ratio: float, step: float) -> Candidate:
         """Return a contact with its outcome."""
         law = self.law(depth, ratio)
-        return Candidate(law, step, self.outcome(law, step))
+        return Candidate(depth, ratio, law, step, self.outcome(law, step))
 
     def at(self, depth: float, step: float) -> Candidate:
         """Return the contact of an undamped depth in m at a time step in s."""
@@ -251,22 +275,30 @@ class Problem:
         """Return the step, as a function of the undamped depth, of a contact of `count` steps."""
         return lambda depth: _written(min(self.duration * depth / count, LONGEST_STEP))
 
-    def keeping(self, step_of: Callable[[float], float]) -> Candidate:
-        """Return the contact with the depth, stiffness or contact time that is given."""
+    def keeping(
+        self, step_of: Callable[[float], float], share: float = 1.0, near: Candidate | None = None
+    ) -> Candidate:
+        """Return the contact with a share of the depth, or the stiffness or time that is given.
+
+        The search of its undamped depth begins at that of a contact `near` it.
+        """
         if self.given_depth is not None:
             return self.at(self.given_depth, step_of(self.given_depth))
+        limit = share * self.bounce.limit
         # A contact that is stopped by its damper sinks about √r times its undamped depth.
-        depth = self.bounce.limit / math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
+        damped = math.sqrt(max(self.bounce.restitution, LEAST_RESTITUTION))
+        depth = limit / damped if near is None else near.depth
+        ratio = 0.0 if near is None else near.ratio
         for _ in range(8):
-            ratio = self.ratio(depth, step_of(depth))
+            ratio = self.ratio(depth, step_of(depth), ratio)
             contact = self.candidate(depth, ratio, step_of(depth))
-            sunk = max(contact.outcome.depth[1], self.bounce.limit / 100)
-            change = _AIM * self.bounce.limit / sunk
+            sunk = max(contact.outcome.depth[1], limit / 100)
+            change = _AIM * limit / sunk
+            if abs(change - 1) <= 1 - _AIM:
+                break
             # Between δ, of a fast body, and δ², of one that its weight presses in.
             depth *= change**0.75
-            if abs(change - 1) < 0.01:
-                break
-        return self.candidate(depth, ratio, step_of(depth))
+        return contact
 
     def wanted(self) -> Candidate:
         """Return the contact that keeps what is given at the longest step within the tolerance.
@@ -274,11 +306,14 @@ class Problem:
         If no contact does, return the contact with the nearest r.
         """
         tried = []
-        for count in _COUNTS:
-            contact = self.keeping(self.step_of(count))
-            if self.keeps(contact.outcome, self.permitted):
-                return contact
-            tried.append(contact)
+        shares = (1.0, _SHARE) if self.bounce.load and self.given_depth is None else (1.0,)
+        for share in shares:
+            contact = None
+            for count in _COUNTS:
+                contact = self.keeping(self.step_of(count), share, contact)
+                if self.keeps(contact.outcome, self.permitted):
+                    return contact
+                tried.append(contact)
         return min(
             tried,
             key=lambda each: (
@@ -315,22 +350,29 @@ class Problem:
     def between(self, step: float, short: Candidate) -> Candidate:
         """Return the contact at the longest of a step, its half, … that is not too deep.
 
-        If every one is too deep, return the contact of the short step.
+        Bisect the number of halvings: at the half of a step the same contact has a smaller error of
+        r. If every one is too deep, return the contact of the short step.
         """
-        while True:
+
+        @functools.cache
+        def contact(halvings: int) -> Candidate:
+            shorter = _written(step / 2**halvings)
             # With the fewest steps a contact is the least deep.
-            contact = self.at(_FINE_COUNTS[0] * step / self.duration, step)
-            if contact.outcome.depth[1] <= self.usable_depth:
-                contact = self.keeping(functools.partial(_same, step))
-                if not self.keeps(contact.outcome, self.permitted):
-                    contact = self.stiffest(step, self.usable_depth)
+            found = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
+            if found.outcome.depth[1] <= self.usable_depth:
+                found = self.keeping(functools.partial(_same, shorter), near=short)
+                if not self.keeps(found.outcome, self.permitted):
+                    found = self.stiffest(shorter, self.usable_depth)
+            return found
+
+        def is_held(halvings: int) -> bool:
+            found = contact(halvings).outcome
             # Beyond its size the ground swallows a body at rest.
-            is_held = not contact.outcome.rest >= self.bounce.size
-            if is_held and self.keeps(contact.outcome, self.usable_depth):
-                return contact
-            step = _written(step / 2)
-            if step <= short.step:
-                return short
+            return self.keeps(found, self.usable_depth) and not found.rest >= self.bounce.size
+
+        longer = max(math.ceil(math.log2(step / short.step)), 1)
+        place = bisect_left(range(longer), True, key=is_held)
+        return short if place == longer else contact(place)
 
     def promised(self, found: Outcome, speed: float | None = None) -> tuple[float, float]:
         """Return the smallest and the largest r of bodies that slide at up to `speed`.
@@ -379,7 +421,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
             chosen = problem.between(asked, short)
     found = answer(problem, chosen, asked)
     # A row for what is given, or a less deep one.
-    is_less = short.outcome.depth[1] < 0.99 * found.outcome.depth[1] and short.step < chosen.step
+    is_less = short.outcome.depth[1] < 0.9 * found.outcome.depth[1] and short.step < chosen.step
     also = (answer(problem, short, asked),) * is_less
     if asked is not None and bounce.gives_contact and chosen is short:
         stiffest = problem.stiffest(asked, problem.deepest)

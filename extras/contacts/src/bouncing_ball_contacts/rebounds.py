@@ -64,6 +64,8 @@ SHORTEST_STEP = 1e-4
 users run so many steps."""
 MOST_INSTANTS = 96
 """Of the impact within a step, in an answer."""
+# Steps after which a body that hardly moves has come to rest: none waits so long for its rebound.
+_LYING = 50
 # Where a body flies freely: no engine finds its contact farther away, in m.
 _REACH = 0.06
 
@@ -673,13 +675,20 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
     return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
 
-def _after(steps: Steps, z: float) -> tuple[float, float]:
-    """Return height and velocity of a ball that flies up again; 0 if it stays."""
+def _after(steps: Steps, z: float, way: float) -> tuple[float, float]:
+    """Return height and velocity of a ball that flies up again; 0 if it stays.
+
+    It stays if it moves by less than 1e-4 of its way in a step, in many steps.
+    """
     rises = False
+    lies = 0
     for z_next, v in steps:
         if rises and z_next < z:
             return z, 0.0
         rises |= z_next > z
+        lies = lies + 1 if abs(z_next - z) < 1e-4 * way else 0
+        if lies == _LYING:
+            break
         z = z_next
         if v > 0 and z > _REACH and rises:
             return z, v
@@ -729,7 +738,7 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
         v = speeds[n]
     most = 2000 + math.ceil(6 * near / way)
     after = [
-        _after(islice(engine.rule(at, *start), most), start[0])
+        _after(islice(engine.rule(at, *start), most), start[0], way)
         for start in zip(z.tolist(), v.tolist(), strict=True)
     ]
     z, v = np.array(after).T
@@ -869,12 +878,12 @@ class Case(NamedTuple):
 
     def wanted(self) -> "Tried":
         """Return the number that keeps r, with other settings if r needs them."""
-        found = [self.with_threshold()]
-        for settings in self.engine.designed:
-            if found[-1].deviation <= TOLERANCE:
-                break
-            found.append(self._replace(settings={**self.settings, **settings}).with_threshold())
-        return min(found, key=lambda each: each.deviation)
+        best = self.with_threshold()
+        for designed in self.engine.designed:
+            other = self._replace(settings={**self.settings, **designed})
+            if best.deviation > TOLERANCE and other != self:
+                best = min(best, other.with_threshold(), key=lambda each: each.deviation)
+        return best
 
 
 class Tried(NamedTuple):
@@ -890,11 +899,14 @@ class Tried(NamedTuple):
         return self.restitution.deviation(self.case.bounce.restitution)
 
     @property
+    def has_mean(self) -> bool:
+        """Whether the mean of r is the wanted one."""
+        return abs(self.restitution.mean - self.case.bounce.restitution) <= TOLERANCE
+
+    @property
     def does_it(self) -> bool:
         """Whether the mean of r is the wanted one, and the ball bounces at every instant."""
-        wanted = self.case.bounce.restitution
-        r = self.restitution
-        return abs(r.mean - wanted) <= TOLERANCE and r.low >= wanted / 2
+        return self.has_mean and self.restitution.low >= self.case.bounce.restitution / 2
 
     def answer(self) -> Answer:
         """Return the answer for the number."""
@@ -1100,17 +1112,23 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
 def _other_step(found: Tried) -> tuple[Answer, ...]:
     """Return the answer at another step that keeps r, if this one does not.
 
-    It is a half, a quarter, … of the step, or else 2, 4, … times a step below 1 ms.
+    It is a half, a quarter, … of the step, or else 2, 4, … times a step below 1 ms. The search ends
+    if the mean of r is right, and two steps in succession leave its range as it is.
     """
     if found.deviation <= TOLERANCE:
         return ()
     asked = found.case.step
     shorter = [asked / 2**n for n in range(1, 8) if asked / 2**n >= SHORTEST_STEP]
     longer = [asked * 2**n for n in range(1, 5) if asked * 2**n <= 1e-3]
+    deviations = [found.deviation] if found.has_mean else []
     for step in (*shorter, *longer):
         best = found.case._replace(step=step).wanted()
         if best.deviation <= TOLERANCE:
             return (best.answer(),)
+        if best.has_mean:
+            deviations.append(best.deviation)
+        if len(deviations) > 2 and deviations[-1] >= 0.95 * min(deviations[-3:-1]):
+            break
     return ()
 
 

@@ -267,7 +267,7 @@ def main():
     sys.exit(differ > 0)
 
 
-ALONE = ("gazebo",)
+ALONE = ("gazebo", "generic")
 """Engines that are run for drops only."""
 
 

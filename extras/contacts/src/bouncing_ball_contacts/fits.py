@@ -15,6 +15,7 @@ from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.flights import drag_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
+    Curves,
     Impacts,
     are_told,
     curves_of,
@@ -201,6 +202,158 @@ def lowest_points(recording: Recording, diameter: Any) -> Recording:
     return replace(recording, chains=chains)
 
 
+def _recording_of(
+    source: str | Path | Mapping[str, Any] | Recording,
+    leave_out: tuple[int, ...],
+    ball: str | None,
+    resolution: Quantity,
+) -> Recording:
+    """Return the recording of one ball."""
+    if isinstance(source, Recording):
+        return source
+    balls = read(source, leave_out, ball, resolution)
+    if len(balls) > 1:
+        raise Refused(f"the recording has {', '.join(balls)}: name one, --ball")
+    return next(iter(balls.values()))
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """What an estimate needs beside the impacts.
+
+    Attributes
+    ----------
+    error, rounding
+        The standard deviation of a reading; None if it is not known, and then that to which the
+        readings are rounded.
+    at
+        Speed in m/s of r; None for the middle of the speeds.
+    """
+
+    error: Any
+    rounding: float
+    at: float | None
+
+    def speed_of(self, impacts: Impacts) -> float:
+        """Return the speed in m/s for which r is asked."""
+        return math.exp(float(np.mean(np.log(impacts.speed)))) if self.at is None else self.at
+
+    def curves_of(self, impacts: Impacts) -> Curves:
+        """Return the curves of r over the speed."""
+        return curves_of(impacts, self.error, self.speed_of(impacts), self.rounding)
+
+    def by_drag(self, recording: Recording, mass: float, diameter: float) -> float:
+        """Return the difference of r with the drag of a ball, and without drag."""
+        r_with, r_without = (
+            estimate(self.curves_of(impacts)).of_r[0]
+            for impacts in (
+                impacts_of(recording, drag_of(mass, diameter)),
+                impacts_of(recording),
+            )
+        )
+        return r_with - r_without
+
+
+def _drag_note(found: Fit, reading: _Reading) -> str:
+    """Return what the drag of the air does to r; empty if it is less than half of the interval."""
+    recording = found.recording
+    if not recording.has_scale or recording.kind not in _WITH_DRAG:
+        return ""
+    if found.mass and found.diameter:
+        by_drag = reading.by_drag(recording, found.mass, found.diameter)
+        note = f"the drag of the air is removed, which raises r by {by_drag:.2g}"
+    else:
+        by_golf = reading.by_drag(recording, *_GOLF_BALL)
+        by_drag = reading.by_drag(recording, *_TABLE_TENNIS_BALL)
+        note = (
+            f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
+            f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"
+        )
+    low, high = found.interval
+    return note * (by_drag > (high - low) / 2)
+
+
+def _size_note(found: Fit, read_at: str | None) -> str:
+    """Return how far r is off if heights are those of the top of the ball; empty if it is said."""
+    recording = found.recording
+    if recording.kind not in ("drops", "heights") or read_at or not recording.has_scale:
+        return ""
+    size = found.diameter or 0.04
+    # r = √(h′/h), and h′ = r² v²/2g.
+    impacts = found.impacts
+    too_high = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * impacts.speed**2)))
+    # Both heights of a series are too large.
+    too_high *= 1 - found.restitution**2 if recording.kind == "heights" else 1.0
+    return (
+        "heights are those of the lowest point of the ball; if they are of its top, r is too "
+        f"high by {too_high:.2g} ({show(size, 'm')}): give --read-at bottom or top"
+    )
+
+
+def _contact_note(found: Fit) -> str:
+    """Return what the contacts do to r of times between impacts, which include them."""
+    recording = found.recording
+    if recording.kind != "flights" or recording.is_free:
+        return ""
+    lasts = found.contact_time
+    if lasts:
+        return f"the contact, {show(lasts, 's')}, is taken off each time between two impacts"
+    impacts = found.impacts
+    low, high = found.interval
+    # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
+    lower = float(np.mean((1 - impacts.restitution) / impacts.speed)) * STANDARD_GRAVITY / 2
+    matters = (high - low) / (2 * lower) if lower > 0 else math.inf
+    # Contacts of rubber, the longest ones, last for 10 ms.
+    return (matters < 0.01) * (
+        f"times between impacts include the contact: r is too high by {lower / 1000:.2g} for "
+        f"each ms of it, which matters above {show(matters, 's')}; give --contact-time"
+    )
+
+
+def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> tuple[str, ...]:
+    """Return the notes on a fit, the severest first; `value` is r before it is limited to 1."""
+    impacts = found.impacts
+    v = impacts.speed
+    at = found.speed
+    unit = KINDS[found.recording.kind][0]
+    wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
+    drag = _drag_note(found, reading)
+    size = _size_note(found, read_at)
+    contact = _contact_note(found)
+    is_taken_off = bool(contact and found.contact_time)
+    return tuple(
+        holding(
+            [
+                (
+                    wrong,
+                    f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
+                    "--leave-out leaves its line out",
+                ),
+                (value > 1, f"r = {value:.4f} is above 1 within its error: 1 is taken"),
+                # A speed that is typed is rounded.
+                (
+                    not 0.99 * v.min() <= at <= 1.01 * v.max(),
+                    f"{show(at, 'm/s')} is outside of the measured speeds",
+                ),
+                *((True, note) for note in found.recording.notes),
+                (size, size),
+                (drag, drag),
+                (contact and not is_taken_off, contact),
+                (
+                    len(v) < 3,
+                    "the interval is wide, because there are fewer than three impacts",
+                ),
+                (is_taken_off, contact),
+                (
+                    reading.rounding > impacts.usual,
+                    f"readings are multiples of {show(reading.rounding, unit, 4)}: taken as "
+                    "rounded",
+                ),
+            ]
+        )
+    )
+
+
 def fit(
     source: str | Path | Mapping[str, Any] | Recording,
     speed: Quantity = None,
@@ -242,13 +395,7 @@ def fit(
         If the recording cannot be read or has several balls, no impact lies between two
         flights, or r is above 1.
     """
-    if isinstance(source, Recording):
-        recording = source
-    else:
-        balls = read(source, leave_out, ball, resolution)
-        if len(balls) > 1:
-            raise Refused(f"the recording has {', '.join(balls)}: name one, --ball")
-        recording = next(iter(balls.values()))
+    recording = _recording_of(source, leave_out, ball, resolution)
 
     def given(name: str, value: Quantity, unit: str) -> float | None:
         said = recording.head.get(name) if value is None else value
@@ -264,21 +411,15 @@ def fit(
         raise Refused(f"--read-at {read_at} is neither bottom nor top")
     if read_at == "top":
         recording = lowest_points(recording, metres)
-    drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
     # A contact that is not known is taken to have no duration.
     lasts = given("contact time", contact_time, "s") or recording.contact_time
     rounding = rounding_of(recording) if known is None else 0.0
-    is_heard = recording.kind == "flights" and not recording.is_free
-    if is_heard:
+    if recording.kind == "flights" and not recording.is_free:
         recording = without_contacts(recording, lasts)
-    impacts = impacts_of(recording, drag)
+    impacts = impacts_of(recording, drag_of(kilograms, metres) if kilograms and metres else 0.0)
     v = impacts.speed
-
-    def speed_of(found: Impacts) -> float:
-        middle = math.exp(float(np.mean(np.log(found.speed))))
-        return middle if speed is None else positive("speed", speed, "m/s")
-
-    at = speed_of(impacts)
+    reading = _Reading(known, rounding, None if speed is None else positive("speed", speed, "m/s"))
+    at = reading.speed_of(impacts)
     error = rounding / math.sqrt(12) if known is None else known
     refuse(
         [
@@ -295,89 +436,24 @@ def fit(
             ),
         ]
     )
-    curves = curves_of(impacts, known, at, rounding)
-    found = estimate(curves)
+    curves = reading.curves_of(impacts)
+    estimated = estimate(curves)
+    value = math.exp(estimated.value)
+    if estimated.low > 0:
+        raise Refused(f"{recording.name}: r = {value:.4f} is above 1 by more than its error")
     has_slope = v.max() > v.min() and are_told(impacts, known)
-    r = math.exp(found.value)
-    wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
-    if found.low > 0:
-        raise Refused(f"{recording.name}: r = {r:.4f} is above 1 by more than its error")
-    _, low, high = found.of_r
-    # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
-    lower = float(np.mean((1 - impacts.restitution) / v)) * STANDARD_GRAVITY / 2
-    matters = (high - low) / (2 * lower) if lower > 0 else math.inf
-
-    def by_drag_of(mass: float, diameter: float) -> float:
-        """Return the difference of r with the drag of a ball, and without drag."""
-        r_with, r_without = (
-            estimate(curves_of(each, known, speed_of(each), rounding)).of_r[0]
-            for each in (impacts_of(recording, drag_of(mass, diameter)), impacts_of(recording))
-        )
-        return r_with - r_without
-
-    if kilograms and metres:
-        by_drag = by_drag_of(kilograms, metres)
-        drag_note = f"the drag of the air is removed, which raises r by {by_drag:.2g}"
-    else:
-        by_golf = by_drag_of(*_GOLF_BALL)
-        by_drag = by_drag_of(*_TABLE_TENNIS_BALL)
-        drag_note = (
-            f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
-            f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"
-        )
-    does_drag = recording.has_scale and recording.kind in _WITH_DRAG and by_drag > (high - low) / 2
-    is_height = recording.kind in ("drops", "heights") and read_at is None and recording.has_scale
-    size = metres or 0.04
-    # r = √(h′/h), and h′ = r² v²/2g.
-    by_size = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * v**2)))
-    # Both heights of a series are too large.
-    by_size *= 1 - r**2 if recording.kind == "heights" else 1.0
-    # The severest first.
-    notes = [
-        (
-            wrong,
-            f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
-            "--leave-out leaves its line out",
-        ),
-        (r > 1, f"r = {r:.4f} is above 1 within its error: 1 is taken"),
-        # A speed that is typed is rounded.
-        (
-            not 0.99 * v.min() <= at <= 1.01 * v.max(),
-            f"{show(at, 'm/s')} is outside of the measured speeds",
-        ),
-        *((True, note) for note in recording.notes),
-        (
-            is_height,
-            "heights are those of the lowest point of the ball; if they are of its top, r is too "
-            f"high by {by_size:.2g} ({show(size, 'm')}): give --read-at bottom or top",
-        ),
-        (does_drag, drag_note),
-        # Contacts of rubber, the longest ones, last for 10 ms.
-        (
-            is_heard and not lasts and matters < 0.01,
-            f"times between impacts include the contact: r is too high by {lower / 1000:.2g} for "
-            f"each ms of it, which matters above {show(matters, 's')}; give --contact-time",
-        ),
-        (len(v) < 3, "the interval is wide, because there are fewer than three impacts"),
-        (
-            is_heard and lasts,
-            f"the contact, {show(lasts, 's')}, is taken off each time between two impacts",
-        ),
-        (
-            rounding > impacts.usual,
-            f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded",
-        ),
-    ]
-    return Fit(
+    _, low, high = estimated.of_r
+    found = Fit(
         recording=recording,
         impacts=impacts,
         speed=at,
-        restitution=min(r, 1.0),
+        restitution=min(value, 1.0),
         interval=(low, high),
         scatter=curves.scatter,
-        slope=found.slope if has_slope else math.nan,
+        slope=estimated.slope if has_slope else math.nan,
         contact_time=lasts,
         mass=kilograms,
         diameter=metres,
-        notes=tuple(holding(notes)),
+        notes=(),
     )
+    return replace(found, notes=_notes(found, reading, value, read_at))

@@ -202,7 +202,10 @@ def promise(found, scene):
     speed = (scene.how.get("slide", 0.0) + spin) / found.bounce.impact_speed
     if speed and "stiffness" in found.numbers:
         low, high = Problem(found.bounce, engine).promised(found.outcome, speed)
-    is_excepted = scene.shape == "box" and engine.flat_only and bool(scene.how)
+    is_excepted = scene.shape == "box" and (
+        (engine.flat_only and bool(scene.how))
+        or ("boxes on boxes" in found.not_for and "table" in scene.how)
+    )
     return low, high, scene.is_promised and not is_excepted
 
 

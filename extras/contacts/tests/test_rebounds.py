@@ -308,6 +308,18 @@ def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
     assert len(steps) < 5
 
 
+@pytest.mark.parametrize(
+    ("name", "r", "radius", "height"),
+    [("physx", 0.259, 0.627, 0.0908), ("gazebo", 0.059, 0.6868, 2.3074)],
+)
+def test_without_a_step_the_one_that_keeps_r_is_written(name, r, radius, height):
+    """A step that nobody had asked for did not keep r, and the one that did was "also good"."""
+    ball = Bounce(mass=1, restitution=r, radius=radius, drop_height=height)
+    found = design(ball, name)
+    assert found.is_kept and found.snippet and not found.also
+    assert "not " not in str(found).split("\n")[0]
+
+
 def test_a_ball_at_rest_is_not_followed():
     """Most of the time of a search was spent on them."""
     steps = iter([(0.01, -1.0), (0.0, 0.0)] + 1000 * [(0.0, 0.0)])

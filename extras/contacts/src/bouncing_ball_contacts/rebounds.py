@@ -1098,11 +1098,15 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
             f"threshold of {engine.limit(engine.threshold)}, a constant"
         )
     best = case.wanted()
+    also = _other_step(best)
+    if time_step is None and also:
+        # No step was asked for.
+        return also[0]
     found = best.answer()
     way = show(bounce.impact_speed * asked, "m")
     far = f"at {show(asked, 's', 4)} it moves {way} in a step, farther than its radius"
     warnings = (*found.warnings, *holding([(step != asked, far)]))
-    found = replace(found, asked_step=asked, warnings=warnings, also=_other_step(best))
+    found = replace(found, asked_step=asked, warnings=warnings, also=also)
     if best.does_it:
         return found
     nothing = f"at {show(step, 's')} no number gives this r: nothing is written to paste"

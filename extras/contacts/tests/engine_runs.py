@@ -854,7 +854,8 @@ def measure(design, shape, slide=0.0, instants=13):
     deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
     found = []
     for share in np.linspace(0.01, 0.99, instants):
-        lasts = 8 * deepest / speed + 6 * step
+        # It comes out with about r times its speed.
+        lasts = 8 * deepest / (speed * max(outcome.restitution.mean, 0.02)) + 6 * step
         if g:
             height = speed**2 / (2 * g)
             late = float(share * step)

@@ -84,7 +84,8 @@ RUNS = {
     **{
         name: {ENGINES[name].ran: on_floor(name)}
         for name in engine_runs.RUNS
-        if name not in ("genesis", "gazebo", "physx", "lammps-limit-damping", "lammps-hertz")
+        if name
+        not in ("genesis", "gazebo", "physx", "lammps-limit-damping", "lammps-hertz", "generic")
     },
     **{
         name: {BY_NUMBER[name].ran: dropped(name)}

@@ -84,8 +84,7 @@ RUNS = {
     **{
         name: {ENGINES[name].ran: on_floor(name)}
         for name in engine_runs.RUNS
-        if name
-        not in ("genesis", "gazebo", "physx", "lammps-limit-damping", "lammps-hertz", "generic")
+        if name not in ("gazebo", "physx", "lammps-limit-damping", "lammps-hertz", "generic")
     },
     **{
         name: {BY_NUMBER[name].ran: dropped(name)}

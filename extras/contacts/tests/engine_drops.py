@@ -229,7 +229,7 @@ def newton_xpbd(text, drops, radius, steps, kind=BALL):
 _MODEL = """<model name="{name}"><static>{is_static}</static><pose>{x!r} 0 {z!r} 0 0 0</pose>
 <link name="link"><inertial><inertia><ixx>{inertia!r}</ixx><iyy>{inertia!r}</iyy>
 <izz>{inertia!r}</izz></inertia></inertial><collision name="shape"><geometry>{shape}</geometry>
-<surface>{bounce}</surface></collision></link></model>"""
+<surface><bounce>{bounce}</bounce></surface></collision></link></model>"""
 
 
 def gazebo_sim(text, drops, radius, steps):
@@ -256,7 +256,7 @@ def gazebo_sim(text, drops, radius, steps):
         file = Path(folder, "world.sdf")
         file.write_text(
             f"""<sdf version="1.6"><world name="drop"><gravity>0 0 {-G}</gravity>
-            {physics}
+            <physics type="ode">{physics}</physics>
             {"".join(models)}</world></sdf>"""
         )
         command = [program, plugins[0], str(file), step, str(steps)]

@@ -7,6 +7,7 @@ import math
 import re
 from dataclasses import replace
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -318,6 +319,21 @@ def test_without_a_step_the_one_that_keeps_r_is_written(name, r, radius, height)
     found = design(ball, name)
     assert found.is_kept and found.snippet and not found.also
     assert "not " not in str(found).split("\n")[0]
+
+
+@pytest.mark.parametrize("name", ["gazebo", "gazebo-sim"])
+def test_an_element_for_gazebo_stands_once_and_has_its_place(name):
+    """Gazebo refuses <physics> without a type, and a second <surface> is not read."""
+    found = design(Bounce(mass=0.1, restitution=0.7, drop_height=1, radius=0.25), name, "1/60")
+    builder = ElementTree.TreeBuilder(insert_comments=True)
+    both = ElementTree.fromstring(
+        f"<all>{found.snippet}</all>", ElementTree.XMLParser(target=builder)
+    )
+    elements, places = list(both)[::2], list(both)[1::2]
+    names = [each.tag for each in elements]
+    assert len(set(names)) == len(names) == len(places)
+    assert not {"physics", "surface"} & set(names)
+    assert all(re.match(r" in (<\w+>)+", each.text) for each in places)
 
 
 def test_a_ball_at_rest_is_not_followed():

@@ -280,7 +280,10 @@ _RAPIER = ByNumber(
 )
 _BULLET = "    pybullet.changeDynamics(body, -1, {name}={value})"
 _OF_BULLET = "pybullet.setPhysicsEngineParameter({name}={value})"
-_OF_GAZEBO = "<surface><contact><ode><{name}>{value}</{name}></ode></contact></surface>"
+# Elements with their places, because each one stands once in a world of SDF.
+_OF_GAZEBO = "<{name}>{value}</{name}>  <!-- in <surface><contact><ode> -->"
+_OF_GAZEBO_BODIES = "<{name}>{value}</{name}>  <!-- in <surface><bounce> of {bodies} -->"
+_OF_GAZEBO_STEP = "<max_step_size>{value}</max_step_size>  <!-- in <physics> -->"
 BY_NUMBER = {
     each.name: each
     for each in (
@@ -401,9 +404,8 @@ BY_NUMBER = {
             name="gazebo-sim",
             parameter="restitution_coefficient",
             lines={
-                "restitution_coefficient": "<bounce><restitution_coefficient>{value}"
-                "</restitution_coefficient></bounce>  <!-- of {bodies} -->",
-                "step": "<physics><max_step_size>{value}</max_step_size></physics>",
+                "restitution_coefficient": _OF_GAZEBO_BODIES,
+                "step": _OF_GAZEBO_STEP,
             },
             ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
             notes=(
@@ -511,15 +513,13 @@ BY_NUMBER = {
             threshold=1e5,
             set_by="threshold",
             lines={
-                "restitution_coefficient": "<surface><bounce><restitution_coefficient>{value}"
-                "</restitution_coefficient></bounce></surface>  <!-- of {bodies} -->",
-                "threshold": "<surface><bounce><threshold>{value}</threshold></bounce></surface>",
+                "restitution_coefficient": _OF_GAZEBO_BODIES,
+                "threshold": _OF_GAZEBO_BODIES,
                 "max_vel": _OF_GAZEBO,
                 "kd": _OF_GAZEBO,
-                "contact_max_correcting_vel": "<physics><ode><constraints>"
-                "<contact_max_correcting_vel>{value}</contact_max_correcting_vel>"
-                "</constraints></ode></physics>",
-                "step": "<physics><max_step_size>{value}</max_step_size></physics>",
+                "contact_max_correcting_vel": "<{name}>{value}</{name}>  "
+                "<!-- in <physics><ode><constraints> -->",
+                "step": _OF_GAZEBO_STEP,
             },
             settings={"kp": 1e12, "kd": 1.0, "max_vel": 0.01, "contact_max_correcting_vel": 100.0},
             # With such a damper the default spring takes nothing of the penetration back.

@@ -794,6 +794,8 @@ RUNS = {
     "gazebo": gazebo,
     "generic": generic,
 }
+DROPS_ONLY = ("gazebo", "generic")
+"""Of these, those that drop balls and tell heights only: no scenes and no other shapes."""
 
 
 ROWS = {"isaac-lab": "physx"}

@@ -84,7 +84,7 @@ RUNS = {
     **{
         name: {ENGINES[name].ran: on_floor(name)}
         for name in engine_runs.RUNS
-        if name not in ("gazebo", "physx", "lammps-limit-damping", "lammps-hertz", "generic")
+        if name not in (*engine_runs.DROPS_ONLY, "physx", "lammps-limit-damping", "lammps-hertz")
     },
     **{
         name: {BY_NUMBER[name].ran: dropped(name)}

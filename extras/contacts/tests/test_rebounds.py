@@ -289,9 +289,6 @@ def test_a_shorter_step_is_named_where_none_keeps_r():
     assert found.also[0].is_kept and found.also[0].time_step < 1 / 60
 
 
-WITHOUT_ANSWER = [name for name, row in NAMES.items() if row not in {*ENGINES, *BY_NUMBER}]
-
-
 def test_the_search_for_a_step_ends_where_r_does_not_depend_on_it(monkeypatch):
     """A circle of 19 pixels has 20 sides, and r is another one on a corner than on a side."""
     steps = []
@@ -363,6 +360,9 @@ def test_what_does_not_do_it_is_not_pasted(typed):
     assert (status, err) == (0, "")
     assert "restitution = " not in out and "nothing is written to paste" in out
     assert "near the threshold of 1 m/s, b2_velocityThreshold" in out
+
+
+WITHOUT_ANSWER = [name for name, row in NAMES.items() if row not in {*ENGINES, *BY_NUMBER}]
 
 
 @pytest.mark.parametrize("name", WITHOUT_ANSWER)

@@ -6,7 +6,7 @@ steps of it. Two of δ, h and n are given in each question, and the third follow
 
 * *Short step.* δ keeps a permitted depth, or is that of a given stiffness or contact time; n is the
   least number of steps with which r is within half of the tolerance. If none is, the weight
-  changes r by g δ/v², and δ keeps a sixteenth of the depth.
+  matters, which goes as g δ/v², and δ keeps a sixteenth of that depth.
 * *Your step.* δ is the same, and h is yours. If r leaves the tolerance, h is yours, and n is the
   least one, which is the stiffest contact, with which r does not.
 * *A step between.* If the body sinks too deep at your step, it is the longest of its half, its
@@ -60,7 +60,10 @@ _AIM = 0.995
 
 
 class Candidate(NamedTuple):
-    """Contact of an undamped depth in m and a ratio, with its outcome before rounding."""
+    """Contact at a step in s, with its outcome before its numbers are rounded.
+
+    It has an undamped depth in m and a ratio of damping.
+    """
 
     depth: float
     ratio: float
@@ -215,10 +218,10 @@ class Problem:
             time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
         return None if time is None else time / self.duration
 
-    def ratio(self, depth: float, step: float, near: float = 0.0) -> float:
+    def ratio(self, depth: float, step: float, guess: float = 0.0) -> float:
         """Return the ratio of damping with which the mean r is the wanted one.
 
-        It is looked for beside the ratio of a contact `near` this one, and then among all.
+        It is looked for beside a `guess`, if there is one, and then among all.
 
         The ratio is interpolated where r falls below the wanted one. If r may be 0 within the
         tolerance, or never falls below, it is the middle of the ratios with the smallest error. A
@@ -226,15 +229,16 @@ class Problem:
         damping throws the body away.
         """
         # A linear damper needs about 1/(2 √r), and no law more than 1/r, to which that of Hunt and
-        # Crossley tends. Many ratios above it would take long to come to rest.
+        # Crossley tends. With the largest ratios a body takes long to come out.
         most = 1 / max(self.bounce.restitution, LEAST_RESTITUTION)
-        among = [_up_to(math.sqrt(most)), _up_to(most)]
-        if near:
-            among.insert(0, near * _BESIDE)
+        scans = [_up_to(math.sqrt(most)), _up_to(most)]
+        if guess:
+            scans.insert(0, guess * _BESIDE)
         # A first scan needs at most 80 steps in a contact.
         coarse = max(step, self.duration * depth / 80)
-        for ratios in among:
+        for ratios in scans:
             ratio, falls = self._scanned(depth, ratios, coarse)
+            # Before the first ratio of a scan r may have fallen already.
             if falls and (ratio > ratios[0] or ratio == 0):
                 break
         # Its neighbours in the scan are not farther off.

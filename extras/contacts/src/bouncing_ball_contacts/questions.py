@@ -20,7 +20,7 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
     engine : str or Engine
         Name of an engine, or a row of :data:`.ENGINES`. If an engine has both, a restitution by
         number is written, unless the bounce has a penetration, a stiffness or a contact time, or a
-        restitution of 0.
+        restitution that no number gives, as 0.
     time_step : Quantity, optional
         Time step of the engine. By default the longest step that the contact allows.
 

@@ -64,7 +64,7 @@ SHORTEST_STEP = 1e-4
 users run so many steps."""
 MOST_INSTANTS = 96
 """Of the impact within a step, in an answer."""
-# Steps after which a body that hardly moves has come to rest: none waits so long for its rebound.
+# Steps without a move after which a ball has come to rest: no rebound takes so long to begin.
 _LYING = 50
 # Where a body flies freely: no engine finds its contact farther away, in m.
 _REACH = 0.06
@@ -678,7 +678,8 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
 def _after(steps: Steps, z: float, way: float) -> tuple[float, float]:
     """Return height and velocity of a ball that flies up again; 0 if it stays.
 
-    It stays if it moves by less than 1e-4 of its way in a step, in many steps.
+    It stays if it moves by less than 1e-4 of the `way` of the impact in a step, many times in a
+    row.
     """
     rises = False
     lies = 0

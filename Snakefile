@@ -19,7 +19,7 @@ min_version("9.5")
 # The folder of this file. A run may have another folder (--directory), which gets its results.
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
-from bouncing_ball.configuration import mistakes
+from bouncing_ball.configuration import mistakes, with_whole_numbers
 
 # Scripts import the package of this checkout, whatever else is installed.
 os.environ.update(PYTHONPATH=str(TOP / "src"))
@@ -32,6 +32,7 @@ configfile: TOP / "config/config.yaml"
 schema = yaml.safe_load((TOP / "config/schema.yaml").read_text("utf-8"))
 if found := [f"configuration: {line}" for line in mistakes(config, schema)]:
     sys.exit("\n".join(found))
+config.update(with_whole_numbers(config, schema, schema["$defs"]))
 
 
 # Figures, tables and datasets are registered in config.yaml, each in the section of its stage.
@@ -112,7 +113,15 @@ VARIED = [
     "error_thresholds",
     "time_histories",
 ]
-TEMPLATES = ["paper.md", "supplement.md", "article.html", "figures.md", "figures.html"]
+TEMPLATES = [
+    "paper.md",
+    "supplement.md",
+    "others.md",
+    "verdicts.md",
+    "article.html",
+    "figures.md",
+    "figures.html",
+]
 
 PICTURES = checkout("workflow/scripts/draw.py") + DRAWING
 TABULATING = checkout("workflow/scripts/tables.py") + JUDGING

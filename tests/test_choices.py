@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.reference import ROOT, reference
 
-from bouncing_ball import claims
+from bouncing_ball import claims, tables
 from bouncing_ball.claims import CLAIMS
 
 
@@ -70,32 +70,17 @@ def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):
     assert not any("dip at 1.2" in changes for _, changes in pairs)
     grazing = [choice for choice, changes in pairs if "one impact per period" in changes]
     assert grazing == ["axis of Fig. 3", "axis of Fig. 8"]
-    assert study.NOT_TRIED not in result.changes.values
     beyond = [name for name, changes in pairs if "→ beyond the axis" in changes]
     assert {*beyond} == {"axis of Fig. 6", "axis of Fig. 10", "axis of Fig. 16"}
 
 
-def with_parameters(data, **changed):
-    """A dataset as if it were computed with other parameters."""
-    given = json.loads(data.attrs["parameters"]) | changed
-    return data.assign_attrs(parameters=json.dumps(given))
-
-
-def test_a_choice_is_not_tried_if_its_claims_have_other_parameters(study, monkeypatch):
-    data = reference()
-    assert all(study.can_try(data, name) for name in study.ALONG_RATIO)
-    # Claims of Fig. 13 need Fig. 12, too.
-    other = data | {"fig12": with_parameters(data["fig12"], n=2)}
-    names = {name for name in ("fig12", "fig13", "fig10") if study.can_try(other, name)}
-    assert names == {"fig10"}
-    every = {name: with_parameters(each, release="force") for name, each in data.items()}
-    monkeypatch.setattr(study, "ALONG_AMPLITUDE", {"fig08": study.ALONG_AMPLITUDE["fig08"]})
-    found = study.changed_verdicts(every)
-    untried = found.changes == study.NOT_TRIED
-    # The claims of Fig. 11 hold for any parameters.
-    assert {*found.choice.values[~untried]} == {"axis of Fig. 11"}
-    assert {*found.instead.values[untried]} == {""}
-    assert "exponent of the largest ϖ" in found.choice.values
+def test_a_run_with_other_parameters_has_no_choices(study):
+    other = reference()["fig12"]
+    given = json.loads(other.attrs["parameters"]) | {"n": 2}
+    other = other.assign_attrs(parameters=json.dumps(given))
+    found = study.changed_verdicts(reference() | {"fig12": other})
+    assert {*found} == {"choice", "instead", "changes"} and found.sizes["alternative"] == 0
+    assert len(tables.choices(found)) == 1
 
 
 def test_a_changed_limit_changes_the_result(study, monkeypatch):

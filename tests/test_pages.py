@@ -3,6 +3,7 @@
 import re
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
 import xarray as xr
 from tests.reference import ENTRIES, FIGURES, TOP, reference
@@ -55,7 +56,7 @@ class Page(HTMLParser):
 def texts(data) -> dict[str, str]:
     """The pages by the names of their files."""
     found = {
-        f"{name}.html": pages.page_of(article.filled_in(name, data), name, CAPTIONS)
+        f"{name}.html": pages.page_of(article.written(name, data), name, CAPTIONS)
         for name in ("paper", "supplement")
     }
     return found | {"index.html": pages.filled_in("html", data, ENTRIES)}
@@ -144,6 +145,21 @@ def test_the_exceptions_are_those_of_the_map(data):
     assert pages.exceptions(other)[-1][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
 
 
+@pytest.mark.parametrize(
+    ("shares", "where"),
+    [
+        ([[0.1, 0.2], [0.3, 0.4]], "every r, next to the period doubling"),
+        ([[0.0, 0.2], [0.3, 0.4]], "n = 1 at some r and n = 2 at every r"),
+        ([[0.0, 0.0], [0.3, 0.0]], "n = 2 at some r"),
+        ([[0.0, 0.0], [0.0, 0.0]], "no n"),
+        ([[0.0, np.nan], [0.1, 0.1]], "–"),
+    ],
+)
+def test_the_contact_has_doubled_where_its_share_is_positive(shares, where):
+    share = xr.DataArray(shares, {"n": [1, 2]}, ("n", "restitution"))
+    assert pages.doubling(xr.Dataset({"doubled_share": share})) == where
+
+
 def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
     entry = {"title": "Figure 17: <another>", "caption": "Another & more."}
     claims = data["claims"]
@@ -161,7 +177,7 @@ def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
     changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     unasked = int((changed["claims"].verdict == "not asked").sum())
-    reason = "other parameters: fig14: n is 2, and the claim needs 1"
+    reason = "other parameters: fig14.n is 2 instead of 1"
     page = Page(pages.filled_in("html", changed, ENTRIES))
     assert f"This run cannot judge it: {reason}" in page.texts
     assert f"This run cannot judge {unasked} of these claims" in page.texts
@@ -185,9 +201,23 @@ def test_the_answer_is_not_given_for_other_orbits(data, read):
 # The article and its supplement
 
 
+def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
+    other = data["fig14"].attrs["parameters"].replace('"n": 1', '"n": 2')
+    changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
+    other = data["fig03"].attrs["parameters"].replace("[1, 2, 3, 4, 5]", "[7]")
+    changed["fig03"] = data["fig03"].assign_attrs(parameters=other)
+    for name in ("paper", "supplement"):
+        page = Page(pages.page_of(article.written(name, changed), name, CAPTIONS))
+        assert "fig03: n is 7 instead of 1, 2, 3, 4, 5" in page.texts
+        assert "fig14: n is 2 instead of 1" in page.texts
+        assert {"index.html", "index.html#claims"} <= {*page.places["href"]}
+        # Where all pages say that the verdicts are defined.
+        assert ("section-3" in page.places["id"]) == (name == "paper")
+
+
 def test_formulas_are_mathml(texts, data):
     for name in ("paper", "supplement"):
-        text = article.filled_in(name, data)
+        text = article.written(name, data)
         inline = re.findall(r"(?<!\$)\$[^$]+\$(?!\$)", text)
         page = texts[f"{name}.html"]
         assert page.count("<math") >= len(inline) > 0

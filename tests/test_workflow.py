@@ -119,6 +119,8 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
             "impacts: 1000",
             {"restitution_model", "fig02", "fig03", *TEXTS},
         ),
+        # A whole number may be written as a float.
+        ("config/config.yaml", "impacts: 1024", "impacts: 1.024e+3", set()),
         # Which limit a claim has decides which choices change its verdict.
         ("src/bouncing_ball/claims.py", "LINE = 0.01", "LINE = 0.02", {*TABLES, *TEXTS}),
         (

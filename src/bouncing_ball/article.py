@@ -1,7 +1,8 @@
 """The article and its supplement: templates filled in from datasets.
 
-A template has text and names of numbers, and no numbers. The filters below print a number. A number
-that a dataset does not have, because it was computed with other parameters, is a dash.
+A template has text and names of numbers, and no numbers; the filters below print a number. The
+article is about the run with the parameters of the paper. For another run, a few lines name the
+differences instead.
 """
 
 from collections.abc import Iterable
@@ -37,12 +38,12 @@ def environment(templates: Path) -> jinja2.Environment:
         keep_trailing_newline=True,
     )
     found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
-    found.filters.update(listed=listed, at=measures.at, zip=zip)
+    found.filters.update(listed=listed, zip=zip)
     return found
 
 
-def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> str:
-    """Fill in a template, such as "paper" or "supplement", in Markdown or HTML.
+def filled_in(name: str, datasets: Datasets, kind: str = "md", /, **more: Any) -> str:
+    """Fill in a template, in Markdown or HTML.
 
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
@@ -54,10 +55,23 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         given={key: parameters(data) for key, data in datasets.items()},
         judged=judged,
         claim={row["claim"]: row for row in judged},
-        of_paper=partial(of_paper, datasets),
         error_limit=paper.LIMIT,
         stiff=paper.STIFF,
-        stiff_errors=stiff_errors(datasets),
+        **more,
+    )
+
+
+def written(name: str, datasets: Datasets) -> str:
+    """Return the article ("paper") or its "supplement".
+
+    If the run is not that of the paper, it names the differences instead.
+    """
+    if differences := unlike_the_paper(datasets):
+        return filled_in("others", datasets, name=name, differences=differences)
+    return filled_in(
+        name,
+        datasets,
+        stiff_errors=measures.stiff_errors(**{name: datasets[name] for name in STIFF_CURVES}),
         other_contacts=other_contacts(datasets["hypotheses"]),
         others_with_82=others_with_82(datasets["hypotheses"]),
         stable_ranges=measures.stable_ranges,
@@ -71,8 +85,14 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", **more: Any) -> s
         crossing=measures.crossing,
         summary=tables.markdown(tables.summary(datasets["claims"])),
         tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
-        **more,
     )
+
+
+def unlike_the_paper(datasets: Datasets) -> list[str]:
+    """Return what differs from the run of the paper: parameters, or numbers that are missing."""
+    claims = datasets["claims"]
+    unasked = claims.reason.values[claims.verdict.values == "not asked"]
+    return paper.differences(datasets) or list(dict.fromkeys(unasked.tolist()))
 
 
 # Numbers as text
@@ -93,13 +113,13 @@ def fixed(value: float, digits: int, shift: int = 0) -> str:
     return str(rounded + 0).replace("-", "−")
 
 
-def percent(value: float, digits: int = 0) -> str:
-    """Print a share in per cent.
+def percent(value: float, digits: int | None = None) -> str:
+    """Print a share in per cent, with all its digits if `digits` is None.
 
-    >>> percent(0.01), percent(0.02673, 1)
-    ('1 %', '2.7 %')
+    >>> percent(0.01), percent(0.005), percent(0.02673, 1)
+    ('1 %', '0.5 %', '2.7 %')
     """
-    text = fixed(value, digits, shift=2)
+    text = short(100 * value) if digits is None else fixed(value, digits, shift=2)
     return text if text == "–" else f"{text} %"
 
 
@@ -155,13 +175,6 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
     return listed(parts) if parts else "no n"
 
 
-def of_paper(datasets: Datasets, *names: str) -> bool:
-    """Whether datasets have the parameters of the paper, as sentences on its results need."""
-    return not any(
-        paper.other_parameters(name, datasets[name], paper.PARAMETERS[name]) for name in names
-    )
-
-
 def other_contacts(hypotheses: xr.Dataset) -> list[str]:
     """Return the hypotheses with another contact than the restored equations."""
     return sorted({*hypotheses.contact_of.values.tolist()} - {"", "equations as they stand"})
@@ -171,16 +184,3 @@ def others_with_82(hypotheses: xr.Dataset) -> list[str]:
     """Return the other contacts that reproduce the printed 82."""
     agrees = hypotheses.agrees.sel(number="height threshold")
     return [name for name in other_contacts(hypotheses) if agrees.sel(hypothesis=name)]
-
-
-def stiff_errors(datasets: Datasets) -> xr.DataArray:
-    """Return `measures.stiff_errors` of the figures that reach ϖ = 100; NaN if none does."""
-    sweeps = {name: datasets[name] for name in STIFF_CURVES}
-    stiff = {
-        name: each
-        for name, each in sweeps.items()
-        if each.frequency_ratio.sel(frequency_ratio=measures.STIFF_CONTACTS).size
-    }
-    if stiff:
-        return measures.stiff_errors(**stiff)
-    return xr.DataArray([[np.nan]], {"orbit": ["–"], "measure": ["–"]}, ("orbit", "measure"))

@@ -6,6 +6,8 @@ that an entry may have besides its parameters is `described` among the definitio
 
 from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
+from itertools import chain, repeat
+from typing import Any
 
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
@@ -36,6 +38,30 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield f"{where}: unknown key{meant(name, known)} ({error.schema['description']})"
         else:
             yield f"{where}: {error.message}{reason(error)}"
+
+
+def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:
+    """Return a configuration with an int for each number that its schema calls an integer.
+
+    JSON calls 1.0e+3 an integer, and Python does not. `known` has the definitions of the schema.
+
+    >>> schema = {"properties": {"n": {"items": {"$ref": "#/$defs/n"}}}}
+    >>> with_whole_numbers({"n": [1.0, 2]}, schema, {"n": {"type": "integer"}})
+    {'n': [1, 2]}
+    """
+    schema = known.get(schema.get("$ref", "").rpartition("/")[2], {}) | schema
+    if isinstance(value, Mapping):
+        inner = schema.get("properties", {})
+        return {
+            key: with_whole_numbers(each, inner.get(key, {}), known) for key, each in value.items()
+        }
+    if isinstance(value, list):
+        schemas = chain(schema.get("prefixItems", []), repeat(schema.get("items", {})))
+        return [
+            with_whole_numbers(each, inner, known)
+            for each, inner in zip(value, schemas, strict=False)
+        ]
+    return int(value) if schema.get("type") == "integer" else value
 
 
 def reversed_ranges(value: object, where: str = "") -> Iterator[str]:

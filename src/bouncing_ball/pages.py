@@ -186,16 +186,25 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
         where = article.failing(validity_map, quantity)
         shares = map(share_text, validity_map.failing_mean.sel(quantity=quantity).values)
         rows.append([QUANTITIES[quantity], article.percent(error, 2) + of, where, *shares])
-    where = "every r, next to the period doubling"
-    rows.append(
-        [
-            "period",
-            f"doubled at ϖ = {advised}",
-            where,
-            *map(share_text, validity_map.doubled_mean.values),
-        ]
-    )
-    return rows
+    shares = map(share_text, validity_map.doubled_mean.values)
+    return [*rows, ["period", f"doubled at ϖ = {advised}", doubling(validity_map), *shares]]
+
+
+def doubling(validity_map: xr.Dataset) -> str:
+    """Print for which n and r the contact of the advised ϖ has doubled its period.
+
+    It is a dash if the contact has no period doubling for some n and r.
+    """
+    share = validity_map.doubled_share
+    if share.isnull().any():
+        return "–"
+    if (share > 0).all():
+        return "every r, next to the period doubling"
+    words = {False: "some", True: "every"}
+    parts = [
+        f"n = {of_n.n.item()} at {words[bool((of_n > 0).all())]} r" for of_n in share if of_n.any()
+    ]
+    return article.listed(parts) if parts else "no n"
 
 
 # The article and its supplement

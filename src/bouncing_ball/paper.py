@@ -1,15 +1,17 @@
 """What the paper prints: its numbers with their digits, and the parameters of its figures.
 
 The configuration repeats the parameters, and users may change them there. A claim is judged only if
-its datasets were computed with the parameters below.
+its datasets were computed with the parameters below, and the article is written only if all were.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import parameters
+from bouncing_ball.datasets import Datasets, parameters
 
 LIMIT = 0.01
 """The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
@@ -53,6 +55,11 @@ def printed_table() -> xr.DataArray:
 def on_contacts(**given) -> dict:
     """Add the release of the paper to the parameters of the spring-damper model."""
     return {**given, "release": "displacement"}
+
+
+def unique(values: list) -> list:
+    """Each value once, in the order of the first."""
+    return [each for place, each in enumerate(values) if each not in values[:place]]
 
 
 def cases(*pairs: tuple[float, float]) -> list[dict]:
@@ -126,25 +133,66 @@ PARAMETERS = {
 cannot be read, the ends of the ranges to which the conditions refer. Those of the three balls are
 ours.
 """
+CURVES = [
+    {"n": PARAMETERS[name]["n"], **case}
+    for name, each in {
+        "fig05": PARAMETERS["fig05"]["cases"],
+        "fig06": PARAMETERS["fig06"]["cases"],
+        "fig10": cases((0.85, 1.1), (0.85, 1.0), (0.85, 0.6)),
+    }.items()
+    for case in each
+]
+"""The orbits of Figs. 5, 6 and 10, which the map marks; one is in two figures."""
+AXES = {
+    "fig03": {"amplitude_max": 2.0},
+    "fig08": {"amplitude_max": 1.5},
+    "fig09": {"amplitude_max": 1.5},
+    "fig11": on_contacts(restitution=0.65),
+    "fig15": {"amplitude_max": 2.2},
+    "thresholds": {"frequency_ratio": {"samples": 101}},
+    "validity_map": {"frequency_ratio": {"min": 10.0, "max": 1e4}, "curves": unique(CURVES)},
+}
+"""What the article needs in addition: r of Fig. 11, and our choices on which its sentences rest."""
 
 
 def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
-    """Name the parameters of a dataset that differ from the needed ones; empty if none does."""
-    given = parameters(data)
-    return "; ".join(
-        f"{name}: {key} is {given.get(key)}, and the claim needs {value}"
-        for key, value in needed.items()
-        if not agrees(given.get(key), value)
-    )
-
-
-def agrees(given, needed) -> bool:
-    """Whether a parameter has the needed value.
+    """Name the parameters of a dataset that differ from the needed ones; empty if none does.
 
     Of a range only the needed keys count, and a set must be among the values of a list.
     """
-    if isinstance(needed, set):
-        return needed <= {*given}
+    return "; ".join(others(name, parameters(data), needed))
+
+
+def others(name: str, given, needed) -> Iterator[str]:
+    """Yield what differs, with the name of its key.
+
+    >>> list(others("fig14", {"n": 2, "frequency_ratio": {"min": 2.0}}, {"n": 1}))
+    ['fig14.n is 2 instead of 1']
+    >>> list(others("tolerances", [0.1], {0.02, 0.1, 0.01}))
+    ['tolerances lacks 0.01, 0.02']
+    """
     if isinstance(needed, Mapping) and isinstance(given, Mapping):
-        return all(agrees(given.get(key), value) for key, value in needed.items())
-    return given == needed
+        for key, value in needed.items():
+            yield from others(f"{name}.{key}", given.get(key), value)
+    elif isinstance(needed, set):
+        if missing := sorted(needed - {*(given or ())}):
+            yield f"{name} lacks {words(missing)}"
+    elif given != needed:
+        yield f"{name} is {words(given)} instead of {words(needed)}"
+
+
+def words(value: Any) -> str:
+    """Print a parameter, without brackets, which would be those of a citation."""
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
+def differences(datasets: Datasets) -> list[str]:
+    """Return a line for each parameter that differs from the run that the article is about.
+
+    A line begins with the names of the datasets that have the parameter.
+    """
+    found: dict[str, list[str]] = {}
+    for name, needed in sorted([*PARAMETERS.items(), *AXES.items()], key=itemgetter(0)):
+        for line in others(name, parameters(datasets[name]), needed):
+            found.setdefault(line.removeprefix(f"{name}."), []).append(name)
+    return [f"{', '.join(dict.fromkeys(names))}: {line}" for line, names in found.items()]

@@ -164,10 +164,9 @@ def choices(data: xr.Dataset) -> list[list[str]]:
     for choice in dict.fromkeys(data["choice"].values.tolist()):
         tried = data.isel(alternative=data["choice"].values == choice)
         pairs = list(zip(tried["instead"].values, tried["changes"].values, strict=True))
-        # A choice that was not tried has no alternative.
-        changes = [": ".join(filter(None, pair)) for pair in pairs if pair[1]]
+        changes = [": ".join(pair) for pair in pairs if pair[1]]
         instead = "; ".join(instead for instead, _ in pairs)
-        found.append([choice, instead or "–", "<br>".join(changes) or "none"])
+        found.append([choice, instead, "<br>".join(changes) or "none"])
     return found
 
 

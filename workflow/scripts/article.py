@@ -11,8 +11,8 @@ datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 entries = snakemake.params.entries
 captions = {name: entry["caption"] for name, entry in entries.items() if "caption" in entry}
 texts = {
-    "paper": article.filled_in("paper", datasets),
-    "supplement": article.filled_in("supplement", datasets),
+    "paper": article.written("paper", datasets),
+    "supplement": article.written("supplement", datasets),
     "figures": pages.filled_in("md", datasets, entries),
     "index": pages.filled_in("html", datasets, entries),
 }

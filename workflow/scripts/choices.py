@@ -3,7 +3,7 @@
 Each choice of ours is varied: the ends of axes, the frequency ratios of Fig. 12, and the exponent
 of the largest frequency ratio. The claims that the dataset of a choice decides are judged again,
 with the other datasets of the run. Datasets of other choices have fewer points than those of the
-figures. A choice is not tried if these claims have datasets with other parameters than the paper's.
+figures. Of a run with other parameters than the paper's nothing is varied.
 """
 
 import json
@@ -24,7 +24,7 @@ import xarray as xr
 
 from bouncing_ball import claims
 from bouncing_ball.datasets import Datasets, parameters, read, save
-from bouncing_ball.paper import TABLE_1, other_parameters, printed_table
+from bouncing_ball.paper import TABLE_1, differences, printed_table
 from bouncing_ball.verdicts import Claim, answer
 
 ALONG_RATIO = {
@@ -50,14 +50,12 @@ PER_DECADE = 20
 """Points of an axis of ϖ, of which 1, 10 and 100 are some."""
 POINTS = 101
 """Points of a branch."""
-NOT_TRIED = "not tried in this run"
-"""What is said instead of the changed verdicts if this run has other parameters."""
 
 
 class Choice(NamedTuple):
     """Another choice: what is chosen, what it is instead, and the datasets that it changes.
 
-    A choice that is not tried has none. `table` is the printed Table 1 with other frequency ratios.
+    `table` is the printed Table 1 with other frequency ratios.
     """
 
     item: str
@@ -70,15 +68,6 @@ def decided_by(names: Set[str], table: Mapping = TABLE_1) -> list[Claim]:
     """The claims that some named datasets decide."""
     decided = [claim for claim in claims.CLAIMS if names & claim.datasets.keys()]
     return decided + claims.table1_ends(table) if "table1" in names else decided
-
-
-def can_try(datasets: Datasets, *names: str) -> bool:
-    """Whether the claims that some named datasets decide have the parameters that they need."""
-    return not any(
-        other_parameters(name, datasets[name], needed)
-        for claim in decided_by({*names})
-        for name, needed in claim.datasets.items()
-    )
 
 
 def verdicts(
@@ -128,22 +117,18 @@ def other_axes(
 
 
 def choices(data: Datasets) -> Iterator[Choice]:
-    """All other choices. One that is not tried has no other datasets."""
+    """All other choices; none if the run is not that of the paper."""
+    if differences(data):
+        return
     axes = (
         (ALONG_RATIO, [0.5, 2, 5], [100, 200, 1e4]),
         (PERMANENT_CONTACT, [0.1, 1, 2], [10, 20, 1e3]),
     )
     for functions, left, right in axes:
         for name, compute in functions.items():
-            if not can_try(data, name):
-                yield Choice(axis_of(name), "", {})
-                continue
             for axis, other in other_axes(data[name], compute, left, right):
                 yield Choice(axis_of(name), axis, {name: other})
     for name, (compute, settings, ends) in ALONG_AMPLITUDE.items():
-        if not can_try(data, name):
-            yield Choice(axis_of(name), "", {})
-            continue
         for end in ends:
             changes = {"amplitude_max": end, "points": POINTS}
             other = recomputed(data[name], compute, changes, *settings)
@@ -154,14 +139,11 @@ def choices(data: Datasets) -> Iterator[Choice]:
 
 def ratios_of_fig_12(data: Datasets) -> Iterator[Choice]:
     """Other frequency ratios of Fig. 12."""
-    item = "ratios of Fig. 12"
-    if not can_try(data, "fig12"):
-        yield Choice(item, "", {})
-        return
     for ratios in RATIOS_OF_FIG_12:
         changes = {"frequency_ratio": ratios}
         other = recomputed(data["fig12"], time_histories.fig12, changes, "release")
-        yield Choice(item, "ϖ = " + ", ".join(f"{ratio:g}" for ratio in ratios), {"fig12": other})
+        instead = "ϖ = " + ", ".join(f"{ratio:g}" for ratio in ratios)
+        yield Choice("ratios of Fig. 12", instead, {"fig12": other})
 
 
 def exponents(data: Datasets) -> Iterator[Choice]:
@@ -169,10 +151,6 @@ def exponents(data: Datasets) -> Iterator[Choice]:
 
     All are computed at once, because the compliant contacts are the same.
     """
-    item = "exponent of the largest ϖ"
-    if not can_try(data, "fig08", "fig09", "table1"):
-        yield Choice(item, "", {})
-        return
     printed = printed_table()
     compliant = printed.frequency_ratio.values[1:].tolist()
     every = {"frequency_ratio": [*(10.0**exponent for exponent in EXPONENTS), *compliant]}
@@ -192,7 +170,7 @@ def exponents(data: Datasets) -> Iterator[Choice]:
             (10.0**exponent if ratio == max(TABLE_1)[0] else ratio, n): texts
             for (ratio, n), texts in TABLE_1.items()
         }
-        yield Choice(item, str(exponent), others, table)
+        yield Choice("exponent of the largest ϖ", str(exponent), others, table)
 
 
 def changed_verdicts(data: Datasets) -> xr.Dataset:
@@ -200,9 +178,6 @@ def changed_verdicts(data: Datasets) -> xr.Dataset:
     rows = []
     here: dict[frozenset[str], list[tuple[str, str]]] = {}
     for item, instead, datasets, table in choices(data):
-        if not datasets:
-            rows.append((item, instead, NOT_TRIED))
-            continue
         names = frozenset(datasets)
         if names not in here:
             here[names] = verdicts(data, names)
@@ -213,8 +188,10 @@ def changed_verdicts(data: Datasets) -> xr.Dataset:
             if before != after
         ]
         rows.append((item, instead, "; ".join(changes)))
-    columns = zip(("choice", "instead", "changes"), zip(*rows, strict=True), strict=True)
-    return xr.Dataset({name: ("alternative", list(texts)) for name, texts in columns})
+    columns = np.array(rows, dtype=str).reshape(-1, 3).T
+    names = ("choice", "instead", "changes")
+    pairs = zip(names, columns, strict=True)
+    return xr.Dataset({name: ("alternative", texts) for name, texts in pairs})
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ from bouncing_ball.continuation import Branch, End, NoOrbit, bifurcations, branc
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
-from bouncing_ball.paper import printed_table
+from bouncing_ball.paper import PARAMETERS, printed_table
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
 QUANTITIES = (
@@ -117,13 +117,15 @@ def fig15(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
 def table1(parameters: dict, release: str) -> xr.Dataset:
     """Ranges of Λ with stable orbits: computed, printed, and of both maps of the restitution model.
 
-    A printed end of a row that the paper does not have is NaN. No ball follows an orbit that is not
-    admissible.
+    A printed end of a row that the paper does not have, or of another r or release, is NaN. No ball
+    follows an orbit that is not admissible.
     """
     n = parameters["n"]
     r = parameters["restitution"]
     ratios = parameters["frequency_ratio"]
+    paper = PARAMETERS["table1"]
     printed = printed_table().astype(float)
+    printed = printed.where((r, release) == (paper["restitution"], paper["release"]))
     bounds = printed["bound"].values
     contact = Contact(np.array(ratios), damping_ratio(r), release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)

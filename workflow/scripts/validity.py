@@ -5,6 +5,7 @@ is linear in Λ. The places are denser at the saddle-node, beside which the erro
 """
 
 import sys
+from itertools import pairwise
 
 import numpy as np
 import xarray as xr
@@ -56,6 +57,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     contact = Contact(advised, damping_ratio(r_all[ends]), release)
     doubling = bifurcations(n_all[ends, 0], "period doubling", contact)[0]
     doubled = ((last[ends] - doubling) / (last[ends] - first[ends])).reshape(shape[:2])
+    doubled_mean = [mean_share(r, each) for each in doubled]
 
     curves = parameters["curves"]
     n_curve, r_curve, amplitude_curve = (
@@ -76,8 +78,8 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
             "failing_mean": (over[:2], mean),
             "failing_up_to": (over[:2], up_to),
             "halved_enough_from": (over[:1], np.diagonal(halved)),
-            "doubled_share": (over[1:3], doubled),
-            "doubled_mean": (over[1:2], mean_over(r, doubled)),
+            "doubled_share": (over[1:3], np.clip(doubled, 0, 1)),
+            "doubled_mean": (over[1:2], doubled_mean),
             "curve_n": ("curve", n_curve),
             "curve_restitution": ("curve", r_curve),
             "curve_amplitude": ("curve", amplitude_curve),
@@ -124,13 +126,19 @@ def failures(
     return share, mean, up_to
 
 
-def mean_over(r: NDArray, values: NDArray) -> NDArray:
-    """The mean over r, the last axis of values, by the integral of a cubic spline; NaN if a value
-    is missing.
+def mean_share(r: NDArray, values: NDArray) -> float:
+    """The mean over r of values as shares, cut off below 0 and above 1; NaN if one is missing.
+
+    It is the integral of a cubic spline, and of 0 or 1 where the spline is beyond.
     """
     if np.isnan(values).any():
-        return np.full(values.shape[:-1], np.nan)
-    return CubicSpline(r, values, axis=-1).integrate(r[0], r[-1]) / (r[-1] - r[0])
+        return np.nan
+    spline = CubicSpline(r, values)
+    cuts = np.concatenate([spline.solve(end, extrapolate=False) for end in (0, 1)])
+    places = np.unique([r[0], *cuts[np.isfinite(cuts)], r[-1]])
+    # Between two places the spline is below 0, from 0 to 1, or above 1, and so is its mean.
+    means = [spline.integrate(*part) / np.ptp(part) for part in pairwise(places)]
+    return float(np.clip(means, 0, 1) @ np.diff(places) / np.ptp(r))
 
 
 def finer(grid: NDArray, steps: int) -> NDArray:

@@ -17,6 +17,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
+from PIL.PngImagePlugin import PngInfo
 
 from bouncing_ball import compare, datasets, provenance, variables
 from bouncing_ball.drawing import save_picture
@@ -315,21 +316,78 @@ def test_a_picture_of_the_same_data_names_the_code_that_changed(project):
     """The model gave the same dataset again, and is innocent."""
     edit(project, "src/drawing.py", "src/model.py")
     run(project)
-    Image.new("RGB", (4, 4)).save(project.top / "results/figures/fig14.png")
-    found = report(project)
-    # It does not name a version of matplotlib, as another version of matplotlib would.
-    assert found.drawn_elsewhere == ["figures/fig14.png"]
     data = datasets.read(project.top / "figures/fig14.nc")
     make("fig14", data, project.top / "results/figures", "height {:.3g}")
     assert lines(project) == ["fig14: the picture differs; changed: src/drawing.py"]
 
 
+def redrawn(path, **texts):
+    """Save a picture again, upside down and with other texts."""
+    written = PngInfo()
+    for key, text in texts.items():
+        written.add_text(key, text)
+    with Image.open(path) as picture:
+        picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM).save(path, pnginfo=written)
+
+
+def test_a_picture_that_names_no_matplotlib_is_compared_and_so_is_its_svg(project):
+    results = project.top / "results/figures"
+    redrawn(results / "fig14.png")
+    assert lines(project)[0].startswith("fig14: the picture differs")
+    run(project)
+    redrawn(results / "fig01.png")
+    svg = results / "fig01.svg"
+    svg.write_text(svg.read_text("utf-8").replace("</svg>", "<g/></svg>"), "utf-8")
+    assert report(project).drawn_elsewhere == []
+    assert [line[:28] for line in lines(project)] == ["fig01: the picture differs; "]
+
+
+@pytest.mark.parametrize("side", ["results", "reference"])
+@pytest.mark.parametrize("file", ["figures/fig14.png", "figures/fig14.svg", "figures/fig14.nc"])
+@pytest.mark.parametrize("content", ["", "version https://git-lfs.github.com/spec/v1\n"])
+def test_a_file_that_cannot_be_read_is_named_and_not_accepted(project, side, file, content):
+    folder = project.top / ("results" if side == "results" else "")
+    (folder / file).write_text(content, "utf-8")
+    results = project.top / "results"
+    (results / "paper.md").write_text("the threshold\nis 83\n", "utf-8")
+    found = lines(project)
+    assert found[0].startswith(f"fig14: {file}") and "cannot be compared" in found[0]
+    # Without its dataset nothing is said of a text.
+    assert file.endswith(".nc") or "paper.md, line 2: is 82 → is 83" in found[1]
+    with pytest.raises(ValueError, match="cannot be compared"):
+        compare.accept(project, results)
+
+
+@pytest.mark.parametrize(
+    "text, line",
+    [
+        ("the threshold\nis 82\n\n", "line 4: the end of the text → an empty line"),
+        ("the threshold\nis 82", "line 3: an empty line → the end of the text"),
+        ("\nthe threshold\nis 82\n", "line 1: the threshold → an empty line"),
+        ("the threshold\ris 82\n", r"line 1: the threshold → the threshold\ris 82"),
+        ("the threshold\nis\N{NO-BREAK SPACE}82\n", r"line 2: is 82 → is\xa082"),
+        (
+            "\N{BYTE ORDER MARK}the threshold\nis 82\n",
+            r"line 1: the threshold → \ufeffthe threshold",
+        ),
+        ("", "line 1: the threshold → an empty line"),
+    ],
+)
+def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
+    (project.top / "results/paper.md").write_bytes(text.encode())
+    (found,) = lines(project)
+    assert found.startswith(f"paper: paper.md, {line}; ")
+
+
+def test_a_text_that_is_not_utf_8_cannot_be_compared(project):
+    (project.top / "results/paper.md").write_bytes("das Mädchen".encode("latin-1"))
+    assert lines(project)[0].startswith("paper: paper.md of the results cannot be compared")
+
+
 def test_pictures_of_another_matplotlib_are_counted_and_not_compared(project):
     for kind in ("fig01", "fig14"):
         path = project.top / f"results/figures/{kind}.png"
-        with Image.open(path) as picture:
-            picture.load()
-            picture.save(path)
+        redrawn(path, Software="Matplotlib 9.9")
     text = report(project).text()
     assert text == (
         "All 8 files agree with the reference. 2 pictures of another matplotlib were not compared."
@@ -346,7 +404,7 @@ def test_pictures_of_rounded_numbers_must_be_those_that_the_code_draws(project):
     assert lines(other) == []
     svg = project.top / "results/figures/fig14.svg"
     svg.write_text(svg.read_text("utf-8").replace("2.0", "2.5"), "utf-8")
-    svg.write_text(f"{svg.read_text('utf-8')}edited", "utf-8")
+    svg.write_text(f"{svg.read_text('utf-8')}<!-- edited -->", "utf-8")
     assert lines(other)[0].startswith("fig14: the picture differs")
 
 

@@ -24,6 +24,7 @@ from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from xml.etree import ElementTree
 
 import jinja2
 import numpy as np
@@ -235,8 +236,14 @@ def excerpt(old: object, new: object) -> str:
 
 
 def shown(value: object) -> str:
-    """A value with six digits if it is a number."""
-    return f"{value:.6g}" if isinstance(value, float | np.floating) else str(value)
+    """A number with six digits; a text with its invisible characters escaped.
+
+    >>> shown(2 / 3), shown("5\N{NO-BREAK SPACE}%")
+    ('0.666667', '5\\\\xa0%')
+    """
+    if isinstance(value, float | np.floating):
+        return f"{value:.6g}"
+    return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in str(value))
 
 
 def stale(new: xr.Dataset, name: str, config: Mapping, descriptions: Mapping[str, Variable]) -> str:
@@ -369,6 +376,8 @@ def compare(
             differ += [name] if found else []
         elif same_bytes(project.top / file, results / file):
             continue
+        elif line := unreadable(project, results, file):
+            report.lines.append(f"{name}: {line}")
         elif follows(project, file, differ):
             report.skipped.append(file)
         elif file.endswith(PICTURES) and another_matplotlib(project, results, name):
@@ -447,6 +456,26 @@ def without_models(
     return {file: content for file, content in code.items() if file not in computed_by}
 
 
+def unreadable(project: Project, results: Path, file: str) -> str:
+    """What to say of a picture or a text that is empty or damaged on one side; empty if it is not.
+
+    An example is a pointer of Git LFS that stands in place of its file.
+    """
+    for side, folder in (("reference", project.top), ("results", results)):
+        path = folder / file
+        try:
+            if path.suffix == ".png":
+                with Image.open(path) as picture:
+                    picture.load()
+            elif path.suffix == ".svg":
+                ElementTree.parse(path)
+            else:
+                path.read_text("utf-8")
+        except Exception as error:  # Whatever readers raise for a damaged file.
+            return f"{file} of the {side} cannot be compared: {type(error).__name__}: {error}"
+    return ""
+
+
 def same_bytes(first: Path, second: Path) -> bool:
     """Whether two files are equal; line ends of Windows do not count in texts."""
     one = first.read_bytes()
@@ -465,12 +494,15 @@ def follows(project: Project, file: str, differ: Collection[str]) -> bool:
 
 
 def another_matplotlib(project: Project, results: Path, name: str) -> bool:
-    """Whether the pictures of both sides were drawn by different versions of matplotlib."""
+    """Whether the pictures of both sides were drawn by different versions of matplotlib.
+
+    A picture that names no version was not drawn by this workflow.
+    """
     drawn_by = []
     for side in (project.top, results):
         with Image.open(side / f"figures/{name}.png") as picture:
             drawn_by.append(picture.info.get("Software"))
-    return drawn_by[0] != drawn_by[1]
+    return None not in drawn_by and drawn_by[0] != drawn_by[1]
 
 
 def made_again(project: Project, results: Path, file: str) -> bool:
@@ -490,11 +522,14 @@ def made_again(project: Project, results: Path, file: str) -> bool:
 
 
 def first_change(old: Path, new: Path) -> str:
-    """The first line of a text that differs."""
-    texts = [path.read_text("utf-8", errors="replace").splitlines() for path in (old, new)]
-    lines = enumerate(zip_longest(*texts, fillvalue=""), 1)
+    """The first line of a text that differs. After the line feed of the last line, an empty line
+    follows.
+    """
+    contents_of = (path.read_bytes().replace(b"\r\n", b"\n").decode() for path in (old, new))
+    texts = [content.split("\n") for content in contents_of]
+    lines = enumerate(zip_longest(*texts, fillvalue="the end of the text"), 1)
     number, pair = next((number, pair) for number, pair in lines if pair[0] != pair[1])
-    return f"{new.name}, line {number}: {excerpt(*pair)}"
+    return f"{new.name}, line {number}: {excerpt(*(line or 'an empty line' for line in pair))}"
 
 
 def write_page(project: Project, results: Path, report: Report) -> Path:

@@ -1,8 +1,8 @@
 // Balls that are dropped in engines that have a package for JavaScript, with text as it is pasted.
 // engine_drops.py runs this program. Its input is a list of drops as JSON, with the engine, the
-// text, the drop and the radius in m, the number of steps, and the shape and the spin of the body;
-// its output are the heights of each body over the surface. The last line of a text is run in each step, and the others once. The
-// engines are installed in the working folder by
+// text, the drop and the radius in m, the number of steps, and the shape, the spin and the mass of
+// the body; its output are the heights of each body over the surface. The last line of a text is
+// run in each step, and the others once. The engines are installed in the working folder by
 //   npm install @dimforge/rapier3d-compat@0.21.0 jolt-physics@1.1.0 box2d3-wasm@5.2.0 \
 //     physx-js-webidl@2.7.3 planck@1.4.2 matter-js@0.20.0 cannon-es@0.20.0
 import { readFileSync } from "node:fs";
@@ -35,7 +35,7 @@ const value = (code, names) => new Function(...Object.keys(names), code)(...Obje
 async function rapier() {
   const Rapier = await load("@dimforge/rapier3d-compat");
   await Rapier.init();
-  return ({ text, drop, radius, steps, shape, spin }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
     const [sets, advances] = linesOf(text);
     const world = new Rapier.World({ x: 0, y: -G, z: 0 });
     value(advances, { integration_parameters: world.integrationParameters });
@@ -54,7 +54,7 @@ async function rapier() {
       box: () => Rapier.ColliderDesc.cuboid(radius, radius, radius),
       capsule: () => Rapier.ColliderDesc.capsule(2 * radius, radius),
     }[shape]();
-    world.createCollider(of(made), ball);
+    world.createCollider(of(made).setMass(mass), ball);
     const heights = [];
     for (let k = 0; k < steps; k++) {
       world.step();
@@ -67,7 +67,7 @@ async function rapier() {
 
 async function jolt() {
   const Jolt = await (await load("jolt-physics"))();
-  return ({ text, drop, radius, steps, shape, spin }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
     const [sets, advances] = linesOf(text);
     const settings = new Jolt.JoltSettings();
     const objects = new Jolt.ObjectLayerPairFilterTable(2);
@@ -93,6 +93,8 @@ async function jolt() {
       value(sets, { bodySettings: made, physicsSettings });
       made.mAngularVelocity = new Jolt.Vec3(0, 0, layer * spin);
       made.mAllowSleeping = false;
+      made.mOverrideMassProperties = Jolt.EOverrideMassProperties_CalculateInertia;
+      made.mMassPropertiesOverride.mMass = mass;
       const body = bodies.CreateBody(made);
       bodies.AddBody(body.GetID(), Jolt.EActivation_Activate);
       return body;
@@ -133,7 +135,7 @@ async function physx() {
   const physics = PhysX.CreatePhysics(version, base, scale);
   const { eSCENE_QUERY_SHAPE, eSIMULATION_SHAPE } = PhysX.PxShapeFlagEnum;
   const flags = new PhysX.PxShapeFlags(eSCENE_QUERY_SHAPE | eSIMULATION_SHAPE);
-  return ({ text, drop, radius, steps, shape, spin, offset }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass, offset }) => {
     const [sets, advances] = linesOf(text);
     const made = new PhysX.PxSceneDesc(scale);
     made.gravity = new PhysX.PxVec3(0, -G, 0);
@@ -162,7 +164,7 @@ async function physx() {
       capsule: () => new PhysX.PxCapsuleGeometry(radius, 2 * radius),
     }[shape]();
     const ball = put(geometry, radius + drop, "createRigidDynamic", shape === "capsule");
-    PhysX.PxRigidBodyExt.prototype.updateMassAndInertia(ball, 1000);
+    PhysX.PxRigidBodyExt.prototype.setMassAndUpdateInertia(ball, mass);
     ball.setAngularVelocity(new PhysX.PxVec3(0, 0, spin));
     const heights = [];
     for (let k = 0; k < steps; k++) {
@@ -177,7 +179,7 @@ async function physx() {
 
 async function box2d() {
   const Box2D = await (await load("box2d3-wasm"))();
-  return ({ text, drop, radius, steps, shape, spin }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
     const [sets, advances] = linesOf(text);
     const made = Box2D.b2DefaultWorldDef();
     made.gravity.Set(0, -G);
@@ -195,6 +197,9 @@ async function box2d() {
     const ground = put(-1, Box2D.b2BodyType.b2_staticBody);
     Box2D.b2CreatePolygonShape(ground, Box2D.b2DefaultShapeDef(), Box2D.b2MakeBox(9, 1));
     const ball = put(radius + drop, Box2D.b2BodyType.b2_dynamicBody);
+    // Areas in units of the squared radius.
+    const area = { ball: Math.PI, box: 4, capsule: 8 + Math.PI }[shape];
+    shapeDef.density = mass / (area * radius * radius);
     if (shape === "box") {
       Box2D.b2CreatePolygonShape(ball, shapeDef, Box2D.b2MakeBox(radius, radius));
     } else if (shape === "capsule") {
@@ -223,7 +228,7 @@ async function planck() {
   const Planck = await load("planck");
   const { Settings } = Planck;
   const { velocityThreshold } = Settings;
-  return ({ text, drop, radius, steps, shape, spin }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
     const [sets, advances] = linesOf(text);
     // Those of the drop before hold for all worlds.
     Settings.velocityThreshold = velocityThreshold;
@@ -237,6 +242,8 @@ async function planck() {
       box: () => new Planck.Box(radius, radius),
     }[shape]();
     value(sets, { body: ball, shape: form, Settings });
+    const I = mass * radius * radius * { ball: 1 / 2, box: 2 / 3 }[shape];
+    ball.setMassData({ mass, center: Planck.Vec2(0, 0), I });
     const heights = [];
     for (let k = 0; k < steps; k++) {
       value(advances, { world });
@@ -250,7 +257,7 @@ async function matter() {
   const Matter = await load("matter-js");
   const { Bodies } = Matter;
   const { _restingThresh } = Matter.Resolver;
-  return ({ text, drop, radius, steps, shape, spin, turn }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass, turn }) => {
     const [sets, advances] = linesOf(text);
     Matter.Resolver._restingThresh = _restingThresh;
     const engine = Matter.Engine.create();
@@ -262,6 +269,7 @@ async function matter() {
     const made = shape === "box" ? { circle } : Bodies;
     const names = { Matter, Bodies: made, x: 0, y: 0, radius: radius * pixels };
     const ball = value(`const body = ${sets}\nreturn body;`, names);
+    Matter.Body.setMass(ball, mass);
     Matter.Body.rotate(ball, turn ?? 0);
     // Its lowest corner is at this height.
     Matter.Body.setPosition(ball, { x: 0, y: -drop * pixels - ball.bounds.max.y });
@@ -280,7 +288,7 @@ async function matter() {
 
 async function cannon() {
   const Cannon = await load("cannon-es");
-  return ({ text, drop, radius, steps, shape, spin }) => {
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
     const [sets, advances] = linesOf(text);
     const world = new Cannon.World({ gravity: new Cannon.Vec3(0, -G, 0) });
     const { ContactMaterial, Material } = Cannon;
@@ -289,7 +297,7 @@ async function cannon() {
     ground.quaternion.setFromEuler(-Math.PI / 2, 0, 0);
     world.addBody(ground);
     const ball = new Cannon.Body({
-      mass: 1,
+      mass,
       shape: {
         ball: () => new Cannon.Sphere(radius),
         box: () => new Cannon.Box(new Cannon.Vec3(radius, radius, radius)),

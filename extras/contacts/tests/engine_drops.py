@@ -37,11 +37,12 @@ FILE = Path(__file__).with_suffix(".csv")
 class Body(NamedTuple):
     """A "ball", a flat "box" or a lying "capsule" with four radii between its centres.
 
-    ``spin`` is an angular velocity in rad/s about a horizontal axis.
+    ``spin`` is an angular velocity in rad/s about a horizontal axis, and ``mass`` is in kg.
     """
 
     shape: str = "ball"
     spin: float = 0.0
+    mass: float = 1.0
 
 
 BALL = Body()
@@ -75,7 +76,7 @@ def chipmunk(text, drops, radius, steps, kind=BALL):
         body.position = (3 * place, radius + drop)
         body.angular_velocity = kind.spin
         shape = shapes[kind.shape](body)
-        shape.mass = 1.0
+        shape.mass = kind.mass
         exec(sets, {"shape": shape})
         space.add(body, shape)
         balls.append(body)
@@ -100,12 +101,12 @@ def dart(text, drops, radius, steps, kind=BALL):
         # The default detector makes a ball of a capsule, with a message.
         world.getConstraintSolver().setCollisionDetector(OdeCollisionDetector())
 
-    def add(skeleton, pair, shape):
+    def add(skeleton, pair, shape, mass=1.0):
         node = pair[1].createShapeNode(shape)
         node.createCollisionAspect()
         node.createDynamicsAspect()
         exec(sets, {"dynamicsAspect": node.getDynamicsAspect()})
-        pair[1].setInertia(Inertia(1.0, [0, 0, 0], shape.computeInertia(1.0)))
+        pair[1].setInertia(Inertia(mass, [0, 0, 0], shape.computeInertia(mass)))
         world.addSkeleton(skeleton)
 
     shapes = {
@@ -118,7 +119,7 @@ def dart(text, drops, radius, steps, kind=BALL):
     balls = []
     for place, drop in enumerate(drops):
         ball = Skeleton(f"ball {place}")
-        add(ball, ball.createFreeJointAndBodyNodePair(), shapes[kind.shape]())
+        add(ball, ball.createFreeJointAndBodyNodePair(), shapes[kind.shape](), kind.mass)
         # The axis of a capsule is z, and its quarter turn is about x.
         turn = math.pi / 2 if kind.shape == "capsule" else 0.0
         ball.setPositions([turn, 0, 0, 3 * place, 0, 0.5 + radius + drop])
@@ -142,7 +143,8 @@ def box2d_2(text, drops, radius, steps, kind=BALL):
         "ball": lambda: Box2D.b2CircleShape(radius=radius),
         "box": lambda: Box2D.b2PolygonShape(box=(radius, radius)),
     }
-    fixture = Box2D.b2FixtureDef(shape=shapes[kind.shape](), density=1.0)
+    area = {"ball": math.pi, "box": 4.0}[kind.shape] * radius**2
+    fixture = Box2D.b2FixtureDef(shape=shapes[kind.shape](), density=kind.mass / area)
     exec(sets, {"fixtureDef": fixture})
     balls = [
         world.CreateDynamicBody(
@@ -179,7 +181,7 @@ def rapier(text, drops, radius, steps, kind=BALL):
         ball = rapier3d.RigidBody.dynamic(
             translation=(3 * place, radius + drop, 0), angvel=(0, 0, kind.spin)
         )
-        shape = of(shapes[kind.shape]().density(1.0))
+        shape = of(shapes[kind.shape]().mass(kind.mass))
         balls.append(world.add_body(ball, colliders=[shape]))
     heights = []
     for _ in range(steps):
@@ -195,6 +197,9 @@ def newton_xpbd(text, drops, radius, steps, kind=BALL):
     sets, advances = as_python(text)
     builder = newton.ModelBuilder(gravity=(0.0, 0.0, -G))
     material = eval(sets, {"ShapeConfig": newton.ModelBuilder.ShapeConfig})
+    # Volumes in units of the cubed radius.
+    volume = {"ball": 4 / 3 * math.pi, "box": 8.0, "capsule": 16 / 3 * math.pi}[kind.shape]
+    material.density = kind.mass / (volume * radius**3)
     half = math.sqrt(0.5)
     turned = warp.quat(half, 0.0, 0.0, half) if kind.shape == "capsule" else warp.quat_identity()
     for place, drop in enumerate(drops):
@@ -227,12 +232,13 @@ def newton_xpbd(text, drops, radius, steps, kind=BALL):
 
 
 _MODEL = """<model name="{name}"><static>{is_static}</static><pose>{x!r} 0 {z!r} 0 0 0</pose>
-<link name="link"><inertial><inertia><ixx>{inertia!r}</ixx><iyy>{inertia!r}</iyy>
-<izz>{inertia!r}</izz></inertia></inertial><collision name="shape"><geometry>{shape}</geometry>
+<link name="link"><inertial><mass>{mass!r}</mass><inertia><ixx>{inertia!r}</ixx>
+<iyy>{inertia!r}</iyy><izz>{inertia!r}</izz></inertia></inertial>
+<collision name="shape"><geometry>{shape}</geometry>
 <surface><bounce>{bounce}</bounce></surface></collision></link></model>"""
 
 
-def gazebo_sim(text, drops, radius, steps):
+def gazebo_sim(text, drops, radius, steps, kind=BALL):
     """Gazebo's physics with DART, by the program engine_gz_sim.cpp."""
     program = shutil.which("engine_gz_sim")
     plugins = glob("/usr/lib/*/ign-physics-*/engine-plugins/*dartsim-plugin.so*")
@@ -243,15 +249,21 @@ def gazebo_sim(text, drops, radius, steps):
     box = "<box><size>1000 10 1</size></box>"
     models = [
         _MODEL.format(
-            name="ground", is_static=True, x=0.0, z=-0.5, inertia=1.0, shape=box, bounce=bounce
+            name="ground",
+            is_static=True,
+            x=0.0,
+            z=-0.5,
+            mass=1.0,
+            inertia=1.0,
+            shape=box,
+            bounce=bounce,
         )
     ]
     ball = f"<sphere><radius>{radius!r}</radius></sphere>"
     for place, drop in enumerate(drops):
-        at = dict(x=3.0 * place, z=float(radius + drop), inertia=0.4 * radius**2)
-        models.append(
-            _MODEL.format(name=f"ball{place}", is_static=False, shape=ball, bounce=bounce, **at)
-        )
+        at = dict(x=3.0 * place, z=float(radius + drop), name=f"ball{place}", is_static=False)
+        of = dict(mass=kind.mass, inertia=0.4 * kind.mass * radius**2, shape=ball, bounce=bounce)
+        models.append(_MODEL.format(**at, **of))
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "world.sdf")
         file.write_text(

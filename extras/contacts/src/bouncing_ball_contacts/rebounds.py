@@ -106,6 +106,8 @@ class ByNumber:
     sinks, remembers
         How many times g h² a body falls farther in a step than with the velocity before it, and how
         many steps before an impact matter.
+    depends_on_mass : bool
+        Whether r depends on the mass, because contacts have a softness. Without a mass it is 1 kg.
     is_physx : bool
         Whether materials say how their numbers are combined.
     is_restless, calmed_by
@@ -139,6 +141,7 @@ class ByNumber:
     springs: str = ""
     sinks: float = 1.0
     remembers: int = 2
+    depends_on_mass: bool = False
     is_physx: bool = False
     is_restless: bool = False
     calmed_by: str = ""
@@ -502,6 +505,7 @@ BY_NUMBER = {
             settings={"soft_cfm": 1e-10, "soft_erp": 0.2},
             designed=({"soft_cfm": 1e-10},),
             springs="ode",
+            depends_on_mass=True,
             notes=("These are numbers of a contact joint",),
         ),
         ByNumber(
@@ -525,6 +529,7 @@ BY_NUMBER = {
             # With such a damper the default spring takes nothing of the penetration back.
             designed=({"max_vel": 1e9, "contact_max_correcting_vel": 1e9, "kd": 1e12},),
             springs="gazebo",
+            depends_on_mass=True,
             notes=("Gazebo Classic, with ODE",),
         ),
         ByNumber(
@@ -547,14 +552,23 @@ BY_NUMBER = {
                 "restitution": "const contact = new ContactMaterial(a, b, {{restitution: "
                 "{value}}});",
                 "contactEquationRelaxation": "contact.contactEquationRelaxation = {value};",
+                "contactEquationStiffness": "contact.contactEquationStiffness = {value};",
                 "linearDamping": "body.linearDamping = {value};",
                 "step": "world.step({value});",
             },
-            settings={"contactEquationRelaxation": 3.0, "linearDamping": 0.01},
-            designed=tuple({"contactEquationRelaxation": steps} for steps in (10.0, 50.0)),
+            settings={
+                "contactEquationRelaxation": 3.0,
+                "contactEquationStiffness": 1e7,
+                "linearDamping": 0.01,
+            },
+            # With such a stiffness r does not depend on the mass.
+            designed=tuple(
+                {"contactEquationRelaxation": steps, "contactEquationStiffness": 1e15}
+                for steps in (10.0, 50.0)
+            ),
             damped_by="linearDamping",
             kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
-            notes=("The contactEquationStiffness is taken as 1e7, the default",),
+            depends_on_mass=True,
         ),
     )
 }
@@ -1005,7 +1019,9 @@ def _remarks(case: Case, written: float) -> list[str]:
     damping = case.settings.get(row.damped_by, 0.0)
     given = [f"{name} {value}" for name, value in bounce.given.items()]
     pixels = f"a metre of {row.pixels:.3g} pixels (pixels=… in a diagnosis)"
-    assumed = bounce.assumed + holding([(row.pixels, pixels)])
+    weighs = row.depends_on_mass and bounce.mass is None
+    others = [(weighs, "a mass of 1 kg (--mass)"), (row.pixels, pixels)]
+    assumed = bounce.assumed + holding(others)
     defaults = {
         name: value
         for name, value in case.settings.items()
@@ -1224,6 +1240,7 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
     "pixels": lambda name, value: positive(name, value, ""),
     "combine": lambda name, value: MODES[one_of(name, value, MODES)],
     "contactEquationRelaxation": lambda name, value: positive(name, value, ""),
+    "contactEquationStiffness": lambda name, value: positive(name, value, "N/m"),
     "soft_cfm": lambda name, value: positive(name, value, "m/N/s"),
     "kp": lambda name, value: positive(name, value, "N/m"),
     **{

@@ -387,14 +387,12 @@ def matter(at: Fall, z: float, v: float) -> Steps:
 
 
 def cannon(at: Fall, z: float, v: float) -> Steps:
-    """A spring of 10⁷ N/m that is relaxed over d steps, with (1 + r) v beside it.
-
-    The body has 1 kg; heavier ones sink deeper.
-    """
+    """A spring that is relaxed over d steps, with (1 + r) v beside it; heavy bodies sink deeper."""
     four = 4 * at.settings["contactEquationRelaxation"]
     a = 4 / (at.step * (1 + four))
     b = four / (1 + four)
-    softness = 4 / (at.step**2 * 1e7 * (1 + four))
+    stiffness = at.settings["contactEquationStiffness"]
+    softness = 4 * at.mass / (at.step**2 * stiffness * (1 + four))
     while True:
         impulse = 0.0
         if z < 0:

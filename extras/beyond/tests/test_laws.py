@@ -262,6 +262,14 @@ class TestByIntegration:
         assert abs(signature.loss - loss) < 1e-7 * signature.duration
 
 
+def test_parameters_may_be_lists():
+    def spring(p, v, stiffness):
+        return stiffness * p
+
+    found = ForceLaw(spring, {"stiffness": [400.0, 500.0]}).signature(2.0)
+    np.testing.assert_allclose(found.duration, np.pi / np.sqrt([400.0, 500.0]), 1e-11)
+
+
 class TestClosedForms:
     @pytest.mark.parametrize("release", ["displacement", "force"])
     def test_linear_is_the_spring_and_damper(self, release):

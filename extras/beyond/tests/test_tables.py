@@ -53,6 +53,15 @@ def test_derivatives_differences_and_bounds(name):
     assert table.lift >= -table(tau, 2).min()
 
 
+def test_each_table_of_a_row_has_its_bounds():
+    two = TABLES["two maxima"]
+    sizes = np.array([0.1, 0.4])
+    expected = np.transpose([two.at(harmonic_3=size).bounds for size in sizes])
+    for row in (sizes, sizes[:, np.newaxis]):
+        found = np.array(two.at(harmonic_3=row).bounds).reshape(6, 2)
+        np.testing.assert_allclose(found, expected, 1e-14)
+
+
 @pytest.mark.parametrize("name", TABLES)
 def test_where_a_table_falls_as_fast_as_a_ball(name):
     table = TABLES[name]

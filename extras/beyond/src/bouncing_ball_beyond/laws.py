@@ -218,8 +218,11 @@ class ForceLaw(Ball):
                 raise ValueError(f"{name} = {brief(each)}: must be a function")
         if not isinstance(self.values, Mapping):
             raise ValueError(f"values = {brief(self.values)}: must be a dict of numbers by name")
-        for name, value in self.values.items():
-            checked(name, value, -np.inf, np.inf, low_allowed=False)
+        numbers = {
+            name: checked(name, value, -np.inf, np.inf, low_allowed=False)
+            for name, value in self.values.items()
+        }
+        object.__setattr__(self, "values", numbers)
         if not (isinstance(self.needs, tuple) and {*self.needs} <= {"load", "start_speed"}):
             raise ValueError(
                 f"needs = {self.needs!r}: must be ('load',), ('start_speed',) or both in one tuple"

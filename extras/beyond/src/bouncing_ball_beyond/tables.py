@@ -443,8 +443,9 @@ class Table:
         """Six upper bounds: of |W|, and of the moduli of its first five derivatives."""
         remainder = (self.grid[1] / 2) ** 2 / 2
         sums = [sum(abs(a) * k**m for k, a, _ in self.harmonics) for m in range(8)]
-        largest = [np.abs(self(self.grid, m)).max() + remainder * sums[m + 2] for m in range(6)]
-        return tuple(float(min(a, b)) for a, b in zip(largest, sums, strict=False))
+        table = self.rows(np.s_[..., np.newaxis])
+        samples = [np.abs(table(self.grid, m)).max(axis=-1) for m in range(6)]
+        return tuple(np.minimum(samples[m] + remainder * sums[m + 2], sums[m]) for m in range(6))
 
     def _top(self, order: int, sign: int = 1) -> float:
         """Phase at which a derivative of W is largest (``sign`` 1) or smallest (-1)."""

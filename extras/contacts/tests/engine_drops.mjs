@@ -4,7 +4,7 @@
 // the body; its output are the heights of each body over the surface. The last line of a text is
 // run in each step, and the others once. The engines are installed in the working folder by
 //   npm install @dimforge/rapier3d-compat@0.21.0 jolt-physics@1.1.0 box2d3-wasm@5.2.0 \
-//     physx-js-webidl@2.7.3 planck@1.4.2 matter-js@0.20.0 cannon-es@0.20.0
+//     box2d-wasm@7.0.0 physx-js-webidl@2.7.3 planck@1.4.2 matter-js@0.20.0 cannon-es@0.20.0
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
 
@@ -224,6 +224,43 @@ async function box2d() {
   };
 }
 
+async function box2d2() {
+  const wasmBinary = readFileSync(place.resolve("box2d-wasm/dist/umd/Box2D.wasm"));
+  const Box2D = await place("box2d-wasm/dist/umd/Box2D.js")({ wasmBinary });
+  return ({ text, drop, radius, steps, shape, spin, mass }) => {
+    const [sets, advances] = linesOf(text);
+    const world = new Box2D.b2World(new Box2D.b2Vec2(0, -G));
+    const put = (y, type, shape, density) => {
+      const made = new Box2D.b2BodyDef();
+      made.set_type(type);
+      made.set_position(new Box2D.b2Vec2(0, y));
+      if (density) made.set_angularVelocity(spin);
+      const body = world.CreateBody(made);
+      const fixtureDef = new Box2D.b2FixtureDef();
+      fixtureDef.shape = shape;
+      fixtureDef.density = density;
+      if (density) value(sets, { fixtureDef });
+      body.CreateFixture(fixtureDef);
+      return body;
+    };
+    const ground = new Box2D.b2PolygonShape();
+    ground.SetAsBox(9, 1);
+    put(-1, Box2D.b2_staticBody, ground, 0);
+    const form = shape === "box" ? new Box2D.b2PolygonShape() : new Box2D.b2CircleShape();
+    if (shape === "box") form.SetAsBox(radius, radius);
+    else form.set_m_radius(radius);
+    const area = { ball: Math.PI, box: 4 }[shape] * radius * radius;
+    const ball = put(radius + drop, Box2D.b2_dynamicBody, form, mass / area);
+    const heights = [];
+    for (let k = 0; k < steps; k++) {
+      value(advances, { world });
+      heights.push(ball.GetPosition().y - radius);
+    }
+    Box2D.destroy(world);
+    return heights;
+  };
+}
+
 async function planck() {
   const Planck = await load("planck");
   const { Settings } = Planck;
@@ -318,7 +355,16 @@ async function cannon() {
   };
 }
 
-const ENGINES = { rapier, jolt, physx, box2d, planck, "matter-js": matter, "cannon-es": cannon };
+const ENGINES = {
+  rapier,
+  jolt,
+  physx,
+  box2d,
+  "box2d-2": box2d2,
+  planck,
+  "matter-js": matter,
+  "cannon-es": cannon,
+};
 const jobs = JSON.parse(readFileSync(0, "utf8"));
 const run = await ENGINES[jobs[0].engine]();
 // An engine may write to the output as well.

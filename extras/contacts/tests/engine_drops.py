@@ -298,12 +298,12 @@ def by_node(name, text, drops, radius, steps, kind=BALL, **more):
 
 NOT_INSTALLED = 3
 """Exit status of engine_drops.mjs without the package of an engine."""
-OF_NODE = ("jolt", "physx", "box2d", "planck", "matter-js", "cannon-es")
+OF_NODE = ("jolt", "physx", "box2d", "box2d-2", "planck", "matter-js", "cannon-es")
 ENGINES = {
     "chipmunk": chipmunk,
     "dart": dart,
     "gazebo-sim": gazebo_sim,
-    "box2d-2": box2d_2,
+    "box2d-2.3": box2d_2,
     "rapier": rapier,
     "newton-xpbd": newton_xpbd,
     **{name: functools.partial(by_node, name) for name in OF_NODE},

@@ -4,7 +4,8 @@ Each scene has a ball, a floor, gravity and a drop, and the text that `bounce de
 else is left to the engine: friction, thresholds, iterations. A ball meets the floor at several
 instants within a step. The promise is kept if r is within the range of the answer.
 
-``python tests/engine_pasted.py [ENGINE]...`` saves the rows in docs/validation/pasted.csv. Engines
+``python tests/engine_pasted.py [ENGINE]...`` saves the rows in docs/validation/pasted.csv, and in
+masses.csv those of light and heavy, small and large balls with a restitution by number. Engines
 of JavaScript are run by ``engine_drops.mjs``, which has the command that installs them. An engine
 that is not installed has a row with the reason. The exit status is 1 if a promise is not kept.
 """
@@ -19,7 +20,7 @@ import engine_runs
 import numpy as np
 from engine_page import KEPT, NOT_RUN, save
 
-from bouncing_ball_contacts import ENGINES, Bounce, design
+from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
 from bouncing_ball_contacts.rebounds import BY_NUMBER
 
 G = engine_drops.G
@@ -29,18 +30,19 @@ SLOW = ("mujoco-warp", "newton", "newton-mujoco")
 
 
 class Case(NamedTuple):
-    """A ball of 100 g: r, height of the drop and radius in m, and the step, which may be none."""
+    """A ball: r, height of the drop and radius in m, the step, which may be none, and the mass."""
 
     name: str
     restitution: float
     height: float
     radius: float
     step: str | None
+    mass: float = 0.1
 
     @property
     def bounce(self):
         return Bounce(
-            mass=0.1,
+            mass=self.mass,
             restitution=self.restitution,
             drop_height=self.height,
             radius=self.radius,
@@ -63,11 +65,19 @@ NUMBERS = [
     Case("a small ball", 0.65, 1.5, 0.1, "1/60"),
 ]
 WITHOUT_STEP = Case("no step", 0.8, 2.0, 0.05, None)
+MASSES = [
+    Case(f"{mass:g} kg", 0.6, height, radius, step, mass)
+    for height, radius, step in [(0.02, 0.001, "1/1000"), (5.0, 1.0, "1/60")]
+    for mass in (1e-3, 1.0, 1e3)
+]
 
 
 def answered(case, engine):
     """Return the answer whose lines are pasted; None if there is none."""
-    found = design(case.bounce, engine, case.step)
+    try:
+        found = design(case.bounce, engine, case.step)
+    except Refused:
+        return None
     return next((each for each in (found, *found.also) if each.snippet), None)
 
 
@@ -89,9 +99,10 @@ def by_number(name, answer):
         # Half the angle between two corners of the coarsest polygon, which has ten.
         turns = [{"turn": float(turn)} for turn in np.linspace(0, math.pi / 10, 4)]
     found = []
+    body = engine_drops.Body(mass=bounce.mass)
     for turn in turns:
         run = functools.partial(engine_drops.ENGINES[name], **turn)
-        heights = run(answer.snippet, skin + drops, bounce.size, steps) - skin
+        heights = run(answer.snippet, skin + drops, bounce.size, steps, body) - skin
         found += [
             math.sqrt(engine_runs.rebound(column) / drop)
             for column, drop in zip(heights.T, drops, strict=True)
@@ -99,29 +110,49 @@ def by_number(name, answer):
     return min(found), max(found)
 
 
-HEAD = ["engine", "case", "given", "step, ms", "r promised", "r in the engine", "promise"]
-
-
-def cells(name, case, engine, run):
-    """Return the cells of a row but the first."""
-    given = f"r = {case.restitution}, {case.height:g} m, {case.radius:g} m, {case.step or '–'}"
+def measured(name, case, engine, run):
+    """Return the step, r promised, r in the engine and the verdict, with what is written."""
     answer = answered(case, engine)
     if answer is None:
-        return [case.name, given, "–", "nothing to paste", "–", KEPT[None]]
+        return ["–", "nothing to paste", "–", KEPT[None]], ""
     low, _, high = answer.outcome.restitution
     least, most = run(name, answer)
     # Three digits are printed.
     is_kept = low - 5e-4 <= least and most <= high + 5e-4
-    texts = [f"{1e3 * answer.time_step:.4g}", f"{low:.3f} to {high:.3f}"]
-    return [case.name, given, *texts, f"{least:.3f} to {most:.3f}", KEPT[bool(is_kept)]]
+    ranges = f"{low:.3f} to {high:.3f}", f"{least:.3f} to {most:.3f}"
+    written = "; ".join(f"{key}={value}" for key, value in answer.parameters.items())
+    return [f"{1e3 * answer.time_step:.4g}", *ranges, KEPT[bool(is_kept)]], written
 
 
-def plans():
+def pasted(name, case, engine, run):
+    """Return the cells of a row of pasted.csv but the first."""
+    found, _ = measured(name, case, engine, run)
+    given = f"r = {case.restitution}, {case.height:g} m, {case.radius:g} m, {case.step or '–'}"
+    return [case.name, given, *found]
+
+
+def of_masses(name, case, engine, run):
+    """Return the cells of a row of masses.csv but the first."""
+    found, written = measured(name, case, engine, run)
+    return [f"{case.mass:g}", f"{case.radius:g}", f"{case.height:g}", written, *found]
+
+
+FOUND = ["step, ms", "r promised", "r in the engine", "promise"]
+TABLES = {
+    "pasted": (["engine", "case", "given", *FOUND], pasted),
+    "masses": (["engine", "mass, kg", "radius, m", "height, m", "written", *FOUND], of_masses),
+}
+
+
+def plans(table):
     """Yield the rows: the name, the engine of a design, how it is run, and the cases."""
-    for name, row in ENGINES.items():
-        yield name, row, by_spring if name in engine_runs.RUNS else None, SPRINGS
+    if table == "pasted":
+        for name, row in ENGINES.items():
+            yield name, row, by_spring if name in engine_runs.RUNS else None, SPRINGS
     for name, row in BY_NUMBER.items():
         cases = [*NUMBERS, WITHOUT_STEP] if row.springs else NUMBERS
+        if table == "masses":
+            cases = MASSES
         if name in engine_drops.ENGINES:
             yield name, name, by_number, cases
         else:
@@ -135,10 +166,12 @@ def reason(name):
     return next((note for note in row.notes if "was not run" in note), f"no program for {name}")
 
 
-def main():
+def ran(table):
+    """Run the engines of a table, save its rows, and return how many promises are not kept."""
+    head, cells = TABLES[table]
     rows = []
     missing = {}
-    for name, engine, run, cases in plans():
+    for name, engine, run, cases in plans(table):
         if sys.argv[1:] and name not in sys.argv[1:]:
             continue
         if run is None:
@@ -151,13 +184,17 @@ def main():
                 missing[name] = f"{absent.name} is not installed"
                 break
             print(" | ".join(rows[-1]), flush=True)
-    ran = {row[0] for row in rows}
+    found = {row[0] for row in rows}
     for name, why in missing.items():
         print(f"Not run: {name}, because {why}.")
-        if name not in ran:
-            rows.append([name, why, *[""] * (len(HEAD) - 3), NOT_RUN])
-    save("pasted", HEAD, rows)
-    differ = sum(row[-1] == KEPT[False] for row in rows)
+        if name not in found:
+            rows.append([name, why, *[""] * (len(head) - 3), NOT_RUN])
+    save(table, head, rows)
+    return sum(row[-1] == KEPT[False] for row in rows)
+
+
+def main():
+    differ = sum(map(ran, TABLES))
     print(f"{differ} promises are not kept.")
     sys.exit(differ > 0)
 

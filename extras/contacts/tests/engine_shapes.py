@@ -47,7 +47,7 @@ MISSING = {
     "flat box": ("lammps", "lammps-limit-damping", "lammps-hertz"),
     "lying capsule": (
         *("lammps", "lammps-limit-damping", "lammps-hertz"),
-        *("box2d-2", "planck", "matter-js", "cannon-es"),
+        *("box2d-2", "box2d-2.3", "planck", "matter-js", "cannon-es"),
     ),
 }
 """Engines that do not have a shape."""

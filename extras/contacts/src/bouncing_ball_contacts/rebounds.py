@@ -234,21 +234,31 @@ _AHEAD = "The contact offset is taken as longer than the way of the body in a st
 _PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
 _HAS_A_SKIN = (
     "Heights are counted from where a ball lies, which is up to "
-    f"{1000 * step_rules.SKIN:g} mm above the surface, because there is a skin around polygons"
+    f"{1000 * step_rules.SKIN:g} mm above the surface of a polygon, because there is a skin around "
+    f"it; a polygon lies up to {2000 * step_rules.SKIN:g} mm above another one"
 )
 _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
-    ran="Box2D 2.3.10 of Python",
+    ran="Box2D 2.4.1 (box2d-wasm 7.0.0)",
     lines={
         "restitution": "fixtureDef.restitution = {value}f;  // of {bodies}",
+        "restitutionThreshold": "fixtureDef.restitutionThreshold = {value}f;",
         "step": "world.Step({value}f, 8, 3);",
     },
     pair=LARGER,
     threshold=1.0,
     is_restless=True,
-    set_by="b2_velocityThreshold",
+    set_by="restitutionThreshold",
     skin=step_rules.SKIN,
+    notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3", _HAS_A_SKIN),
+)
+_BOX2D_2_3 = replace(
+    _BOX2D_2,
+    name="box2d-2.3",
+    ran="Box2D 2.3.10 of Python",
+    set_by="b2_velocityThreshold",
+    lines={name: _BOX2D_2.lines[name] for name in ("restitution", "step")},
     notes=(_CONSTANT, _HAS_A_SKIN),
 )
 _DART = ByNumber(
@@ -374,6 +384,18 @@ BY_NUMBER = {
             not_for=_RAPIER.not_for,
         ),
         _BOX2D_2,
+        _BOX2D_2_3,
+        replace(
+            _BOX2D_2_3,
+            name="libgdx",
+            set_by="World.setVelocityThreshold",
+            lines={
+                "restitution": _BOX2D_2.lines["restitution"],
+                "World.setVelocityThreshold": "World.setVelocityThreshold({value}f);",
+                "step": "world.step({value}f, 8, 3);",
+            },
+            notes=("libGDX was not run: it has Box2D 2.3, and sets its threshold", _HAS_A_SKIN),
+        ),
         replace(
             _BOX2D_2,
             name="planck",
@@ -575,6 +597,9 @@ BY_NUMBER = {
 """Engines whose restitution is a number, and products on top of one, by their names."""
 NAMES = {
     "bevyrapier": "rapier",
+    "box2d24": "box2d-2",
+    "box2d241": "box2d-2",
+    "box2d242": "box2d-2",
     "bullet": "pybullet",
     "bullet3": "pybullet",
     "cannon": "cannon-es",
@@ -589,7 +614,7 @@ NAMES = {
     "ignition": "gazebo-sim",
     "ignitiongazebo": "gazebo-sim",
     "isaac": "isaac-sim",
-    "libgdx": "box2d-2",
+    "jbox2d": "box2d-2.3",
     "matter": "matter-js",
     "mjwarp": "mujoco-warp",
     "mjx": "mujoco",
@@ -600,7 +625,7 @@ NAMES = {
     "omniverse": "isaac-sim",
     "ovphysx": "physx",
     "p5play": "planck",
-    "pybox2d": "box2d-2",
+    "pybox2d": "box2d-2.3",
     "pymunk": "chipmunk",
     "xpbd": "newton-xpbd",
     "adams": "",
@@ -614,12 +639,12 @@ NAMES = {
     "brax": "",
     "chaos": "",
     "chrono": "",
-    "construct": "has Box2D: take box2d-2, or box2d for Box2D 3",
+    "construct": "has Box2D: take box2d-2.3, or box2d for Box2D 3",
     "coppeliasim": "has several engines: take pybullet, ode or mujoco",
-    "gdevelop": "has Box2D: take box2d-2",
+    "gdevelop": "has Box2D: take box2d-2.3",
     "godot": "has two engines: take godot-jolt for Jolt Physics",
     "dojo": "",
-    "gymnasium": "has no engine of its own: take mujoco, or box2d-2",
+    "gymnasium": "has no engine of its own: take mujoco, or box2d-2.3",
     "havok": "",
     "haxball": "",
     "isaacgym": "has another PhysX: take physx for PhysX 5",
@@ -974,6 +999,9 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
         else f"above a threshold of {show(settling, 'm/s')}"
     )
     limit = row.limit(case.threshold)
+    # Share of the drop that is within the skin.
+    skin = min(2 * bounce.load * row.skin / speed**2, 1.0)
+    from_floor = Range(*(math.sqrt(skin + (1 - skin) * each**2) for each in r))
     return holding(
         [
             (
@@ -991,6 +1019,11 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
                 f"of {limit}",
             ),
             (r.high >= 1.0005, f"at some instants the ball gains energy: r is up to {r.high:.3f}"),
+            (
+                skin and from_floor.mean > r.high,
+                f"heights are counted from a skin of {show(row.skin, 'm')}: from the floor r is "
+                f"{from_floor}",
+            ),
             (
                 speed / 3 > slowest and abs(slower.mean - r.mean) > TOLERANCE / 2,
                 f"at a third of the speed r is {slower}",
@@ -1126,7 +1159,8 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     found = replace(found, asked_step=asked, warnings=warnings, also=also)
     if best.does_it:
         return found
-    nothing = f"at {show(step, 's')} no number gives this r: nothing is written to paste"
+    nothing = f"at {show(step, 's')} no number gives this r"
+    nothing += "" if also else ": nothing is written to paste"
     return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 
 

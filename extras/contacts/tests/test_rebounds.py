@@ -744,7 +744,7 @@ SHAPES = VALIDATION / "shapes.csv"
 
 
 def test_light_and_heavy_balls_bounce_as_in_the_engines():
-    """1 g, 1 kg and 1 t with 1 mm and 1 m: r of the engines is within the range of what is written."""
+    """1 g, 1 kg and 1 t with 1 mm and 1 m: r of the engines is within that of what is written."""
     with (VALIDATION / "masses.csv").open(newline="", encoding="utf-8") as file:
         rows = [row for row in csv.DictReader(file) if " to " in row["r in the engine"]]
     assert len({row["engine"] for row in rows}) > 14

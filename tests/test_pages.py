@@ -148,7 +148,7 @@ def test_the_exceptions_are_those_of_the_map(data):
 @pytest.mark.parametrize(
     ("shares", "where"),
     [
-        ([[0.1, 0.2], [0.3, 0.4]], "every r, next to the period doubling"),
+        ([[0.1, 0.2], [0.3, 0.4]], "every r from 0.1 to 0.9, next to the period doubling"),
         ([[0.0, 0.2], [0.3, 0.4]], "n = 1 at some r and n = 2 at every r"),
         ([[0.0, 0.0], [0.3, 0.0]], "n = 2 at some r"),
         ([[0.0, 0.0], [0.0, 0.0]], "no n"),
@@ -156,7 +156,8 @@ def test_the_exceptions_are_those_of_the_map(data):
     ],
 )
 def test_the_contact_has_doubled_where_its_share_is_positive(shares, where):
-    share = xr.DataArray(shares, {"n": [1, 2]}, ("n", "restitution"))
+    over = {"n": [1, 2], "restitution": [0.1, 0.9]}
+    share = xr.DataArray(shares, over, ("n", "restitution"))
     assert pages.doubling(xr.Dataset({"doubled_share": share})) == where
 
 

@@ -132,6 +132,32 @@ def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
         assert bool(np.isfinite(ball.lyapunov_exponent)) == (count == 0)
 
 
+def test_the_direct_map_has_the_multipliers_of_eq_8_and_separates_neighbours():
+    given = registered("restitution_model", "three_balls")
+    data = stage("restitution_model").STAGE["three_balls"](given)
+    r = given["restitution"]
+    # Before the period doubling of Eq. 8 the multipliers are complex, and their product is r.
+    assert data.direct_exponent.values[0] == pytest.approx(np.log(r) / 2, abs=1e-3)
+
+    def following(amplitude, time, velocity):
+        after = time + 2 * velocity
+        return after, r * velocity + (1 + r) * amplitude * np.cos(after)
+
+    for amplitude, exponent, error in zip(
+        data.amplitude.values, data.direct_exponent.values, data.direct_error.values, strict=True
+    ):
+        here = (given["phase"], amplitude * np.cos(given["phase"]) + r * given["impact_speed"])
+        there = (here[0] + 1e-7, here[1])
+        growth = []
+        for _ in range(4000):
+            here = following(amplitude, *here)
+            apart = np.subtract(following(amplitude, *there), here)
+            growth.append(np.log(np.hypot(*apart) / 1e-7))
+            there = tuple(here + apart * 1e-7 / np.hypot(*apart))
+        # Two estimates of one average: five standard errors, and the width of the separation.
+        assert np.mean(growth[1000:]) == pytest.approx(exponent, abs=7 * error + 1e-3)
+
+
 # Orbits along the frequency ratio
 
 

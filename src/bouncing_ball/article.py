@@ -77,6 +77,7 @@ def written(name: str, datasets: Datasets) -> str:
         stable_ranges=measures.stable_ranges,
         permanent_contact=spring_damper.permanent_contact,
         holmes_period_doubling=restitution.holmes_period_doubling,
+        period_doubling_height=restitution.period_doubling_height,
         error_of_eq_8=measures.error_of_eq_8,
         departure=measures.departure,
         spread=measures.spread,

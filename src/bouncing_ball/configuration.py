@@ -37,7 +37,7 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             known = schema["properties"][stage]["properties"]
             yield f"{where}: unknown key{meant(name, known)} ({error.schema['description']})"
         else:
-            yield f"{where}: {error.message}{reason(error)}"
+            yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
 
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:

@@ -32,6 +32,10 @@ STEPS_PER_DECADE = 16
 """Minimum number of steps of a walk per decade of ϖ. The error of a prediction is then about one
 eighth of the change of the orbit in the step."""
 
+PASSES = 300
+"""Maximum number of passes that make the points of a branch equidistant. Fewer points need more: 11
+points up to the largest Λ of the schema, 100, need 170."""
+
 SMALLEST_STEP = 1e-6
 """Step length at or below which a continuation ends."""
 
@@ -498,7 +502,7 @@ def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
     length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(path), axis=0))])
     curve = CubicSpline(length, path, axis=1)
     places = np.linspace(0, length[-1], points)
-    for _ in range(30):
+    for _ in range(PASSES):
         guess = curve(places)
         orbits = correct(family, guess, on_plane(guess, curve(places, 1)))
         orbits[:, [0, -1]] = path[:, [0, -1]]

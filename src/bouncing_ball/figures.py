@@ -15,7 +15,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
-from matplotlib.ticker import MultipleLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from bouncing_ball import paper
@@ -388,6 +388,8 @@ def draw_contacts(axes: Axes, data: xr.Dataset) -> None:
     for k, (colour, dashes) in enumerate(zip(shades, cycle(DASHES), strict=False)):
         orbit = stiff_first.isel(frequency_ratio=k)
         name = label(frequency_ratio=orbit.frequency_ratio)
+        if orbit.ball.isnull().all():
+            name += " (no orbit)"
         look: Look = {"color": colour, "linestyle": dashes, "linewidth": 1.0, "zorder": 3 - k / 100}
         axes.plot(*three_cycles(data, orbit.ball), label=name, **look)
 
@@ -599,7 +601,7 @@ def validity_map(data: xr.Dataset) -> Figure:
         axes.set(title=label(n=n), xlim=data.restitution[[0, -1]], ylim=(0, 1))
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
-        axes.xaxis.set_major_locator(MultipleLocator(0.4))
+        axes.xaxis.set_major_locator(MaxNLocator(5))
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.

@@ -199,7 +199,9 @@ def doubling(validity_map: xr.Dataset) -> str:
     if share.isnull().any():
         return "–"
     if (share > 0).all():
-        return "every r, next to the period doubling"
+        r = share.restitution
+        ends = [article.short(end) for end in (r.min(), r.max())]
+        return f"every r from {' to '.join(ends)}, next to the period doubling"
     words = {False: "some", True: "every"}
     parts = [
         f"n = {of_n.n.item()} at {words[bool((of_n > 0).all())]} r" for of_n in share if of_n.any()

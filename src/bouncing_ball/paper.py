@@ -98,6 +98,7 @@ PARAMETERS = {
     "fig10": on_contacts(
         n=2, restitution=0.85, amplitude=[1.1, 1.0, 0.6], frequency_ratio=ALONG_RATIO
     ),
+    "fig11": on_contacts(restitution=0.65),
     "fig12": on_contacts(n=1, restitution=0.65, amplitude=1.0),
     "fig13": on_contacts(n=1, restitution=0.65, amplitude=[1.0], frequency_ratio=ALONG_RATIO),
     "fig14": on_contacts(
@@ -147,12 +148,11 @@ AXES = {
     "fig03": {"amplitude_max": 2.0},
     "fig08": {"amplitude_max": 1.5},
     "fig09": {"amplitude_max": 1.5},
-    "fig11": on_contacts(restitution=0.65),
     "fig15": {"amplitude_max": 2.2},
     "thresholds": {"frequency_ratio": {"samples": 101}},
     "validity_map": {"frequency_ratio": {"min": 10.0, "max": 1e4}, "curves": unique(CURVES)},
 }
-"""What the article needs in addition: r of Fig. 11, and our choices on which its sentences rest."""
+"""Our choices on which sentences of the article rest."""
 
 
 def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:

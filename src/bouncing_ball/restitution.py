@@ -351,6 +351,43 @@ def repetition(path: Impacts) -> tuple[int, int]:
     return 0, 0
 
 
+def direct_exponent(
+    r: float, amplitude: float, time: float, velocity: float, impacts: int, block: int = 32
+) -> tuple[float, float]:
+    """Largest Lyapunov exponent of the direct map, per impact, and its standard error.
+
+    In the direct map every flight ends at the height at which it begins:
+
+        τ₁ = τ₀ + 2 v₀,    v₁ = r v₀ + (1 + r) Λ cos τ₁.
+
+    Its period doubling is that of Eq. 8. The map also takes negative velocities, which no ball has.
+    The first quarter of the impacts is discarded. The standard error is that of a mean over blocks
+    of `block` impacts.
+
+    Parameters
+    ----------
+    r, amplitude : float
+        Restitution coefficient and amplitude Λ.
+    time, velocity : float
+        Time τ of the first impact, and velocity of the ball after it.
+    impacts : int
+        Number of impacts, including the first.
+    """
+    deviation = np.array([1.0, 0.0])
+    growth = np.empty(impacts - 1)
+    for k in range(impacts - 1):
+        time = time + 2 * velocity
+        velocity = r * velocity + (1 + r) * amplitude * np.cos(time)
+        turn = (1 + r) * amplitude * np.sin(time)
+        deviation = np.array([[1, 2], [-turn, r - 2 * turn]]) @ deviation
+        size = np.hypot(*deviation)
+        deviation = deviation / size
+        growth[k] = np.log(size)
+    blocks = 3 * growth.size // (4 * block)
+    means = growth[-blocks * block :].reshape(blocks, block).mean(axis=1)
+    return means.mean(), means.std(ddof=1) / np.sqrt(blocks)
+
+
 def lyapunov_exponent(path: Impacts, block: int = 32) -> tuple[float, float]:
     """Largest Lyapunov exponent per period of the table, and its standard error.
 

@@ -104,10 +104,11 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     for line in each(data, "quantity"):
         status = line["threshold_status"].values.tolist()
         ratios = line["error_threshold"].values
-        entries = [
-            instead.get(kind, number(ratio, ".5g")) + NOT_FOLLOWED * (not is_followed(line, ratio))
-            for kind, ratio in zip(status, ratios, strict=True)
-        ]
+        entries = []
+        for kind, ratio in zip(status, ratios, strict=True):
+            has_orbit = kind != "no orbit"
+            note = NOT_FOLLOWED * (has_orbit and not is_followed(line, ratio))
+            entries.append(instead.get(kind, number(ratio, ".5g")) + note)
         rows.append([QUANTITIES[line["quantity"].item()], *entries])
     return rows
 

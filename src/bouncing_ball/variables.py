@@ -214,6 +214,15 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         "lyapunov_error": Variable(
             "standard error of the largest Lyapunov exponent", tolerance=0.5
         ),
+        "direct_exponent": Variable(
+            "largest Lyapunov exponent of the direct map, per impact",
+            "λ",
+            tolerance=5.0,
+            tolerance_scale="direct_error",
+        ),
+        "direct_error": Variable(
+            "standard error of the largest Lyapunov exponent of the direct map", tolerance=0.5
+        ),
     },
     "hypotheses": {
         "hypothesis": Variable("hypothesis on what the authors computed"),
@@ -267,7 +276,7 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         ),
         "group": Variable("category in which the claim is counted"),
         "printed_text": Variable("the number as printed"),
-        "decided_by": Variable("datasets that decide"),
+        "decided_by": Variable("datasets that decide, or algebra"),
         "beside": Variable("figure or table beside which the claim is shown"),
         "found": Variable("the number found"),
         # A difference of two numbers that agree to three or four digits.

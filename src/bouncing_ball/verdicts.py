@@ -212,7 +212,8 @@ def of_number(claim: Claim, computed: ArrayLike) -> dict:
 def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     """The verdict on a statement; the number found is that of the literal reading.
 
-    If the readings differ, `own_sense` says whether the literal one holds.
+    If the readings differ, `own_sense` says whether the literal one holds. If no number decides,
+    algebra does.
     """
     numbers = [reading.found for reading in readings if reading.found is not None]
     if np.isnan(numbers).any():
@@ -222,6 +223,8 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
         "found": np.nan if literal is None else literal,
         "condition": listed(readings),
     }
+    if readings and not numbers:
+        found["decided_by"] = "algebra"
     right = [reading.holds for reading in readings]
     if claim.missing and (any(right) != all(right) or not readings):
         reason = f"the text does not say {claim.missing}"

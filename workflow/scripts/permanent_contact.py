@@ -2,6 +2,7 @@
 
 import sys
 
+import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
@@ -32,7 +33,11 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
     zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
     ratios = grid(parameters["frequency_ratio"])
     error = permanent_contact_error(ratios, zeta, release)
-    found = threshold(ratios, error, parameters["tolerance"])
+    # The lowest threshold is the only extremum of the error: with it no crossing is missed.
+    lowest_ratio, _ = spring_damper.lowest_permanent_contact(zeta, release)
+    turns = np.union1d(ratios, np.clip(lowest_ratio, ratios[0], ratios[-1]))
+    searched = permanent_contact_error(turns, zeta, release)
+    found = threshold(turns, searched, parameters["tolerance"])
     return fig11(parameters, release).assign(
         relative_error=("frequency_ratio", error.values),
         error_threshold=found.ratio,

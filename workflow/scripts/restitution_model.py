@@ -65,7 +65,8 @@ def three_balls(parameters: dict) -> xr.Dataset:
     """After how many impacts the motion of each ball repeats, or how fast its neighbours separate,
     and its first impacts, before rounding errors have grown.
 
-    All balls have the same phase and relative speed at their first impact.
+    All balls have the same phase and relative speed at their first impact. The direct map starts
+    there, too.
     """
     r = parameters["restitution"]
     amplitudes = np.array(parameters["amplitude"])
@@ -80,8 +81,10 @@ def three_balls(parameters: dict) -> xr.Dataset:
         exponent = (np.nan, np.nan)
         if not impacts and not path.stickings:
             exponent = restitution.lyapunov_exponent(path)
-        rows.append((impacts, periods, path.stickings, *exponent))
-    impacts, periods, stickings, exponents, errors = zip(*rows, strict=True)
+        direct = restitution.direct_exponent(r, amplitude, phase, velocity, path.time.size)
+        rows.append((impacts, periods, path.stickings, *exponent, *direct))
+    columns = zip(*rows, strict=True)
+    impacts, periods, stickings, exponents, errors, direct_exponents, direct_errors = columns
     return xr.Dataset(
         {
             "impacts": ("amplitude", list(impacts)),
@@ -89,6 +92,8 @@ def three_balls(parameters: dict) -> xr.Dataset:
             "stickings": ("amplitude", list(stickings)),
             "lyapunov_exponent": ("amplitude", list(exponents)),
             "lyapunov_error": ("amplitude", list(errors)),
+            "direct_exponent": ("amplitude", list(direct_exponents)),
+            "direct_error": ("amplitude", list(direct_errors)),
             "impact_time": (("amplitude", "impact"), [path.time[:FIRST] for path in paths]),
             "impact_bounce": (("amplitude", "impact"), [path.velocity[:FIRST] for path in paths]),
         },

@@ -6,12 +6,14 @@ screen and writes down what the browser made of it.
 
 import html
 import json
+import math
 import re
 import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
+from integrated import contact, flight
 
 import bouncing_ball_beyond
 from bouncing_ball.datasets import read
@@ -32,6 +34,18 @@ LOOSE = "#scene=loose&units=dimensionless"
 
 STIFF = "#r=0.9&w=1000&a=0.5"
 
+MEASURED = {
+    release: f"#tab=design&f=15&stroke=2.2&time=0.3&r=0.65&release={release}"
+    for release in ("displacement", "force")
+}
+"""The ball of the replication's README, by what ends the measured contact."""
+
+OUTSIDE = "#tab=design&f=30&stroke=1.5&time=2&r=0.8"
+"""A stroke at which the restitution model has no stable orbit with n = 1."""
+
+REFUSED = "#tab=design&r=0.13&release=force"
+"""A restitution coefficient below e⁻², which no damping ratio below 1 has without force."""
+
 PICTURES = {
     "": "motion",
     "#r=0.65&w=6&a=1": "motion",
@@ -40,6 +54,13 @@ PICTURES = {
     LOOSE: "scene",
 }
 """The first picture by the address at which the page is opened."""
+
+ON_TELEPHONES = [*MEASURED.values(), OUTSIDE]
+"""Further addresses, opened on the small screen only. Their first picture is the motion."""
+
+VIEWS = [(screen, *view) for screen in SCREENS for view in PICTURES.items()]
+VIEWS += [("telephone", address, "motion") for address in ON_TELEPHONES]
+"""Screens, addresses and first pictures."""
 
 SMALLEST = 12
 """The smallest letters in a drawing, in CSS pixels: those of the tables are not smaller."""
@@ -78,6 +99,10 @@ function look(frame) {
     doubling: page.getElementById("waveform-says").textContent,
     call: page.getElementById("call").textContent,
     verdict: page.getElementById("verdict").textContent,
+    position: page.getElementById("position").textContent,
+    refused: page.getElementById("refused").textContent,
+    values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
+      ({dataset: {key, value}}) => [key, value === "true" || Number(value)])),
   };
 }
 addEventListener("load", () => {
@@ -105,12 +130,13 @@ def seen(made, tmp_path_factory):
     wrong = made.replace('"max_height", "trace"', '"trace", "max_height"', 1)
     (folder / "wrong.html").write_text(wrong, encoding="utf-8")
     frames = [
-        f'<iframe id="{screen} {address}" data-picture="{picture}" width="{width}" '
-        f'height="{height}" style="border: 0" src="right.html{html.escape(address)}"></iframe>'
-        for screen, (width, height) in SCREENS.items()
-        for address, picture in PICTURES.items()
+        f'<iframe id="{screen} {address}" data-picture="{picture}" width="{SCREENS[screen][0]}" '
+        f'height="{SCREENS[screen][1]}" style="border: 0" '
+        f'src="right.html{html.escape(address)}"></iframe>'
+        for screen, address, picture in VIEWS
     ]
     frames.append('<iframe id="wrong" data-picture="motion" src="wrong.html"></iframe>')
+    frames.append(f'<iframe id="refused" data-picture="motion" src="right.html{REFUSED}"></iframe>')
     observer = folder / "observer.html"
     observer.write_text(OBSERVER.replace("FRAMES", "\n".join(frames)), encoding="utf-8")
     command = [BROWSER, "--headless=new", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"]
@@ -122,9 +148,8 @@ def seen(made, tmp_path_factory):
     return json.loads(html.unescape(found[1]))
 
 
-@pytest.mark.parametrize("address", PICTURES)
-@pytest.mark.parametrize("screen", SCREENS)
-def test_the_picture_comes_first_and_its_letters_are_read(seen, screen, address):
+@pytest.mark.parametrize(("screen", "address", "_"), VIEWS)
+def test_the_picture_comes_first_and_its_letters_are_read(seen, screen, address, _):
     found = seen[f"{screen} {address}"]
     width, height = SCREENS[screen]
     assert found["curves"] >= 2
@@ -178,6 +203,44 @@ def test_the_call_computes_what_the_page_shows(seen):
     for call in seen[f"desk {LOOSE}"]["call"].splitlines():
         impacts = int(eval(call, names).impacts)
         assert f"with {impacts} impacts" in seen[f"desk {LOOSE}"]["verdict"]
+
+
+@pytest.mark.parametrize("release", MEASURED)
+def test_a_stroke_and_a_contact_time_give_the_orbit_of_an_integrated_contact(seen, release):
+    found = seen[f"telephone {MEASURED[release]}"]["values"]
+    zeta, ratio = found["damping_ratio"], found["frequency_ratio"]
+    rate = 2 * math.pi * 15
+    assert found["amplitude"] == pytest.approx(1.1e-3 * rate**2 / 9.80665, rel=1e-12)
+    angle = math.pi - (2 * math.asin(zeta) if release == "force" else 0)
+    assert angle / math.sqrt(1 - zeta**2) / (rate * ratio) == pytest.approx(0.3e-3, rel=1e-12)
+    assert math.exp(-zeta * angle / math.sqrt(1 - zeta**2)) == pytest.approx(0.65, rel=1e-12)
+    # The page's orbit, followed from its impact by an integrator, comes back to it. The page has
+    # heights and times in SI units here; its phase is in rad.
+    ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
+    amplitude, phase = found["amplitude"], found["spring-damper phase"]
+    closing = amplitude * math.cos(phase) - found["spring-damper impact_velocity"]
+    end, gap, speed, highest = contact(ball, amplitude, phase, closing)
+    landing, again, height = flight(amplitude, end, gap, speed)
+    assert landing == pytest.approx(phase + 2 * math.pi, abs=1e-9)
+    assert again == pytest.approx(closing, abs=1e-9)
+    simple = found["restitution max_height"]
+    assert found["errors max_height"] == pytest.approx(max(height, highest) / simple - 1, abs=1e-9)
+
+
+def test_a_position_outside_of_the_range_is_said(seen):
+    found = seen[f"telephone {OUTSIDE}"]
+    amplitude = 0.75e-3 * (60 * math.pi) ** 2 / 9.80665
+    node = math.pi * (1 - 0.8) / (1 + 0.8)
+    doubling = math.hypot(node, 2 * (1 + 0.8**2) / (1 + 0.8) ** 2)
+    place = (amplitude - node) / (doubling - node)
+    assert f"Position of Λ: {place:.3g}," in found["position"]
+    assert "Outside of 0 to 1" in found["position"]
+    assert found["values"]["restitution is_stable"] is not True
+
+
+def test_a_contact_that_no_damping_has_is_refused(seen):
+    assert "e⁻²" in seen["refused"]["refused"]
+    assert seen["refused"]["verdict"] == ""
 
 
 def test_a_wrong_number_is_reported_at_the_top(seen):

@@ -65,11 +65,18 @@ function solver([a, b, c]) {
   return (s, t, v) => [0, 1, 2].map(k => (s * bc[k] + t * ca[k] + v * ab[k]) * inverse);
 }
 
-// ---- The contact: ϖ, ζ < 1 with the r of Eq. 16, and sin α = κϖ/2 of the release rule.
-function contactOf(r, omega, release) {
-  const decrement = -Math.log(r) + 0, zeta = decrement / Math.hypot(Math.PI, decrement);
-  return {omega, zeta, release, sine: release === "force" ? zeta : 0};
+// ---- The contact: ϖ, ζ < 1, and sin α = κϖ/2 of the release rule.
+const contactWith = (zeta, omega, release) =>
+  ({omega, zeta, release, sine: release === "force" ? zeta : 0});
+// ζ with which a free impact has r: by Eq. 16 if it ends at δ = 0, and if it ends where its force is
+// zero the root of r = exp[-ζ(π - 2 arcsin ζ)/√(1 - ζ²)], which is below 1 for r > e⁻² only.
+function dampingOf(r, release) {
+  const decrement = -Math.log(r) + 0;
+  if (release !== "force") return decrement / Math.hypot(Math.PI, decrement);
+  const surplus = zeta => 2 * zeta * Math.acos(zeta) / Math.sqrt((1 - zeta) * (1 + zeta)) - decrement;
+  return decrement < 2 ? rootOf(surplus, 0, 1 - Number.EPSILON) : NaN;
 }
+const contactOf = (r, omega, release) => contactWith(dampingOf(r, release), omega, release);
 // The angle at which a free contact ends: Release.free_angle.
 const freeAngle = contact => 2 * Math.acos(contact.sine);
 const dampedFrequency = contact =>
@@ -431,10 +438,8 @@ function sampledAdmissible(orbit, samples = 600) {
 // The paper's error of a simple model (Eqs. 37 and 38): negative where the simple model has too much.
 const relativeError = (exact, simple) => (exact - simple) / simple;
 
-// All that the page shows of one state: of a contact, or of r and ϖ.
-function answer({
-  r, omega, amplitude, n, release, side = "stable", contact = contactOf(r, omega, release),
-}) {
+// All that the page shows of one state.
+function answer({contact, amplitude, n, side = "stable"}) {
   const own = ownRestitution(contact), signature = signatureOf(contact);
   const models = [contactModel(contact), restitutionModel(own), correctedModel(signature)];
   const orbits = models.map(model => model.orbit(n, amplitude, side));
@@ -465,7 +470,9 @@ function compareRows({names, rows}, again) {
 function orbitAgain({
   release, restitution: r, frequency_ratio: omega, n, amplitude, third_harmonic: h, third_phase: p,
 }) {
-  const {orbits, limits, signature} = answer({r, omega, amplitude, n, release});
+  // The dataset names a contact by the r that Eq. 16 gives, whatever ends it.
+  const contact = contactWith(dampingOf(r, "displacement"), omega, release);
+  const {orbits, limits, signature} = answer({contact, amplitude, n});
   const [exact, simple, corrected] = orbits, middle = exact.state(exact.contact_duration / 2);
   const {phase, contact_duration, impact_velocity, bounce_velocity, apparent_restitution, max_height,
     trace, determinant} = exact;

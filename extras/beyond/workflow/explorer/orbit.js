@@ -114,11 +114,11 @@ function drawMultipliers(found) {
 }
 
 // The shift of the period doubling over r, on a sine and with a third harmonic of the table.
-function drawWaveform(found, {r, n, omega, release, harmonic}) {
+function drawWaveform(found, {n, contact: {omega, release}, harmonic}) {
   const coefficient = (x, wave) =>
     omega * doublingLaw(signatureOf(contactOf(x, omega, release)), n, wave);
-  // The sign changes at large r, where shifts are much smaller.
-  const least = r < 0.5 ? 0.05 : 0.5;
+  // The sign changes at large r, where shifts are much smaller. Without force r is above e⁻² = 0.135.
+  const r = found.own, least = r >= 0.5 ? 0.5 : release === "force" ? 0.14 : 0.05;
   const lines = [{h: 0, p: 0}, harmonic].map(wave => Array.from({length: 101}, (_, k) => {
     const x = least + (1 - least) * k / 100;
     return [x, coefficient(x, wave)];
@@ -198,7 +198,7 @@ function fillTables(found, question) {
 }
 
 // Lengths, times and forces of the physical tab: words, value, unit and name.
-function physical(found, state, {mass, time, length, stiffness, damping}) {
+function physical(found, {amplitude, physical: {mass, time, length, stiffness, damping}}) {
   const orbit = found.orbits[0], {omega, zeta} = found.contact, weight = mass * GRAVITY;
   const start = freeAngle(found.contact) / dampedFrequency(found.contact) * time;
   const {depth, force} = loadsOf(orbit);
@@ -207,7 +207,8 @@ function physical(found, state, {mass, time, length, stiffness, damping}) {
     ["stiffness k", stiffness, "N/m", "stiffness"], ["damping c", damping, "N s/m", "damping"],
     ["natural frequency ω", omega / time, "rad/s"],
     ["restitution of a free impact", found.own, "", "measured_restitution"],
-    ["amplitude of the table", state.acc * length, "m"],
+    ["acceleration of the table Λ", amplitude, "", "amplitude"],
+    ["stroke of the table", 2 * amplitude * length, "m", "stroke"],
     ["contact time, free", start, "s", "contact_time"],
     ["largest time step, a fiftieth of it", start / 50, "s", "largest"],
     ["static deflection", weight / stiffness, "m", "static_deflection"],
@@ -234,8 +235,24 @@ function loadsOf(orbit) {
   return {depth, force};
 }
 
+// The position of Λ on the range of stable n-T orbits of the restitution model, and what to ask outside.
+function positionOf(found, {n, amplitude}) {
+  const [exact] = found.orbits, simple = found.models[1], orbit = `${n}-T orbit`;
+  const place = k => (amplitude - simple.saddleNode(k)) / (simple.periodDoubling(k) - simple.saddleNode(k));
+  const isInside = k => place(k) >= 0 && place(k) <= 1;
+  const says = `Position of Λ: ${shown(place(n), 3)}, where 0 is the saddle-node of the restitution model, `
+    + `Λ = ${shown(simple.saddleNode(n), 4)}, and 1 its period doubling, Λ = ${shown(simple.periodDoubling(n), 4)}.`;
+  if (isInside(n)) return says;
+  const contact = exact.exists ? `has one, and it is ${exact.is_stable ? "stable" : "unstable"}` : "has none";
+  const others = Array.from({length: RANGES.n[1]}, (_, k) => k + 1).filter(isInside);
+  return `${says} Outside of 0 to 1 the restitution model has no stable ${orbit}: ${place(n) < 0 ? "none exists"
+    : "its period has doubled"}. The contact ${contact}. Then ask for another n: at this Λ the restitution model has `
+    + `${others.length ? `stable orbits for n = ${others.join(", ")}` : `no stable orbit with n up to ${RANGES.n[1]}`}. `
+    + "Or ask on which motion a ball ends: the shares of balls with other starts are below, and the tab Stage follows balls.";
+}
+
 // What the reader should know of the contact besides.
-function notesOf(found, {n}) {
+function notesOf(found, {n, physical: {time}}, state) {
   const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
   const admissible = sampledAdmissible(orbit);
   return [
@@ -243,9 +260,19 @@ function notesOf(found, {n}) {
       : orbit.is_stable && admissible ? [] : [`the ${name} is `
         + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
     ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
-    ...release === "displacement" && zeta > 0
-      ? ["before its release at δ = 0 the contact pulls the ball; a contact that cannot pull has the r of a release "
-        + "without force"] : []];
+    ...release === "displacement" && zeta > 0 ? [otherRelease(found, state, time)] : []];
+}
+
+// What this r and this contact would be if the contact ended as a measured one does.
+function otherRelease(found, state, time) {
+  const without = {...state, release: "force"}, {own, contact} = found;
+  const start = "before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero";
+  if (Number.isNaN(dampingOf(own, "force"))) return `${start}, which no linear contact with this r and ζ below 1 does`;
+  const ratio = frequencyRatioOf(without);
+  return `${start}: with that release ` + (state.touch === "time"
+    ? `this contact time and this r have ϖ = ${shown(ratio, 4)} in place of ${shown(contact.omega, 4)}`
+    : `this stiffness and this r have a contact time of ${prefixed(freeTime(without) / contact.omega * time, "s")} `
+      + `in place of ${prefixed(freeTime(state) / contact.omega * time, "s")}`);
 }
 
 // ---- The animation: it starts by its button alone.

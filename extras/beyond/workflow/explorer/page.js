@@ -6,9 +6,11 @@
 const BOUND = Number(document.body.dataset.bound);
 
 // ---- The page.
-const SELECTS = ["model", "pace", "view", "units"];
+const SELECTS = ["model", "pace", "view", "units", "moves", "touch"];
+// Choices that give the same case otherwise.
+const LIKEWISE = ["tab", "moves", "touch"];
 // Values whose sliders are logarithmic.
-const LOGARITHMIC = ["w", "k"];
+const LOGARITHMIC = ["w", "k", "stroke", "time"];
 let current = DEFAULTS;
 // A state without an answer: why, and nothing of the answer before it.
 function refuse(text) {
@@ -16,7 +18,7 @@ function refuse(text) {
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "definition", "starts", "call"]) $(id).textContent = "";
+  for (const id of ["verdict", "definition", "position", "starts", "call"]) $(id).textContent = "";
   play(false);
 }
 
@@ -38,6 +40,8 @@ function show(hash, kept = DEFAULTS) {
   const {state, refused} = parse(hash, kept), why = impossible(state);
   current = state;
   for (const [name, value] of Object.entries(state)) setControl(name, value);
+  for (const control of document.querySelectorAll("[data-given]"))
+    control.hidden = !givenOf({...state, tab: "design"}).includes(control.dataset.given);
   for (const tab of CHOICES.tab) {
     const on = tab === state.tab;
     $(`tab-${tab}`).setAttribute("aria-selected", on);
@@ -45,7 +49,7 @@ function show(hash, kept = DEFAULTS) {
     $(`panel-${tab}`).hidden = !on;
   }
   const onStage = state.tab === "stage";
-  for (const id of ["starts", "definition"]) $(id).hidden = onStage;
+  for (const id of ["starts", "definition", "position"]) $(id).hidden = onStage;
   $("sides").hidden = state.tab === "design";
   $("waveform-view").hidden = state.tab !== "orbit";
   $("design-answer").hidden = state.tab !== "design";
@@ -67,6 +71,7 @@ function show(hash, kept = DEFAULTS) {
   const question = questionOf(state), found = answer(question), verdict = verdictOf(found, question);
   say(verdict);
   $("definition").textContent = verdict[2] ?? "";
+  $("position").textContent = positionOf(found, question);
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
     const ends = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
@@ -80,17 +85,16 @@ function show(hash, kept = DEFAULTS) {
   counting = setTimeout(() => count(), PATIENCE);
   fillTables(found, question);
   if (state.tab === "design") {
-    $("design-rows").replaceChildren(...physical(found, state, question.physical).map(
+    $("design-rows").replaceChildren(...physical(found, question).map(
       ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
-    $("notes").replaceChildren(...notesOf(found, question).map(note => {
+    $("notes").replaceChildren(...notesOf(found, question, state).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;
       return item;
     }));
   }
-  const moves = question.physical && question.amplitude * question.physical.length;
-  $("table-moves").textContent = question.physical
-    ? `The table moves by ${prefixed(moves, "m", 3)} up and down.` : "";
+  $("table-moves").textContent = question.physical ? "Stroke of the table, from its lowest to its highest point: "
+    + `${prefixed(2 * question.amplitude * question.physical.length, "m", 3)}.` : "";
   drawOrbit = () => {
     drawBranch(found, question);
     drawMotion(found, question);
@@ -131,7 +135,8 @@ function setControl(name, value) {
 }
 
 function change(name, value) {
-  const next = name === "tab" ? onTab(current, value) : {...current, [name]: value}, hash = hashOf(next);
+  const next = LIKEWISE.includes(name) ? likewise(current, {[name]: value}) : {...current, [name]: value};
+  const hash = hashOf(next);
   history.replaceState(null, "", hash);
   show(hash, next);
 }

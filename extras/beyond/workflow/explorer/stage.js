@@ -61,7 +61,7 @@ function showStage(state) {
   const performers = ends.flatMap(({name, model}) =>
     Array.from({length: balls}, (_, k) => new Performer(name, model, state, k)));
   const first = Math.max(...performers.map(({offset}) => offset)), begin = first + state.from * TURN;
-  stage = {state, ends, performers, first, begin, now: begin, fastest: 1e-9, draw: null};
+  stage = {state, ends, performers, first, begin, now: begin, draw: null};
   drawAround();
 }
 
@@ -128,14 +128,13 @@ function gapsOf(state) {
   return [low - room, high + room];
 }
 
-// All that is seen and heard, at a time; later ones come after earlier ones.
-function place(now, loud = false) {
+// All that is seen at a time; later ones come after earlier ones.
+function place(now) {
   const {performers, state} = stage, before = stage.now;
   performers.forEach(ball => {
     ball.until(now);
     const struck = ball.impacts(before, now);
     if (struck.length && stage.lights) stage.lights(ball, struck.at(-1));
-    if (loud) knock(ball.name, Math.max(0, ...struck.map(({u}) => -u)) / (1 + state.a));
   });
   stage.now = now;
   stage.draw(now);
@@ -192,7 +191,7 @@ function beat(at) {
   // The first frame may have begun before the button was pressed.
   const passed = Math.min(Math.max(at - playing, 0) / 1000, 0.1);
   playing = at;
-  place(stage.now + passed * TURN / SECONDS / Number(stage.state.pace), true);
+  place(stage.now + passed * TURN / SECONDS / Number(stage.state.pace));
   requestAnimationFrame(beat);
 }
 function play(on) {
@@ -205,7 +204,6 @@ $("stage-play").addEventListener("click", () => play(playing === null));
 $("stage-step").addEventListener("click", () => {
   play(false);
   const next = Math.min(...stage.performers.map(ball => ball.next()));
-  place(Number.isFinite(next) ? next : stage.now + TURN, true);
+  place(Number.isFinite(next) ? next : stage.now + TURN);
 });
 $("stage-again").addEventListener("click", () => showStage(stage.state));
-$("stage-sound").addEventListener("change", () => switchSound($("stage-sound").checked));

@@ -7,13 +7,14 @@ const $ = id => document.getElementById(id);
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
   tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, h: 1, p: -0.87, release: "displacement", side: "stable",
-  m: 20, f: 20, acc: 0.8, k: 1e5, t: 1,
+  m: 20, f: 20, moves: "acceleration", acc: 0.8, stroke: 1, touch: "stiffness", k: 1e5, time: 1.4, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
   units: "physical",
 };
 const RANGES = {
   r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20], h: [0, 2], p: [-10, 10],
-  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], k: [1e-9, 1e18], t: [1e-4, 99],
+  m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], stroke: [1e-9, 1e9], k: [1e-9, 1e18],
+  time: [1e-9, 1e9], t: [1e-4, 99],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
 };
 const WHOLE = ["n", "balls", "from"];
@@ -27,6 +28,9 @@ const CHOICES = {
   model: ["both", "restitution", "spring-damper"], pace: ["1", "4", "16"], view: ["height", "gap"],
   units: ["physical", "dimensionless"],
 };
+// The values of the physical tab by which the table and the contact may be given: an address has one
+// of each.
+const WAYS = {moves: {acceleration: "acc", stroke: "stroke"}, touch: {stiffness: "k", time: "time"}};
 const GRAVITY = 9.80665;
 
 // The models whose balls are on the stage.
@@ -46,6 +50,11 @@ function parse(hash, kept = DEFAULTS) {
   if (given.has("scene") && !scene)
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
   given.delete("scene");
+  for (const [choice, names] of Object.entries(WAYS)) {
+    const found = Object.keys(names).filter(way => given.has(names[way]));
+    if (found.length) state[choice] = found.at(-1);
+    if (found.length > 1) refused.push(`${names[found[0]]} beside ${names[found[1]]}`);
+  }
   for (const [name, text] of given) {
     const value = Number(text), range = rangeOf(name, tab);
     if (name in CHOICES ? CHOICES[name].includes(text)
@@ -60,43 +69,72 @@ function parse(hash, kept = DEFAULTS) {
   return {state, refused};
 }
 
-// ϖ = √(k/m)/Ω of a mass in g, a frequency in Hz and a stiffness in N/m, and the stiffness of a ϖ.
-const frequencyRatioOf = ({m, f, k}) => Math.sqrt(k / (m / 1000)) / (2 * Math.PI * f);
-const stiffnessOf = ({m, f, w}) => m / 1000 * (2 * Math.PI * f * w) ** 2;
-
-// The same case on another tab: ϖ and Λ become a stiffness and an acceleration, for the mass and the
-// frequency that there were, and back. A value that belongs to the case already keeps its digits.
-function onTab(state, tab) {
-  if (tab === "design" && state.tab !== "design")
-    return {...state, tab, acc: state.a, k: frequencyRatioOf(state) === state.w ? state.k : stiffnessOf(state)};
-  if (tab !== "design" && state.tab === "design")
-    return {...state, tab, a: state.acc, w: stiffnessOf(state) === state.k ? state.w : frequencyRatioOf(state)};
-  return {...state, tab};
-}
-
 // The units of time, 1/Ω in s, and of length, g/Ω² in m, of a table of f Hz.
 function scalesOf(f) {
   const time = 1 / (2 * Math.PI * f);
   return {time, length: GRAVITY * time ** 2};
 }
 
-// The contact of the physical tab in SI units, and its dimensionless groups.
-function caseOf(state) {
-  const {release, r, m, k, f} = state, {time, length} = scalesOf(f);
-  const mass = m / 1000;
-  const contact = contactOf(r, frequencyRatioOf(state), release);
-  return {mass, time, length, stiffness: k, damping: 2 * contact.zeta * Math.sqrt(k * mass), contact};
+// The duration of a free impact over the unit of time, for ϖ = 1: π/√(1 - ζ²), and if it ends where its
+// force is zero (π - 2 arcsin ζ)/√(1 - ζ²).
+const freeTime = ({r, release}) => {
+  const contact = contactOf(r, 1, release);
+  return freeAngle(contact) / dampedFrequency(contact);
+};
+
+// Λ and ϖ. On the physical tab a stroke, from the lowest to the highest point of the table, is in mm,
+// a contact time in ms and a mass in g.
+const amplitudeOf = ({tab, moves, a, acc, stroke, f}) => tab !== "design" ? a
+  : moves === "stroke" ? stroke / 2000 / scalesOf(f).length : acc;
+function frequencyRatioOf(state) {
+  const {tab, touch, w, k, m, f} = state, {time} = scalesOf(f);
+  if (tab !== "design") return w;
+  return touch === "time" ? freeTime(state) * time / (state.time / 1000) : Math.sqrt(k / (m / 1000)) * time;
 }
 
-// The longest contact, in s, of the physical tab.
-const LONGEST = 1000;
-// Why a state has no answer: a contact that is too long, or a ball that rises.
+// The values of a tab that give its Λ and its ϖ.
+const givenOf = ({tab, moves, touch}) => tab === "design" ? [WAYS.moves[moves], WAYS.touch[touch]] : ["a", "w"];
+// The inverse of `amplitudeOf` and `frequencyRatioOf`, by the values that may be given.
+function givenBy(a, w, state) {
+  const {m, f} = state, {time, length} = scalesOf(f);
+  return {a, w, acc: a, stroke: 2000 * a * length, k: m / 1000 * (w / time) ** 2,
+    time: 1000 * freeTime(state) * time / w};
+}
+
+// The same case on another tab, or given by other values. A value that belongs to the case already
+// keeps its digits.
+function likewise(state, changed) {
+  const next = {...state, ...changed}, [table, contact] = givenOf(next);
+  const a = amplitudeOf(state), w = frequencyRatioOf(state), given = givenBy(a, w, next);
+  const differs = (found, wanted) => Math.abs(found - wanted) > 1e-12 * wanted;
+  if (differs(amplitudeOf(next), a)) next[table] = given[table];
+  if (differs(frequencyRatioOf(next), w)) next[contact] = given[contact];
+  return next;
+}
+
+// The contact of the physical tab in SI units, and its dimensionless groups.
+function caseOf(state) {
+  const {release, r, m, f} = state, {time, length} = scalesOf(f), mass = m / 1000;
+  const contact = contactOf(r, frequencyRatioOf(state), release), {omega, zeta} = contact;
+  return {mass, time, length, stiffness: mass * (omega / time) ** 2, damping: 2 * zeta * mass * omega / time,
+    contact};
+}
+
+// Why a state has no answer: no damping gives r, Λ or ϖ is out of range, or a ball rises.
 function impossible(state) {
-  const {tab, a, r, w, phi, v, dv, dphi} = state;
+  const {tab, a, r, w, phi, v, dv, dphi, release} = state;
+  if (tab !== "stage" && Number.isNaN(dampingOf(r, release)))
+    return `r = ${r} is not above e⁻² = ${shown(Math.exp(-2), 3)}: a contact that ends where its force is zero `
+      + "then needs a damping ratio of 1 or more, which this page has not. Choose the end at δ = 0.";
   if (tab === "design") {
-    const {contact, time} = caseOf(state), duration = freeAngle(contact) / dampedFrequency(contact) * time;
-    return duration > LONGEST ? `a contact of ${prefixed(duration, "s")} is longer than any that is simulated, `
-      + `up to ${LONGEST} s: check the mass, the stiffness and their units` : "";
+    const outside = (value, [low, high]) => !(value >= low && value <= high);
+    const large = amplitudeOf(state), ratio = frequencyRatioOf(state), limits = ([low, high]) => `${low} to ${high}`;
+    if (outside(large, RANGES.a))
+      return `The acceleration of the table is Λ = ${shown(large, 4)} g, and this page takes ${limits(RANGES.a)}: `
+        + "check the stroke, the frequency and their units.";
+    return outside(ratio, RANGES.w) ? `The frequency ratio is ϖ = ${shown(ratio, 4)}, and this page takes `
+      + `${limits(RANGES.w)}: check ${state.touch === "time" ? "the contact time" : "the mass, the stiffness"} `
+      + "and the frequency, and their units." : "";
   }
   if (tab !== "stage") return "";
   if (r === 1 && w === 1 && state.model !== "restitution")
@@ -113,36 +151,42 @@ function impossible(state) {
 const TABS = {
   orbit: state => ["tab", "r", "w", "a", "n", "release", "side",
     ...["t", "h", "p"].filter(name => state[name] !== DEFAULTS[name])],
-  design: ({t}) => ["tab", "m", "f", "acc", "k", "r", "n", "release", ...(t === DEFAULTS.t ? [] : ["t"])],
+  design: state => ["tab", "m", "f", ...givenOf(state), "r", "n", "release",
+    ...(state.t === DEFAULTS.t ? [] : ["t"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
     "v", "balls", "dv", "dphi", "from", "pace", "view", "units", "f"],
 };
 const hashOf = state => "#" + TABS[state.tab](state).map(
   name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 
-// The arguments of the models: of the physical tab, its dimensionless groups.
+// The arguments of the models: of the physical tab, its dimensionless groups. The tolerance and the
+// third harmonic are given in percent.
 function questionOf(state) {
-  const {r, n, release, side} = state;
-  // The tolerance and the third harmonic are given in percent.
-  if (state.tab === "orbit")
-    return {r, n, release, side, omega: state.w, amplitude: state.a, tolerance: state.t / 100,
+  const {tab, r, n, release, side} = state, amplitude = amplitudeOf(state), tolerance = state.t / 100;
+  if (tab === "orbit")
+    return {n, side, amplitude, tolerance, contact: contactOf(r, state.w, release),
       harmonic: {h: state.h / 100, p: state.p}};
-  const one = caseOf(state);
   // The orbit is that which is stable next to the saddle-node.
-  return {n, side: "stable", amplitude: state.acc, contact: one.contact, physical: one,
-    tolerance: state.t / 100};
+  const physical = caseOf(state);
+  return {n, side: "stable", amplitude, tolerance, contact: physical.contact, physical};
 }
 
+// The call in Python. A release without force is asked for by the damping ratio that has this r.
 function callOf(state) {
-  const {r, n, a} = state;
-  const spring = `SpringDamper(${state.w}, restitution=${r}, release="${state.release}")`;
-  if (state.tab === "stage") {
+  const {tab, r, n, release, side} = state;
+  if (tab === "stage") {
     const balls = {restitution: `Rigid(${r})`, "spring-damper": `SpringDamper(${state.w}, restitution=${r})`};
-    return Object.keys(modelsOf(state)).map(model =>
-      `motion_of(${balls[model]}, amplitude=${a}, phase=${state.phi}, velocity=${state.v})`).join("\n");
+    return Object.keys(modelsOf(state)).map(model => `motion_of(${balls[model]}, amplitude=${state.a}, `
+      + `phase=${state.phi}, velocity=${state.v})`).join("\n");
   }
-  if (state.tab === "orbit")
-    return `orbit(${spring}, amplitude=${a}, n=${n}, side="${state.side}")`;
-  return `on_shaker(mass=${state.m} / 1000, frequency=${state.f}, acceleration=${state.acc} * 9.80665, `
-    + `stiffness=${state.k}, restitution=${r}, n=${n}, tolerance=${state.t} / 100)`;
+  if (tab === "orbit" || release === "force") {
+    const loss = release === "force" ? `damping_ratio=${dampingOf(r, release)}, release="force"` : `restitution=${r}`;
+    return `orbit(SpringDamper(${frequencyRatioOf(state)}, ${loss}), amplitude=${amplitudeOf(state)}, n=${n}, `
+      + `side="${tab === "orbit" ? side : "stable"}")`;
+  }
+  const table = state.moves === "stroke" ? `displacement=${state.stroke} / 2000`
+    : `acceleration=${state.acc} * 9.80665`;
+  const contact = state.touch === "time" ? `contact_duration=${state.time} / 1000`
+    : `mass=${state.m} / 1000, stiffness=${state.k}`;
+  return `on_shaker(frequency=${state.f}, ${table}, ${contact}, restitution=${r}, n=${n}, tolerance=${state.t} / 100)`;
 }

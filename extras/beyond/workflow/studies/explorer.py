@@ -15,7 +15,7 @@ import xarray as xr
 
 FOLDER = Path(__file__).parents[1] / "explorer"
 
-SCRIPTS = "model simulation starts plot state orbit sound stage page".split()
+SCRIPTS = "model simulation starts plot state orbit stage page".split()
 """The scripts in the order in which the page has them."""
 
 FILES = sorted(FOLDER.iterdir())

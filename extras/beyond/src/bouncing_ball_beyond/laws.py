@@ -28,6 +28,7 @@ from bouncing_ball_beyond.balls import (
     checked,
     slopes_at_release,
 )
+from bouncing_ball_beyond.judge import FIRST_LOAD, FIRST_SPEED, MARGIN, check_force, judge
 from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
@@ -71,18 +72,6 @@ NEAREST = 1e-9
 """Smallest relative distance from a pole of the force. Half of the digits of the force are lost
 there: a ball that comes nearer is not computed. At half and at twice: no effect."""
 
-USUAL_SPEED, USUAL_LOAD = 8.0, 4.0
-"""Closing speed and load up to which a new law is judged. Others are judged when they occur.
-
-At half and at twice: the same 36 laws are accepted.
-"""
-
-MARGIN = 1.5
-"""Speed and load for which a law is judged, divided by the largest that occur.
-
-At half and at twice: the same 36 laws are accepted.
-"""
-
 FIRST_PANEL = 0.4
 """Length of the first panel of a contact, in units of P^{1/m}/u, where P is the `depth`.
 
@@ -112,30 +101,6 @@ ALIKE = 1e-11
 
 At half and at twice: no effect.
 """
-
-PARTS, TO_KINK, TO_JUMP, MOST_SEGMENTS = 32, 2, 8, 4000
-"""Number of parts into which segments of the check are divided again and again, numbers of
-divisions after which a part contains a kink or a jump, and maximum number of parts.
-
-A smooth step as narrow as 1/1000 of a segment is accepted. After 8 divisions, the change of the
-force at a kink is a rounding error. If there are more parts, the force is not analytic.
-
-At half and at twice: the same 36 laws are accepted.
-"""
-
-SMALLEST_JUMP = 1e-6
-"""Smallest jump of the force that is refused, divided by the force.
-
-Square roots change by 1e-7 of the force on the shortest parts of segments.
-"""
-
-NARROW = 10.0
-"""Ratio of the change of the force to the force on the whole segment above which the change is a
-pole. A jump changes the force on the whole segment. At half and at twice: no effect."""
-
-FOUR, WEIGHTS_OF_FOUR = (each / 2 for each in legendre.leggauss(4))
-FOUR = FOUR + 0.5
-"""Gauss nodes and weights on [0, 1] for the check of derivatives."""
 
 SHIFTS = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0])
 WEIGHTS = np.array([-1.0, 9.0, -45.0, 45.0, -9.0, 1.0]) / 60
@@ -590,11 +555,10 @@ class ForceLaw(Ball):
         missed = np.isnan(self.depth(u)) & (u < np.inf)
         if np.any(missed):
             p, energy = self._energies
-            near = f" without coming nearer to a pole than {NEAREST:g} of its depth"
             raise ValueError(
                 "force: without damping, f(p, 0) stops balls with closing speeds up to"
-                f" {np.sqrt(2 * energy.max()):.3g}{near if np.all(p[-1] == p[-2]) else ''}, but"
-                f" this ball has {np.max(u, where=missed, initial=0.0):.4g}"
+                f" {np.sqrt(2 * energy.max()):.3g} (followed to the depth {p.max():.3g}), but this"
+                f" ball has {np.max(u, where=missed, initial=0.0):.4g}"
             )
 
     @cached_property
@@ -729,21 +693,29 @@ class ForceLaw(Ball):
         return rows, motion, np.array([q, given["u"]]), by
 
     def _judge(self, given: Mapping, table: Table) -> None:
-        """Check the force for faster impacts and larger loads than before."""
+        """Judge the force for faster impacts and larger loads than before."""
         u = np.abs(given["u"])
         load = 1 + np.max(np.abs(given["amplitude"]) * np.max(table.bounds[2]), initial=0.0)
-        here = np.max(u, where=np.isfinite(u), initial=0.0), load if np.isfinite(load) else 0.0
+        here = {
+            "speed": float(np.max(u, where=np.isfinite(u), initial=0.0)),
+            "load": float(load) if np.isfinite(load) else 0.0,
+        }
         judged = self._origin._judged
-        if here[0] > judged["speed"] or here[1] > judged["load"]:
-            # A range is judged once, although speeds grow little by little.
-            judged["speed"] = max(judged["speed"], MARGIN * here[0])
-            judged["load"] = max(judged["load"], MARGIN * here[1])
-            _check_one(self._origin, judged["speed"], judged["load"])
+        faster = {name: MARGIN * x for name, x in here.items() if x > judged[name]}
+        if faster:
+            before = {**judged}
+            # The free impacts of the judge are in the new range.
+            judged.update(faster)
+            try:
+                judge(self._origin, **judged)
+            except ValueError:
+                judged.update(before)
+                raise
 
     @cached_property
     def _judged(self) -> dict[str, float]:
-        """Largest speed and load for which the force was checked."""
-        return {"speed": MARGIN * USUAL_SPEED, "load": MARGIN * USUAL_LOAD}
+        """Largest speed and load for which the force was judged."""
+        return {"speed": FIRST_SPEED, "load": FIRST_LOAD}
 
     def _guessed(self, rows: Rows) -> Guess | None:
         """Return free impacts as a guess of contacts with a known end; None if the guess is bad."""
@@ -801,219 +773,3 @@ def _rows_at(table: NDArray, index: NDArray) -> NDArray:
         return table[index]
     table = np.broadcast_to(table, (len(table), *index.shape))
     return np.take_along_axis(table, index[np.newaxis], axis=0)[0]
-
-
-def check_force(law: ForceLaw) -> None:
-    """Raise ValueError unless the force meets the requirements of :class:`ForceLaw`.
-
-    The force is sampled along lines of constant rate and of constant depth. Complex steps give its
-    derivative. The integral of the derivative must equal the change of the force between
-    neighbouring samples. In a row of balls, the balls with an extreme value of a parameter are
-    checked.
-    """
-    # The entry without a name serves forces without parameters.
-    arrays = broadcast_named([*law.values.items(), ("", 0.0)])
-    rows = np.stack([np.ravel(np.real(x)) for x in arrays], axis=-1)
-    for row in np.unique(np.concatenate([rows.argmin(axis=0), rows.argmax(axis=0)])):
-        one = law.at(**dict(zip(law.values, rows[row, :-1], strict=True)))
-        _check_call(one)
-        _check_one(one, **one._judged)
-
-
-def _check_one(law: ForceLaw, speed: float, load: float) -> None:
-    """Check a force where a ball can be whose energy is that of a closing speed under a load."""
-    energies = law._energies[1]
-    if energies.max() < LOWEST:
-        raise ValueError(
-            "force: stops no ball; f(p, 0) must be positive at positive p: check its sign"
-        )
-    law.check_stops(1.0)
-    given = {**law.values, "u": 1.0}
-    speed = min(speed, 0.999 * np.sqrt(2 * energies.max()))
-    with np.errstate(all="ignore"):
-        rates = speed * np.array([[-0.63], [-0.13], [0.1], [0.57]])
-        speeds = np.sqrt(speed**2 - rates**2) * np.geomspace(1e-3, 1.0, 121)
-        # Next to a wall, the depths of equal ratios of the speed are close to each other.
-        deepest = np.fmax(law.depth(speeds[:, -1:]), law.depth(speeds[:, -1:], load))
-        depths = np.hstack([deepest * np.geomspace(1e-3, 1.0, 121), law.depth(speeds)])
-        along_p = np.broadcast_arrays(np.sort(depths), rates, 1.0)
-        speeds = speed * np.array([[0.03], [0.3], [0.7], [0.95]])
-        rates = np.sqrt(speed**2 - speeds**2) * np.linspace(-1.001, 1.0, 241)
-        loaded = np.fmax(law.depth(speeds[2:]), law.depth(speeds[2:], load))
-        depths = np.concatenate([law.depth(speeds[:2]), loaded])
-        along_v = np.broadcast_arrays(depths, rates, 1.0)
-        _check_lines(law, given, "p", np.array(along_p))
-        _check_lines(law, given, "v", np.array(along_v))
-        if "load" in law.needs:
-            along_load = np.broadcast_arrays(
-                depths, 0.3 * speed, load * np.linspace(-1, 1.001, 241)
-            )
-            _check_lines(law, given, "load", np.array(along_load))
-        _check_root(law, given, law.depth(1.0))
-        _check_losses(law, given, np.array(along_v))
-        if law.release == "force" and np.any(_force(law, given, np.array(along_v)) == 0):
-            raise ValueError(
-                "force: is zero on a part of the contact, but release='force' ends it where the"
-                " force changes its sign: write the force without this limit"
-            )
-
-
-def _check_losses(law: ForceLaw, given: Mapping, points: NDArray) -> None:
-    """Raise ValueError if the force adds energy to free impacts.
-
-    A force that opposes the rate everywhere cannot. Of other forces, free impacts are computed.
-    """
-    p, v, load = points
-    damping = _force(law, given, points) - law.force_at(p, 0 * v, load, given)
-    if np.all(damping * v >= -ALIKE * np.abs(v) * (1 + np.abs(damping))):
-        return
-    speeds = np.array([0.5, 1.0, 2.0])
-    speeds = speeds[~np.isnan(law.depth(speeds))]
-    r = law._followed(0.0, speeds, 0.0, 0.0)[1].speed / speeds
-    for u, each in zip(speeds, r, strict=True):
-        if each > 1 + 1e-6:
-            raise ValueError(
-                f"force: a ball with the closing speed {u:g} leaves with {each * u:.4g}: check the"
-                " sign of the damping"
-            )
-
-
-def _check_call(law: ForceLaw) -> None:
-    """Raise ValueError unless the force and its kinks accept arrays of complex numbers."""
-    p = np.array([0.5, 1.0]) + 1j * H
-    given = {**law.values, "u": 1.0}
-    kinks = [(f"kinks[{i}]", kink) for i, kink in enumerate(law.kinks)]
-    for name, function in [("force", None), *kinks]:
-        try:
-            with np.errstate(all="ignore"):
-                if function:
-                    value = function(p, p, **law.own(given))
-                else:
-                    value = law.force_at(p, p, 1.0, given)
-        except Exception as error:
-            reason = f"{type(error).__name__}: {error}"
-            raise ValueError(
-                f"{name}: must accept its parameters by name, and arrays of complex numbers: write"
-                " np.where(...) instead of 'if', numpy functions instead of math, and a polynomial"
-                " instead of a table"
-                f" ({reason})"
-            ) from None
-        if not isinstance(value, np.ndarray) or value.shape != p.shape:
-            found = np.shape(value) if isinstance(value, np.ndarray) else type(value).__name__
-            raise ValueError(
-                f"{name}: must return an array of the shape of p and v, {p.shape}, not {found}"
-            )
-
-
-def _force(law: ForceLaw, given: Mapping, point: NDArray) -> NDArray:
-    """Force at points (p, v, load)."""
-    p, v, load = point
-    return law.force_at(p, v, load, given)
-
-
-def _defect(law: ForceLaw, given: Mapping, start: NDArray, end: NDArray) -> tuple:
-    """Change of the force on straight segments, and the integral of its derivative.
-
-    ``start`` and ``end`` are the points (p, v, load) of the segments, shape (3, ...). The
-    derivative along a segment comes from complex steps.
-    """
-    along = (end - start)[..., np.newaxis]
-    inner = start[..., np.newaxis] + along * (FOUR + 1j * H)
-    slopes = _force(law, given, inner.reshape(3, -1)).imag / H
-    expected = slopes.reshape(inner.shape[1:]) @ WEIGHTS_OF_FOUR
-    return _force(law, given, end) - _force(law, given, start), expected
-
-
-def _check_lines(law: ForceLaw, given: Mapping, name: str, points: NDArray) -> None:
-    """Check the force on lines of points (p, v, load), shape (3, lines, points).
-
-    The change of the force on a segment between neighbouring points must be the integral of its
-    derivative. Segments on which it is not are divided again and again. A smooth force then passes,
-    a kink remains until the change of the force is a rounding error, and a jump remains.
-    """
-    segments: Any = np.stack([points[..., :-1], points[..., 1:]]).reshape(2, 3, -1)
-    whole, broken = segments, (segments, segments)
-    for division in range(TO_JUMP + 1):
-        here = segments[0]
-        change, expected = _defect(law, given, *segments)
-        # The quadrature of p^{1/4} between neighbours has a relative error of 1e-11.
-        size = np.abs([_force(law, given, each) for each in whole]).max(axis=0)
-        wrong = np.abs(change - expected) > 1e-5 * np.abs(change) + 1e-11 * size
-        segments, whole = segments[..., wrong], whole[..., wrong]
-        if division <= TO_KINK:
-            broken = whole, segments
-        if not wrong.any():
-            break
-        if segments.shape[2] > MOST_SEGMENTS:
-            width = np.ptp(segments[..., 0], axis=0).max()
-            slopes = change[wrong][0] / width, expected[wrong][0] / width
-            raise ValueError(
-                f"force: is not analytic in {name} at {_where(*segments[0, :, 0])}: its derivative"
-                f" is {slopes[0]:.4g} by a difference and {slopes[1]:.4g} by a complex step; write"
-                " it without abs, real, sign"
-            )
-        ends = np.linspace(segments[0], segments[1], PARTS + 1, axis=-1)
-        segments = np.stack([ends[..., :-1], ends[..., 1:]]).reshape(2, 3, -1)
-        whole = np.repeat(whole, PARTS, axis=2)
-    jumps = np.flatnonzero(wrong & (np.abs(change) > SMALLEST_JUMP * size))
-    if jumps.size:
-        jump = np.abs(change[jumps[0]])
-        if jump > NARROW * size[jumps[0]]:
-            raise ValueError(
-                f"force: tends to infinity near {_where(*here[:, jumps[0]])} in too small a range"
-                " of p: make this pole stronger, or leave it out"
-            )
-        raise ValueError(
-            f"force: jumps by {jump:.3g} near {_where(*here[:, jumps[0]])}, but must be continuous;"
-            " replace the jump by a smooth step, such as (1 + np.tanh(x / width)) / 2 with a small"
-            " width"
-        )
-    _check_kinks(law, given, *broken)
-
-
-def _check_kinks(law: ForceLaw, given: Mapping, whole: NDArray, segments: NDArray) -> None:
-    """Raise ValueError if there is a kink on segments, and the law does not declare it.
-
-    The segments are parts of the ``whole`` segments.
-    """
-    own = law.own(given)
-    declared = np.zeros(segments.shape[2], bool)
-    for kink in law.kinks:
-        side = [np.sign(kink(p, v, **own)) for p, v, _ in segments]
-        declared |= side[0] * side[1] <= 0
-    if declared.all():
-        return
-    k = np.flatnonzero(~declared)[0]
-    remedy = "give kinks=(kink,), where kink(p, v, **values) changes its sign there"
-    if np.any(_force(law, given, whole[..., k].T) == 0):
-        remedy = (
-            "if the contact ends where the force vanishes, write the force without this limit and"
-            ' give release="force"; otherwise ' + remedy
-        )
-    raise ValueError(f"force: has a kink near {_where(*segments[0, :, k])}; {remedy}")
-
-
-def _where(p: float, v: float, load: float) -> str:
-    """Text of a point. Rates are rounded, because those of a kink at v = 0 are not quite zero."""
-    at = f"p = {p:.2g}, v = {round(v, 4) + 0.0:.2g}"
-    return at if load == 1 else f"{at}, load = {round(load, 4) + 0.0:.2g}"
-
-
-def _check_root(law: ForceLaw, given: Mapping, depth: float) -> None:
-    """Raise ValueError unless the force is an analytic function of q = p^{1/m} at q = 0.
-
-    If it is, its Legendre coefficients on a short range of q decay geometrically.
-    """
-    x, _ = legendre.leggauss(24)
-    to_coefficients = np.linalg.inv(legendre.legvander(x, 23))
-
-    def last(root: int) -> float:
-        """Last coefficients, divided by the middle coefficients or by rounding errors."""
-        q = (x + 1) / 2 * (0.01 * depth) ** (1 / root)
-        sizes = np.abs(to_coefficients @ law.force_at(q**root, 0.5 + 0 * q, 1.0, given))
-        return sizes[-4:].max() / max(1e-12 * sizes.max(), 1e-3 * sizes[8:12].max())
-
-    if last(law.root) > 1:
-        others = [m for m in (1, 2, 4, 6, 8) if last(m) <= 0.01]
-        hint = f"; give root={others[0]}" if others else ""
-        raise ValueError(f"force: is not an analytic function of p^(1/{law.root}) at p = 0{hint}")

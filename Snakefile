@@ -104,7 +104,7 @@ MODELS = modules("restitution", "spring_damper", "orbits", "continuation", "erro
 PAPER = modules("paper")
 DRAWING = modules("figures", "drawing", "paper", "datasets")
 JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
-WRITING = JUDGING + modules("article", "pages", "drawing")
+WRITING = JUDGING + modules("article", "origins", "pages", "drawing")
 VARIED = [
     "restitution_model",
     "apparent_restitution",
@@ -121,6 +121,7 @@ TEMPLATES = [
     "article.html",
     "figures.md",
     "figures.html",
+    "numbers.html",
 ]
 
 PICTURES = checkout("workflow/scripts/draw.py") + DRAWING
@@ -369,6 +370,7 @@ rule article:
         supplement="results/supplement.md",
         paper_page="results/paper.html",
         supplement_page="results/supplement.html",
+        numbers="results/numbers.html",
         figures="results/figures/README.md",
         index="results/index.html",
     params:

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from tests.reference import ENTRIES, FIGURES, TOP, reference
 
-from bouncing_ball import article, pages, tables
+from bouncing_ball import article, origins, pages, tables
 from bouncing_ball.claims import judge
 
 CAPTIONS = {name: entry["caption"] for name, entry in ENTRIES.items() if "caption" in entry}
@@ -55,10 +55,13 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def texts(data) -> dict[str, str]:
     """The pages by the names of their files."""
+    marked = {name: article.written(name, data) for name in ("paper", "supplement")}
+    origin = {name: article.origins_of(name, data) for name in marked}
     found = {
-        f"{name}.html": pages.page_of(article.written(name, data), name, CAPTIONS)
-        for name in ("paper", "supplement")
+        f"{name}.html": pages.page_of(text, name, CAPTIONS, origin[name])
+        for name, text in marked.items()
     }
+    found["numbers.html"] = pages.numbers(marked, origin, data)
     return found | {"index.html": pages.filled_in("html", data, ENTRIES)}
 
 
@@ -100,6 +103,19 @@ def test_links_lead_to_pages_and_files_that_exist(read):
                 continue
             assert file in files or (file or name) in read, target
             assert not anchor or anchor in read[file or name].places["id"], target
+
+
+def test_every_computed_number_is_a_link_and_is_listed_once(texts):
+    linked = re.compile(r'<a class="number" href="numbers.html#([\w-]+)"')
+    for name in ("paper", "supplement"):
+        targets = linked.findall(texts[f"{name}.html"])
+        listed = re.findall(rf'<div id="({name}-\d+)">', texts["numbers.html"])
+        assert len(targets) > 200 and {*targets} == {*listed}
+    assert not re.search("[\ue000-\ue002]", "".join(texts.values()))
+    # Code can be copied.
+    assert "\N{NO-BREAK SPACE}" not in "".join(
+        re.findall("<code>.*?</code>", texts["numbers.html"])
+    )
 
 
 # The results
@@ -218,7 +234,7 @@ def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
 
 def test_formulas_are_mathml(texts, data):
     for name in ("paper", "supplement"):
-        text = article.written(name, data)
+        text = origins.bare(article.written(name, data))
         inline = re.findall(r"(?<!\$)\$[^$]+\$(?!\$)", text)
         page = texts[f"{name}.html"]
         assert page.count("<math") >= len(inline) > 0
@@ -250,5 +266,5 @@ def test_citations_and_sections_are_linked(read):
 
 def test_lines_do_not_break_within_a_relation(texts):
     for text in texts.values():
-        body = re.sub(r"(?s)<style>.*?</style>|<[^>]*>", "", text)
+        body = re.sub(r"(?s)<(style|code|pre)>.*?</\1>|<[^>]*>", "", text)
         assert re.findall(r".{8} (?:=|&gt;|≥) ", body) == []

@@ -38,7 +38,8 @@ def made(folder: Path) -> set[str]:
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     files = {f"figures/{path.name}" for path in (ROOT / "figures").iterdir()}
-    texts = {"paper.md", "supplement.md", "index.html", "paper.html", "supplement.html"}
+    pages = {f"{name}.html" for name in ("index", "paper", "supplement", "numbers")}
+    texts = {"paper.md", "supplement.md", *pages}
     results = made(complete.path)
     assert files - {"figures/accepted.json"} | texts <= results
     # A figure that is new is not accepted yet.

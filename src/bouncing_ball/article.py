@@ -5,6 +5,7 @@ article is about the run with the parameters of the paper. For another run, a fe
 differences instead.
 """
 
+import json
 from collections.abc import Iterable
 from decimal import ROUND_HALF_EVEN, Decimal
 from functools import cache, partial
@@ -14,9 +15,10 @@ from typing import Any
 import jinja2
 import numpy as np
 import xarray as xr
+from jinja2.ext import Extension
 from numpy.typing import NDArray
 
-from bouncing_ball import measures, paper, restitution, spring_damper, tables
+from bouncing_ball import measures, origins, paper, restitution, spring_damper, tables
 from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.drawing import share_text
 
@@ -27,7 +29,7 @@ STIFF_CURVES = ("fig05", "fig06", "fig10")
 
 
 @cache
-def environment(templates: Path) -> jinja2.Environment:
+def environment(templates: Path, *extensions: type[Extension]) -> jinja2.Environment:
     """Return the Jinja environment of a folder of templates, with the filters for numbers."""
     found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
@@ -36,23 +38,27 @@ def environment(templates: Path) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        extensions=extensions,
     )
     found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
-    found.filters.update(listed=listed, zip=zip)
+    found.filters.update(listed=listed, zip=zip, mark=origins.mark)
     return found
 
 
-def filled_in(name: str, datasets: Datasets, kind: str = "md", /, **more: Any) -> str:
+def filled_in(
+    name: str, datasets: Datasets, kind: str = "md", *extensions: type[Extension], **more: Any
+) -> str:
     """Fill in a template, in Markdown or HTML.
 
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
     judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
-    template = environment(TEMPLATES).get_template(f"{name}.{kind}.j2")
+    template = environment(TEMPLATES, *extensions).get_template(f"{name}.{kind}.j2")
     return template.render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
         given={key: parameters(data) for key, data in datasets.items()},
+        code={key: next(iter(json.loads(data.attrs["code"]))) for key, data in datasets.items()},
         judged=judged,
         claim={row["claim"]: row for row in judged},
         error_limit=paper.LIMIT,
@@ -62,15 +68,18 @@ def filled_in(name: str, datasets: Datasets, kind: str = "md", /, **more: Any) -
 
 
 def written(name: str, datasets: Datasets) -> str:
-    """Return the article ("paper") or its "supplement".
+    """Return the article ("paper") or its "supplement", with marks around what is computed.
 
-    If the run is not that of the paper, it names the differences instead.
+    `origins.bare` removes the marks. If the run is not that of the paper, the text names the
+    differences instead.
     """
     if differences := unlike_the_paper(datasets):
-        return filled_in("others", datasets, name=name, differences=differences)
+        return filled_in("others", datasets, part=name, differences=differences)
     return filled_in(
         name,
         datasets,
+        "md",
+        origins.Marks,
         stiff_errors=measures.stiff_errors(**{name: datasets[name] for name in STIFF_CURVES}),
         other_contacts=other_contacts(datasets["hypotheses"]),
         others_with_82=others_with_82(datasets["hypotheses"]),
@@ -94,6 +103,12 @@ def unlike_the_paper(datasets: Datasets) -> list[str]:
     claims = datasets["claims"]
     unasked = claims.reason.values[claims.verdict.values == "not asked"]
     return paper.differences(datasets) or list(dict.fromkeys(unasked.tolist()))
+
+
+def origins_of(name: str, datasets: Datasets) -> list[origins.Origin]:
+    """Return the origin of each expression of "paper" or "supplement", in their order."""
+    source = (TEMPLATES / f"{name}.md.j2").read_text("utf-8")
+    return origins.origins(source, datasets)
 
 
 # Numbers as text

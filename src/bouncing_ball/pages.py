@@ -8,6 +8,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from html import escape
 from itertools import pairwise
 
 import xarray as xr
@@ -16,7 +17,7 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from bouncing_ball import article, tables
+from bouncing_ball import article, origins, tables
 from bouncing_ball.claims import CLAIMS
 from bouncing_ball.datasets import Datasets, parameters
 from bouncing_ball.drawing import share_text
@@ -220,11 +221,17 @@ PAGES = {
 """The page for each text; the page of a table or of the claims is a part of index.html."""
 
 
-def page_of(markdown: str, name: str, captions: Mapping[str, str]) -> str:
+def page_of(
+    markdown: str,
+    name: str,
+    captions: Mapping[str, str],
+    origin: Sequence[origins.Origin] = (),
+) -> str:
     """The page of a text in Markdown: "paper" or "supplement".
 
     Formulas become MathML. Links to texts lead to their pages, and citations to the references.
-    `captions` describe the pictures, by the names of figures.
+    What an expression printed leads to its origin on the page of numbers; `origin` has the origins
+    of all expressions. `captions` describe the pictures, by the names of figures.
     """
     tokens = parser().parse(markdown)
     inside = [token for block in tokens for token in (block, *(block.children or ()))]
@@ -242,11 +249,29 @@ def page_of(markdown: str, name: str, captions: Mapping[str, str]) -> str:
     # A formula stays with the punctuation after it.
     inline = r'(<span class="math inline">(?:(?!</span>).)*</span>[.,;:)]+)'
     body = re.sub(inline, r'<span class="whole">\1</span>', body)
+    return framed(with_origins(with_links(body), name, origin), name, contents)
+
+
+def framed(body: str, name: str, contents: Sequence[tuple[str, str]]) -> str:
+    """Return a page of text. `contents` are anchors and texts of its headings, the title first."""
     template = article.environment(article.TEMPLATES).get_template("article.html.j2")
-    page = template.render(
-        name=name, title=contents[0][1], contents=contents[1:], body=with_links(body)
+    return unbroken(
+        template.render(name=name, title=contents[0][1], contents=contents[1:], body=body)
     )
-    return unbroken(page)
+
+
+def with_origins(body: str, name: str, origin: Sequence[origins.Origin]) -> str:
+    """Link what the expressions printed, if they name a dataset."""
+
+    def linked(found: re.Match) -> str:
+        number = int(found[1])
+        text = found[2]
+        if not origin[number].datasets:
+            return text
+        title = escape(origin[number].expression)
+        return f'<a class="number" href="numbers.html#{name}-{number}" title="{title}">{text}</a>'
+
+    return origins.MARK.sub(linked, body)
 
 
 @cache
@@ -258,6 +283,7 @@ def parser() -> MarkdownIt:
 
 def formula(tex: str, options: Mapping) -> str:
     """A formula as MathML. A displayed one is split at its wide spaces, where a line may break."""
+    tex = origins.bare(tex)
     # The library leaves no space around the names of functions.
     tex = re.sub(r"(?<=[\w}])(?=\\(?:sin|cos|ln)\b)", r"\\,", tex)
     tex = re.sub(r"(\\(?:sin|cos|ln|max))(?=\\| )", r"\1\\,", tex)
@@ -281,11 +307,12 @@ def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
     found = []
     for heading, text in pairwise(tokens):
         if heading.type == "heading_open":
-            number = re.match(r"S?\d[\d.]*", text.content)
-            anchor = f"section-{number[0].rstrip('.')}" if number else text.content.lower()
+            words = origins.bare(text.content)
+            number = re.match(r"S?\d[\d.]*", words)
+            anchor = f"section-{number[0].rstrip('.')}" if number else words.lower()
             heading.attrs["id"] = anchor
             if heading.tag != "h3":
-                found.append((anchor, text.content))
+                found.append((anchor, words))
     return found
 
 
@@ -306,14 +333,17 @@ def name_cells(tokens: Sequence[Token]) -> None:
         elif token.type == "tr_open":
             column = 0
         elif token.type == "th_open":
-            header.append(text.content)
+            header.append(origins.bare(text.content))
         elif token.type == "td_open":
             token.attrs["data-label"] = header[column]
             column += 1
 
 
 def with_links(body: str) -> str:
-    """Link citations, sections and identifiers of documents in a text in HTML."""
+    """Link figures, citations, sections and identifiers of documents in a text in HTML."""
+
+    def figures(found: re.Match) -> str:
+        return f'<a href="index.html#fig{found[1]:0>2}">{found[0]}</a>'
 
     def sections(found: re.Match) -> str:
         page = "supplement.html" if found[1].startswith("S") else "paper.html"
@@ -322,9 +352,70 @@ def with_links(body: str) -> str:
     def citations(found: re.Match) -> str:
         return re.sub(r"\d+", r'<a href="paper.html#reference-\g<0>">\g<0></a>', found[0])
 
+    body = re.sub(r"<strong>Figure (\d+)\.</strong>", figures, body)
     body = re.sub(r"\bSection (S?\d(?:\.\d)?)", sections, body)
     body = re.sub(r"\[\d+(?:, \d+)*\]", citations, body)
     return re.sub(r"doi:(10\.[^\s<]+[^\s<.,])", r'<a href="https://doi.org/\1">\g<0></a>', body)
+
+
+# The page of numbers
+
+
+def numbers(
+    texts: Mapping[str, str], origin: Mapping[str, Sequence[origins.Origin]], datasets: Datasets
+) -> str:
+    """Return the page of what the texts print: sentences, expressions, datasets and claims.
+
+    `texts` have marks, and `origin` has the origins of their expressions.
+    """
+    judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
+    sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
+    others = {name: without_dataset(text, origin[name]) for name, text in texts.items()}
+    template = article.environment(article.TEMPLATES).get_template("numbers.html.j2")
+    contents = [
+        ("", "Where the numbers come from"),
+        *((name, name.title()) for name in texts),
+        ("others", "Without a dataset"),
+    ]
+    return framed(template.render(texts=sentences, others=others), "numbers", contents)
+
+
+def sentences_of(
+    text: str, origin: Sequence[origins.Origin], judged: Sequence[Mapping]
+) -> list[tuple[str, list[dict]]]:
+    """Return the sentences whose expressions name a dataset, with what each expression prints.
+
+    An expression of several lines, as in tables, is listed with the first.
+    """
+    printed = origins.printed(text)
+    found = []
+    for line in text.splitlines():
+        rows = []
+        for number in origins.printed(line):
+            if origin[number].datasets and number in printed:
+                terms = [origin[number].expression, *dict.fromkeys(origin[number].names.values())]
+                claims = re.findall(r'claim\["(.+?)"\]', " ".join(terms))
+                rows.append(
+                    {
+                        "number": number,
+                        "text": ", ".join(printed.pop(number)),
+                        "terms": terms,
+                        "datasets": origin[number].datasets,
+                        "claims": [row for row in judged if row["claim"] in claims],
+                    }
+                )
+        if rows:
+            found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
+    return found
+
+
+def without_dataset(text: str, origin: Sequence[origins.Origin]) -> list[tuple[str, str]]:
+    """Return what the expressions without a dataset print, and these expressions."""
+    return [
+        (", ".join(dict.fromkeys(words)), origin[number].expression)
+        for number, words in origins.printed(text).items()
+        if not origin[number].datasets
+    ]
 
 
 # Both
@@ -336,6 +427,12 @@ def unbroken(page: str) -> str:
     >>> unbroken("for r = 0.55 (1 %), by Eq. 8").replace("\\N{NO-BREAK SPACE}", "_")
     'for r_=_0.55 (1_%), by Eq._8'
     """
+    parts = re.split(r"(<pre>.*?</pre>|<code>.*?</code>)", page, flags=re.DOTALL)
+    return "".join(each if k % 2 else joined(each) for k, each in enumerate(parts))
+
+
+def joined(page: str) -> str:
+    """Keep relations, units and numbers of equations of a text without code on one line."""
     page = re.sub(r" (=|≤|≥|≈|&lt;|&gt;) ", "\N{NO-BREAK SPACE}\\1\N{NO-BREAK SPACE}", page)
     page = re.sub(r"(?<=\d) (?=%)", "\N{NO-BREAK SPACE}", page)
     numbered = r"\b(Eqs?\.|Figs?\.|Figure|Section|Table) (?=S?\d)"

@@ -130,17 +130,6 @@ CLAIMS = checkout("workflow/scripts/claims.py") + JUDGING
 TEXTS = checkout("workflow/scripts/article.py") + WRITING
 TEXTS += checkout(*(f"workflow/templates/{name}.j2" for name in TEMPLATES))
 
-# A comparison blames this code for what no dataset is. Texts have the captions, too.
-MAKERS = {
-    **{f"figures/{name}.{kind}": PICTURES for name in FIGURES for kind in ("png", "svg")},
-    **{f"figures/{name}.{kind}": TABULATING for name in TABLES for kind in ("md", "csv")},
-    **{f"figures/claims.{kind}": CLAIMS for kind in ("md", "csv")},
-    **{
-        text: TEXTS + checkout("config/config.yaml")
-        for text in ("paper.md", "supplement.md", "figures/README.md")
-    },
-}
-
 
 # The stages compute datasets.
 
@@ -151,6 +140,7 @@ rule restitution_model:
         code=checkout("workflow/scripts/restitution_model.py") + MODELS,
     output:
         **datasets("restitution_model"),
+        record="results/records/restitution_model.json",
     params:
         entries=parameters("restitution_model"),
         settings={},
@@ -168,6 +158,7 @@ rule apparent_restitution:
         code=checkout("workflow/scripts/apparent_restitution.py") + MODELS,
     output:
         **datasets("apparent_restitution"),
+        record="results/records/apparent_restitution.json",
     params:
         entries=parameters("apparent_restitution"),
         settings={"release": config["release"]},
@@ -185,6 +176,7 @@ rule continuation:
         code=checkout("workflow/scripts/continuation.py") + MODELS + PAPER,
     output:
         **datasets("continuation"),
+        record="results/records/continuation.json",
     params:
         entries=parameters("continuation"),
         settings={"release": config["release"], "largest_step": config["largest_step"]},
@@ -202,6 +194,7 @@ rule permanent_contact:
         code=checkout("workflow/scripts/permanent_contact.py") + MODELS,
     output:
         **datasets("permanent_contact"),
+        record="results/records/permanent_contact.json",
     params:
         entries=parameters("permanent_contact"),
         settings={"release": config["release"]},
@@ -219,6 +212,7 @@ rule error_thresholds:
         code=checkout("workflow/scripts/error_thresholds.py") + MODELS,
     output:
         **datasets("error_thresholds"),
+        record="results/records/error_thresholds.json",
     params:
         entries=parameters("error_thresholds"),
         settings={"release": config["release"]},
@@ -236,6 +230,7 @@ rule validity:
         code=checkout("workflow/scripts/validity.py") + MODELS,
     output:
         **datasets("validity"),
+        record="results/records/validity.json",
     params:
         entries=parameters("validity"),
         settings={"release": config["release"]},
@@ -253,6 +248,7 @@ rule time_histories:
         code=checkout("workflow/scripts/time_histories.py") + MODELS,
     output:
         **datasets("time_histories"),
+        record="results/records/time_histories.json",
     params:
         entries=parameters("time_histories"),
         settings={"release": config["release"]},
@@ -270,6 +266,7 @@ rule printed_numbers:
         code=checkout("workflow/scripts/printed_numbers.py") + MODELS + PAPER + modules("measures"),
     output:
         **datasets("printed_numbers"),
+        record="results/records/printed_numbers.json",
     params:
         entries=parameters("printed_numbers"),
         settings={},
@@ -301,6 +298,7 @@ for name in FIGURES:
         output:
             png=report(f"results/figures/{name}.png", category="Figures", labels=captions(name)),
             svg=f"results/figures/{name}.svg",
+            record=f"results/records/{name}.json",
         log:
             f"results/logs/{name}.log",
         conda:
@@ -320,6 +318,7 @@ for name in TABLES:
         output:
             md=f"results/figures/{name}.md",
             csv=report(f"results/figures/{name}.csv", category="Tables", labels=captions(name)),
+            record=f"results/records/{name}.json",
         log:
             f"results/logs/{name}.log",
         conda:
@@ -337,6 +336,7 @@ rule claims:
         nc="results/figures/claims.nc",
         md="results/figures/claims.md",
         csv=report("results/figures/claims.csv", category="Tables", labels={"name": "claims"}),
+        record="results/records/claims.json",
     log:
         "results/logs/claims.log",
     conda:
@@ -352,6 +352,7 @@ rule choices:
         code=checkout(*(f"workflow/scripts/{name}.py" for name in ["choices", *VARIED])) + JUDGING,
     output:
         nc="results/figures/choices.nc",
+        record="results/records/choices.json",
     log:
         "results/logs/choices.log",
     conda:
@@ -373,6 +374,7 @@ rule article:
         numbers="results/numbers.html",
         figures="results/figures/README.md",
         index="results/index.html",
+        record="results/records/article.json",
     params:
         entries=ENTRIES,
     log:
@@ -418,7 +420,6 @@ rule diff:
     params:
         names=named,
         config=config,
-        makers=MAKERS,
     log:
         "results/logs/diff.log",
     conda:

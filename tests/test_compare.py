@@ -11,19 +11,46 @@ import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
-from PIL.PngImagePlugin import PngInfo
+from tests.conftest import Named
 
 from bouncing_ball import compare, datasets, provenance, variables
 from bouncing_ball.drawing import save_picture
 
-CONFIG = {"release": "force", "stage": {"fig14": {"title": "T", "caption": "C", "n": 1}}}
-FILES = ("src/model.py", "src/variables.py", "src/drawing.py", "config/config.yaml")
+ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
+CONFIG = {"release": "force", "stage": ENTRIES}
+FILES = (
+    "src/model.py",
+    "src/variables.py",
+    "src/drawing.py",
+    "src/writing.py",
+    "config/config.yaml",
+)
+
+
+def note(project, rule, files, code, data=(), **parameters):
+    """Write the record of a job."""
+    results = project.top / "results"
+    record = results / f"records/{rule}.json"
+    made = {file: str(results / file) for file in files}
+    inputs = {
+        "code": [project.top / code],
+        "data": [results / f"figures/{each}.nc" for each in data],
+    }
+    datasets.save_record(
+        SimpleNamespace(
+            input=SimpleNamespace(**inputs),
+            output=Named(record=str(record), **made),
+            params=SimpleNamespace(**parameters),
+        )
+    )
 
 
 def make(name, data, folder, form="{:.3g}"):
@@ -84,29 +111,38 @@ def edit(project, *files):
             opened.write("\n")
 
 
-def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", **parameters):
+def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENTRIES, **given):
     """Make results with these numbers, as the code of today would."""
     folder = project.top / "results"
+    shutil.rmtree(folder, ignore_errors=True)
     data = xr.Dataset(
         {"max_height": ("frequency_ratio", list(height))}, {"frequency_ratio": [1.0, 2.0]}
     )
     judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
     code = [project.top / "src/model.py"]
-    given = {"n": 1, "release": "force"} | parameters
-    datasets.save(data, folder / "figures/fig14.nc", "T", given, code)
+    given = {"n": 1, "release": "force"} | given
+    datasets.save(data, folder / "figures/fig14.nc", entries["fig14"]["title"], given, code)
     datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code)
     project.make("fig14", data, folder / "figures")
     project.make("fig01", None, folder / "figures")
     for name in project.texts:
         (folder / name).write_text(f"the threshold\nis {text}\n", "utf-8")
+    note(project, "stage", ["figures/fig14.nc"], "src/model.py", entries=entries)
+    note(project, "claims", ["figures/claims.nc"], "src/model.py", ["fig14"])
+    for name, needs in (("fig01", []), ("fig14", ["fig14"])):
+        files = [f"figures/{name}.{kind}" for kind in ("png", "svg")]
+        note(project, name, files, "src/drawing.py", needs)
+    note(project, "article", project.texts, "src/writing.py", ["fig14", "claims"], entries=entries)
 
 
 def report(project, names=(), config=CONFIG):
-    return compare.compare(project, project.top / "results", config, names)
+    reference = compare.run_in(project.top, "the reference")
+    results = compare.run_in(project.top / "results", "the results")
+    return compare.compare(project, reference, results, config, names)
 
 
 def lines(project, **given):
-    return report(project, **given).lines
+    return [*map(str, report(project, **given).findings)]
 
 
 @pytest.mark.parametrize("linked", [False, True])
@@ -144,20 +180,29 @@ def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
 
 
 def test_a_parameter_is_the_cause_and_names_no_file(project):
-    run(project, height=(1.0, 2.5), verdict="contradicted", text="83", n=2)
-    config = {"release": "force", "stage": {"fig14": {"n": 2}}}
+    entries = {"fig14": ENTRIES["fig14"] | {"n": 2}}
+    run(project, height=(1.0, 2.5), verdict="contradicted", text="83", entries=entries, n=2)
+    config = {"release": "force", "stage": entries}
     found = report(project, config=config)
-    assert found.lines == [
+    assert [*map(str, found.findings)] == [
         "fig14: max_height 2 → 2.5 at frequency_ratio = 2; changed parameter: n 1 → 2",
-        "claims: verdict reproduced → contradicted at claim = high; follows from fig14",
+        "claims: verdict reproduced → contradicted at claim = high; follows from: fig14",
     ]
-    assert found.skipped == [
-        "figures/fig14.png",
-        "figures/fig14.svg",
-        "paper.md",
-        "supplement.md",
+    changed = [("is 82", "is 83")]
+    assert found.following == {
+        "figures/fig14.png": [],
+        "figures/fig14.svg": [],
+        "paper.md": changed,
+        "supplement.md": changed,
+    }
+    assert found.text().splitlines()[2:6] == [
+        "paper.md, changed sentences: 1",
+        "  − is 82",
+        "  + is 83",
+        "supplement.md, changed sentences: 1",
     ]
-    assert "Not compared, because a dataset differs: figures/fig14.png" in found.text()
+    others = "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg."
+    assert others in found.text()
     # With the configuration in git these results are stale.
     assert lines(project)[0] == (
         "fig14: stale, remove it and run again; changed since: n 2 → 1 "
@@ -165,9 +210,55 @@ def test_a_parameter_is_the_cause_and_names_no_file(project):
     )
 
 
-def test_a_result_of_other_code_is_stale(project):
-    edit(project, "src/model.py")
-    assert lines(project)[0].endswith("run again; changed since: src/model.py")
+STALE = "stale, remove it and run again; changed since:"
+
+
+@pytest.mark.parametrize(
+    "file, names",
+    [
+        ("src/model.py", ["fig14", "claims"]),
+        ("src/drawing.py", ["fig01", "fig14"]),
+        ("src/writing.py", ["paper", "supplement"]),
+        ("src/variables.py", []),
+    ],
+)
+def test_a_result_of_other_code_is_stale(project, file, names):
+    edit(project, file)
+    assert lines(project) == [f"{name}: {STALE} {file}" for name in names]
+    commit(project.top)
+    if names:
+        with pytest.raises(ValueError, match="nothing is accepted"):
+            compare.accept(project, project.top / "results")
+
+
+def test_a_picture_is_older_than_its_dataset(project):
+    results = project.top / "results/figures"
+    before = {path: path.read_bytes() for path in results.glob("fig14.[ps]*")}
+    record = (project.top / "results/records/fig14.json").read_bytes()
+    run(project, height=(1.0, 2.5))
+    for path, content in before.items():
+        path.write_bytes(content)
+    (project.top / "results/records/fig14.json").write_bytes(record)
+    assert lines(project)[1] == f"fig14: {STALE} figures/fig14.nc"
+
+
+def test_a_caption_of_the_checkout_makes_texts_stale(project):
+    config = {"release": "force", "stage": {"fig14": ENTRIES["fig14"] | {"caption": "New"}}}
+    since = f"{STALE} fig14.caption C → New (config/config.yaml or the Snakefile)"
+    assert lines(project, config=config) == [f"paper: {since}", f"supplement: {since}"]
+
+
+def test_a_result_without_a_record_is_stale(project):
+    (project.top / "results/records/fig14.json").unlink()
+    (project.top / "results/records/stage.json").write_text("<<<<<<< HEAD\n", "utf-8")
+    found = lines(project)
+    assert found[0].startswith("records/stage.json: cannot be read in the results")
+    assert found[1:] == [f"fig14: {STALE} it has no record"]
+    with pytest.raises(ValueError, match="nothing is accepted"):
+        compare.accept(project, project.top / "results")
+
+
+NOTHING = "no parameter, code or version that is recorded has changed"
 
 
 def changed(project):
@@ -202,7 +293,7 @@ def test_without_a_main_branch_the_last_acceptance_is_what_is_known(project, lef
         shutil.rmtree(project.top / ".git")
     else:
         git(project.top, "branch", "-m", "master")
-    assert changed(project).startswith("no parameter, code or version has changed")
+    assert changed(project) == f"cause: {NOTHING}"
     edit(project, "src/model.py")
     assert changed(project) == (
         "changed since the last acceptance (the main branch is not known here): src/model.py"
@@ -237,7 +328,8 @@ def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
     data = datasets.read(path)
     data.max_height.attrs["long_name"] = "highest"
     data.to_netcdf(path)
-    (line,) = lines(project)
+    note(project, "stage", ["figures/fig14.nc"], "src/model.py")
+    line = lines(project)[0]
     assert line == (
         "fig14: max_height.long_name maximum height of the ball over a cycle → highest; "
         "changed: src/variables.py"
@@ -260,86 +352,124 @@ def test_variables_shapes_types_and_infinities_differ(project, change, line):
     assert any(line in each for each in lines(project))
 
 
-def test_a_title_names_the_configuration(project):
-    edit(project, "config/config.yaml")
-    path = project.top / "results/figures/fig14.nc"
-    datasets.read(path).assign_attrs(title="Another").to_netcdf(path)
-    assert lines(project) == ["fig14: title T → Another; changed: config/config.yaml"]
-
-
-def test_a_title_of_the_run_is_a_parameter(project):
-    given = {"release": "force", "stage": {"fig14": {"title": "Mine", "caption": "C", "n": 1}}}
-    path = project.top / "results/figures/fig14.nc"
-    datasets.read(path).assign_attrs(title="Mine").to_netcdf(path)
-    assert lines(project, config=given) == [
-        "fig14: title T → Mine; changed parameter: stage.fig14.title T → Mine"
+def test_titles_and_captions_are_parameters(project):
+    entries = {"fig14": ENTRIES["fig14"] | {"title": "Mine", "caption": "Other"}}
+    run(project, text="83", entries=entries)
+    found = report(project, config={"release": "force", "stage": entries})
+    assert [*map(str, found.findings)] == ["fig14: changed parameter: title T → Mine"]
+    entries = {"fig14": ENTRIES["fig14"] | {"caption": "Other"}}
+    run(project, text="83", entries=entries)
+    assert lines(project, config={"release": "force", "stage": entries}) == [
+        f"{name}: {name}.md, line 2: is 82 → is 83; changed parameter: fig14.caption C → Other"
+        for name in ("paper", "supplement")
     ]
-    run(project, text="83")
-    assert lines(project, config=given)[-1].endswith(
-        "changed parameter: stage.fig14.title T → Mine"
-    )
 
 
-def test_a_text_is_blamed_on_the_code_that_makes_it_and_a_hand_edit_on_no_code(project):
-    edit(project, "src/drawing.py", "src/variables.py")
+def exchanged(one, other):
+    """Exchange two files."""
+    before = one.read_bytes()
+    one.write_bytes(other.read_bytes())
+    other.write_bytes(before)
+
+
+@pytest.mark.parametrize("side", ["the results", "the reference"])
+@pytest.mark.parametrize("newer", ["nothing", "on main", "on a branch", "not committed"])
+def test_an_edit_by_hand_is_called_one_and_no_code_is_blamed(project, side, newer):
+    """Whether code is newer than the acceptance or not."""
+    if newer == "on a branch":
+        git(project.top, "checkout", "-qb", "branch")
+    if newer != "nothing":
+        edit(project, *FILES)
+        run(project)
+    if newer.startswith("on"):
+        commit(project.top)
+    assert lines(project) == []
+    folder = project.top / ("results" if side == "the results" else "")
+    (folder / "paper.md").write_text("the threshold\nis 28\n", "utf-8")
+    exchanged(folder / "figures/fig01.png", folder / "figures/fig14.png")
+    path = folder / "figures/claims.nc"
+    datasets.read(path).assign(verdict=("claim", ["near"])).to_netcdf(path)
+    found = report(project).findings
+    assert {str(each).partition("; ")[2] for each in found if each.name != "claims"} == {
+        f"edited by hand: {file} of {side}"
+        for file in ("paper.md", "figures/fig01.png", "figures/fig14.png")
+    }
+    assert f"edited by hand: figures/claims.nc of {side}" in str(found[0])
+    if side == "the results":
+        if newer == "not committed":
+            commit(project.top)
+        with pytest.raises(ValueError, match=r"claims: .*edited by hand"):
+            compare.accept(project, project.top / "results")
+
+
+def test_a_change_that_no_record_has_is_not_called_an_edit(project):
     run(project, text="83")
-    results = project.top / "results"
-    for makers, cause in (
-        ("src/drawing.py", "changed: src/drawing.py"),
-        ("src/model.py", "no parameter, code or version has changed: edited by hand?"),
-    ):
-        given = {name: [project.top / makers] for name in project.texts}
-        found = compare.compare(project, results, CONFIG, ["paper"], given)
-        assert found.lines == [f"paper: paper.md, line 2: is 82 → is 83; {cause}"]
+    assert lines(project) == [
+        f"{name}: {name}.md, line 2: is 82 → is 83; cause: {NOTHING}"
+        for name in ("paper", "supplement")
+    ]
+
+
+def test_an_innocent_change_on_a_branch_is_neither_blamed_nor_called_an_edit(project):
+    git(project.top, "checkout", "-qb", "branch")
+    edit(project, "src/drawing.py", "src/model.py")
+    commit(project.top)
+    edit(project, "src/writing.py")
+    run(project, text="83")
+    assert lines(project) == [
+        f"{name}: {name}.md, line 2: is 82 → is 83; changed: src/writing.py"
+        for name in ("paper", "supplement")
+    ]
+
+
+def test_a_reference_whose_files_are_not_recorded_is_compared(project):
+    """Of a record that an earlier version wrote."""
+    path = project.top / compare.ACCEPTED
+    accepted = json.loads(path.read_text("utf-8"))
+    kept = {key: accepted[key] for key in ("code", "versions")}
+    path.write_text(json.dumps(kept), "utf-8")
+    assert lines(project) == []
+    run(project, text="83")
+    assert lines(project)[0].endswith(f"cause: {NOTHING}")
+    path.write_text("<<<<<<< HEAD\n", "utf-8")
+    assert lines(project)[0].startswith("figures/accepted.json: cannot be read in the reference")
 
 
 def test_the_verdict_of_a_red_run_is_in_its_log(project, capsys):
     results = project.top / "results"
     run(project, text="83")
-    assert compare.report_of_run(project, results, CONFIG, [], {}) == 1
+    assert compare.report_of_run(project, results, CONFIG, []) == 1
     assert "Differences in paper, supplement." in capsys.readouterr().err
     run(project)
-    assert compare.report_of_run(project, results, CONFIG, [], {}) == 0
+    assert compare.report_of_run(project, results, CONFIG, []) == 0
     assert "All 8 files agree" in capsys.readouterr().out
-
-
-def test_a_text_names_its_first_line_that_differs_and_what_changed(project):
-    run(project, text="83")
-    edit(project, "config/config.yaml")
-    assert lines(project) == [
-        f"{name}: {name}.md, line 2: is 82 → is 83; changed: config/config.yaml"
-        for name in ("paper", "supplement")
-    ]
 
 
 def test_a_picture_of_the_same_data_names_the_code_that_changed(project):
     """The model gave the same dataset again, and is innocent."""
     edit(project, "src/drawing.py", "src/model.py")
+    project = replace(project, make=partial(make, form="height {:.3g}"))
     run(project)
-    data = datasets.read(project.top / "figures/fig14.nc")
-    make("fig14", data, project.top / "results/figures", "height {:.3g}")
     assert lines(project) == ["fig14: the picture differs; changed: src/drawing.py"]
 
 
-def redrawn(path, **texts):
-    """Save a picture again, upside down and with other texts."""
-    written = PngInfo()
-    for key, text in texts.items():
-        written.add_text(key, text)
+def redrawn(path):
+    """Save a picture again, upside down and without the name of its matplotlib."""
     with Image.open(path) as picture:
-        picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM).save(path, pnginfo=written)
+        picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM).save(path)
 
 
 def test_a_picture_that_names_no_matplotlib_is_compared_and_so_is_its_svg(project):
     results = project.top / "results/figures"
     redrawn(results / "fig14.png")
-    assert lines(project)[0].startswith("fig14: the picture differs")
-    run(project)
-    redrawn(results / "fig01.png")
     svg = results / "fig01.svg"
     svg.write_text(svg.read_text("utf-8").replace("</svg>", "<g/></svg>"), "utf-8")
-    assert report(project).drawn_elsewhere == []
-    assert [line[:28] for line in lines(project)] == ["fig01: the picture differs; "]
+    found = report(project)
+    assert found.drawn_elsewhere == []
+    assert [*map(str, found.findings)] == [
+        f"{name}: the picture differs; edited by hand: figures/{name}.{kind} of the results"
+        for name, kind in (("fig01", "svg"), ("fig14", "png"))
+    ]
 
 
 @pytest.mark.parametrize("side", ["results", "reference"])
@@ -381,17 +511,19 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 
 def test_a_text_that_is_not_utf_8_cannot_be_compared(project):
     (project.top / "results/paper.md").write_bytes("das Mädchen".encode("latin-1"))
-    assert lines(project)[0].startswith("paper: paper.md of the results cannot be compared")
+    assert lines(project)[0].startswith("paper: paper.md cannot be compared: in the results Uni")
 
 
-def test_pictures_of_another_matplotlib_are_counted_and_not_compared(project):
-    for kind in ("fig01", "fig14"):
-        path = project.top / f"results/figures/{kind}.png"
-        redrawn(path, Software="Matplotlib 9.9")
-    text = report(project).text()
-    assert text == (
-        "All 8 files agree with the reference. 2 pictures of another matplotlib were not compared."
-    )
+def test_pictures_of_another_matplotlib_are_counted_and_not_compared(project, monkeypatch):
+    other = provenance.versions() | {"matplotlib": "9.9"}
+    monkeypatch.setattr(datasets, "versions", lambda: other)
+    run(replace(project, make=partial(make, form="height {:.3g}")))
+    agree = "All 8 files agree with the reference."
+    assert report(project).text() == f"{agree} 2 pictures of another matplotlib were not compared."
+    redrawn(project.top / "results/figures/fig14.png")
+    assert lines(project) == [
+        "fig14: the picture differs; edited by hand: figures/fig14.png of the results"
+    ]
 
 
 def test_pictures_of_rounded_numbers_must_be_those_that_the_code_draws(project):
@@ -402,10 +534,16 @@ def test_pictures_of_rounded_numbers_must_be_those_that_the_code_draws(project):
     commit(project.top)
     run(other, height=(1.0, 2.0 + 1e-12))
     assert lines(other) == []
-    svg = project.top / "results/figures/fig14.svg"
-    svg.write_text(svg.read_text("utf-8").replace("2.0", "2.5"), "utf-8")
-    svg.write_text(f"{svg.read_text('utf-8')}<!-- edited -->", "utf-8")
-    assert lines(other)[0].startswith("fig14: the picture differs")
+    # Two runs are compared without today's code.
+    reference = compare.run_in(project.top, "one")
+    results = compare.run_in(project.top / "results", "other")
+    assert compare.compare(project, reference, results).findings == []
+    edit(project, "src/drawing.py")
+    run(replace(other, make=partial(make, form="{:.1f}")))
+    assert lines(other) == []
+    assert lines(replace(other, make=partial(make, form="{:.1f}")))[0] == (
+        "fig14: the picture differs; changed: src/drawing.py"
+    )
 
 
 def test_missing_new_and_damaged_files_are_named(project):
@@ -414,8 +552,8 @@ def test_missing_new_and_damaged_files_are_named(project):
     (folder / "fig14.png").unlink()
     (folder / "claims.nc").write_text("damaged", "utf-8")
     found = lines(project)
-    assert found[0] == "fig17: figures/fig17.nc is not in the reference; if it is new, accept it"
-    assert found[1].startswith("claims: figures/claims.nc cannot be compared")
+    assert found[0] == "fig17: figures/fig17.nc is missing in the reference"
+    assert found[1].startswith("claims: figures/claims.nc cannot be compared: in the results")
     assert found[2] == "fig14: figures/fig14.png is missing in the results"
     assert len(lines(project, names=["fig14"])) == 1
     assert lines(project, names=["fig17"]) == found[:1]
@@ -425,7 +563,7 @@ def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project):
     run(project, height=(1.0, 2.5))
     results = project.top / "results"
     found = report(project)
-    page = compare.write_page(project, results, found)
+    page = compare.write_page(found, results / "diff/index.html")
     text = page.read_text("utf-8")
     assert page.is_absolute() and "max_height 2 → 2.5" in text
     shown = [
@@ -434,7 +572,7 @@ def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project):
     ]
     assert shown == sorted(shown)
     run(project)
-    assert "fig14" not in compare.write_page(project, results, report(project)).read_text("utf-8")
+    assert "fig14" not in compare.write_page(report(project), page).read_text("utf-8")
 
 
 def test_the_command_prints_the_report_the_page_and_its_status(project, capsys):
@@ -445,8 +583,80 @@ def test_the_command_prints_the_report_the_page_and_its_status(project, capsys):
     assert printed[-2:] == ["Differences in paper, supplement.", f"{results}/diff/index.html"]
     run(project)
     assert compare.main(project, [results]) == 0
-    assert compare.main(project, []) == 2
     assert compare.main(project, [str(project.top / "nothing")]) == 1
+    for arguments, status in ([[], 2], [["--help"], 0], [[__file__], 2]):
+        with pytest.raises(SystemExit) as ended:
+            compare.main(project, arguments)
+        assert ended.value.code == status
+    captured = capsys.readouterr()
+    assert "usage: compare.py" in captured.out
+    assert captured.err.splitlines()[-1].startswith("compare.py: error: a run cannot be read: ")
+
+
+def two_runs(project, tmp_path):
+    """Two runs with different parameters, and their folders."""
+    folders = []
+    for n, height, text in ((1, 2.0, "82"), (2, 2.5, "83")):
+        entries = {"fig14": ENTRIES["fig14"] | {"n": n}}
+        run(project, height=(1.0, height), text=text, entries=entries, n=n)
+        folders.append(tmp_path / f"run{n}" / "results")
+        shutil.copytree(project.top / "results", folders[-1])
+    return folders
+
+
+@pytest.mark.parametrize("kind", ["folder", "folder of the run", "zip", "zip of several folders"])
+def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind):
+    one, other = two_runs(project, tmp_path)
+    page = other / "diff/index.html"
+    # Today's code and configuration do not matter.
+    edit(project, *FILES)
+    if kind == "folder of the run":
+        one, other = one.parent, other.parent
+        page = other / "diff/index.html"
+    if kind.startswith("zip"):
+        base = other.parent if "several" in kind else other
+        other = shutil.make_archive(str(tmp_path / "artifact"), "zip", base)
+        page = tmp_path / "diff/index.html"
+    assert compare.main(project, [str(one), str(other)]) == 1
+    printed = capsys.readouterr().out.splitlines()
+    assert printed == [
+        "fig14: max_height 2 → 2.5 at frequency_ratio = 2; changed parameter: n 1 → 2",
+        "paper.md, changed sentences: 1",
+        "  − is 82",
+        "  + is 83",
+        "supplement.md, changed sentences: 1",
+        "  − is 82",
+        "  + is 83",
+        "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg.",
+        "Differences in fig14.",
+        str(page),
+    ]
+    text = page.read_text("utf-8")
+    assert "changed parameter: n 1 → 2" in text and text.count("data:image/png") == 2
+    assert compare.main(project, [str(one), str(one)]) == 0
+
+
+def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
+    one = two_runs(project, tmp_path)[0]
+    other = provenance.versions() | {"numpy": "9.9"}
+    monkeypatch.setattr(datasets, "versions", lambda: other)
+    edit(project, "src/model.py")
+    run(project, height=(1.0, 2.5), entries=ENTRIES)
+    runs = [compare.run_in(folder, "a run") for folder in (one, project.top / "results")]
+    (found,) = compare.compare(project, *runs).findings
+    assert found.causes == {
+        "changed": ["src/model.py"],
+        "other versions": [f"numpy {np.__version__} → 9.9"],
+    }
+    shutil.rmtree(one / "records")
+    runs[0] = compare.run_in(one, "a run")
+    # A dataset has its own provenance.
+    assert compare.compare(project, *runs).findings == [found]
+    Path(one / "paper.md").write_text("by hand\n", "utf-8")
+    run(project, text="83")
+    runs[1] = compare.run_in(project.top / "results", "another run")
+    found = compare.compare(project, *runs).findings
+    assert [each.causes for each in found] == [{"cause": ["not known without a record"]}] * 2
 
 
 def test_what_differs_is_accepted_and_what_agrees_stays(project):

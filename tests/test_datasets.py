@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
+from tests.conftest import Named
 
 from bouncing_ball import datasets, provenance
 from bouncing_ball.variables import Variable
@@ -96,9 +97,10 @@ def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settin
 
     entries = {name: {"title": name.upper(), "n": n} for n, name in enumerate(("fig02", "fig03"))}
     settings = {"release": "force", "largest_step": 0.1}
+    files = {name: str(tmp_path / f"{name}.nc") for name in entries}
     snakemake = SimpleNamespace(
         input=SimpleNamespace(code=[__file__]),
-        output={name: str(tmp_path / f"{name}.nc") for name in entries},
+        output=Named(**files, record=str(tmp_path / "records/stage.json")),
         params=SimpleNamespace(entries=entries, settings=settings),
     )
     datasets.save_stage({"fig02": orbits, "fig03": branches}, snakemake)
@@ -110,3 +112,13 @@ def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settin
         has = {"largest_step": 0.1} if name == "fig03" else {}
         assert datasets.parameters(data) == {"n": n, "release": "force"} | has
         assert [*json.loads(data.attrs["code"])] == ["tests/test_datasets.py"]
+    record = json.loads((tmp_path / "records/stage.json").read_text("utf-8"))
+    made = {f"{name}.nc": provenance.content(path) for name, path in files.items()}
+    code = provenance.contents([__file__])
+    assert record == {
+        "made": made,
+        "data": {},
+        "code": code,
+        "versions": provenance.versions(),
+        "entries": entries,
+    }

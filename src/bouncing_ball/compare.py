@@ -1,29 +1,37 @@
-"""Compare results with the reference in git, and make results the reference.
+"""Compare two runs, and make results the reference.
 
 The reference is a folder `figures` and some texts beside it; a run writes the same files into a
-folder of its own. Numbers of datasets agree within the tolerances that the reference declares. All
+folder of its own. Numbers of datasets agree within the tolerances that the first run declares. All
 other files are functions of datasets, and are compared byte for byte. If one of their datasets
-differs, this is what is reported, and they are only listed as not compared. Another processor
-rounds numbers differently: then a picture, a table or a page of one dataset agrees if today's code
-makes the files of both sides from the datasets of both sides.
+differs, this is what is reported; of a text the sentences that changed are listed. Another
+processor rounds numbers differently: then a picture, a table or a page of one dataset agrees if
+today's code makes the file of the reference again.
 
-A difference has a cause: parameters, files of code, or versions of libraries. A dataset records its
-own. `figures/accepted.json` has the code and the versions that gave the reference last. A file is a
-cause only if the results have it neither as accepted nor as on the main branch.
+Records say what made a file: datasets, code, versions of libraries, and the hash of the file.
+A run has a record for each job in its folder `records`. The reference has one for all its files,
+`figures/accepted.json`, with the code and the versions that gave them last.
+
+A difference has a cause: an edit by hand, parameters, files of code, or versions of libraries. A
+file of code is a cause only if the results have it neither as accepted nor as on the main branch.
 """
 
+import argparse
 import base64
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from difflib import SequenceMatcher
 from functools import partial
-from itertools import zip_longest
+from io import BytesIO
+from itertools import takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 from xml.etree import ElementTree
 
 import jinja2
@@ -33,17 +41,21 @@ import yaml
 from PIL import Image
 
 from bouncing_ball.datasets import attributes, plain, read, whole
-from bouncing_ball.provenance import CHECKOUT, PACKAGES, contents, versions
+from bouncing_ball.provenance import CHECKOUT, PACKAGES, content, contents, versions
 from bouncing_ball.variables import Variable
 from bouncing_ball.variables import described as descriptions
 
 FOLLOWING = ("claims", "choices")
 """Datasets that are made of all others."""
 ACCEPTED = "figures/accepted.json"
-PROVENANCE = {"parameters", "code", "versions", "computed_on"}
-"""Attributes of a dataset that are compared elsewhere, or not at all."""
+PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
+"""Attributes of a dataset that are causes of a difference, or are not compared."""
+INSIDE = ("parameters", "code", "versions")
+"""What a dataset records of itself."""
 PICTURES = (".png", ".svg")
 TEMPLATE = CHECKOUT / "workflow/templates/diff.html.j2"
+SENTENCES = 10
+"""Changed sentences of a text that are printed; the page of a comparison shows all."""
 
 
 @dataclass(frozen=True)
@@ -94,53 +106,84 @@ class Project:
 
 
 @dataclass(frozen=True)
-class Report:
-    """What a comparison found.
+class Run:
+    """A folder with results, and the records of what made them.
 
     Attributes
     ----------
-    lines
-        A line for each file that differs, is stale, missing or unexpected.
-    skipped
-        Files that were not compared, because one of their datasets differs.
-    drawn_elsewhere
-        Pictures that were not compared, because another matplotlib drew them.
-    count
-        How many files were compared.
+    label
+        The name of the run in a report.
+    folder
+        The folder with `figures` and the texts.
+    records
+        The record of each file, and each record by its own name.
     """
 
-    lines: list[str] = field(default_factory=list)
-    skipped: list[str] = field(default_factory=list)
-    drawn_elsewhere: list[str] = field(default_factory=list)
-    count: int = 0
+    label: str
+    folder: Path
+    records: Mapping[str, dict]
 
-    @property
-    def names(self) -> list[str]:
-        """The figures, tables and texts that differ."""
-        return sorted({line.partition(":")[0] for line in self.lines})
+    def record(self, file: str, data: xr.Dataset | None = None) -> dict[str, Any]:
+        """What made a file, as far as it is known. A dataset has its own parameters and code.
 
-    def text(self) -> str:
-        """The report on a terminal; the verdict is its last line."""
-        text = [*self.lines]
-        if self.skipped:
-            text.append(
-                f"Not compared, because a dataset differs: {', '.join(sorted(self.skipped))}."
-            )
-        verdict = f"All {self.count} files agree with the reference."
-        if self.lines:
-            verdict = f"Differences in {', '.join(self.names)}."
-        if self.drawn_elsewhere:
-            number = len(self.drawn_elsewhere)
-            verdict += f" {number} pictures of another matplotlib were not compared."
-        return "\n".join([*text, verdict])
+        The parameters of a text are the entries of the configuration.
+        """
+        accepted = self.records.get(ACCEPTED, {})
+        known = self.records.get(file, accepted)
+        found = {"made": {}, "data": {}, "code": {}, "versions": {}} | known
+        found["parameters"] = known.get("entries", {})
+        if data is not None:
+            found |= {key: json.loads(data.attrs.get(key, "{}")) for key in INSIDE}
+        if data is not None and found["parameters"]:
+            found["parameters"] |= {"title": data.attrs.get("title")}
+        return found | accepted
+
+    def edited(self, file: str) -> bool:
+        """Whether a file is not what its record names."""
+        made = self.record(file)["made"]
+        return file in made and made[file] != content(self.folder / file)
+
+
+def run_in(folder: Path, label: str) -> Run:
+    """The run in a folder, with its records."""
+    records: dict[str, dict] = {}
+    for path in [*folder.glob("records/*.json"), *folder.glob(ACCEPTED)]:
+        try:
+            record = json.loads(path.read_text("utf-8"))
+        except ValueError as error:
+            record = {"damaged": repr(error)}
+        name = path.relative_to(folder).as_posix()
+        records |= dict.fromkeys([name, *record.get("made", {})], record)
+    return Run(label, folder, records)
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A figure, a table or a text that differs.
+
+    Attributes
+    ----------
+    name
+        The name of its files.
+    differences
+        What differs, the furthest first.
+    causes
+        Why, by the kind of the cause.
+    usable
+        Whether `accept` may make it the reference.
+    """
+
+    name: str
+    differences: Sequence[str]
+    causes: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    usable: bool = True
+
+    def __str__(self) -> str:
+        causes = [f"{what}: {', '.join(which)}" for what, which in self.causes.items()]
+        return f"{self.name}: {'; '.join([*self.differences[:1], *causes])}"
 
 
 # Datasets
-
-
-def record(data: xr.Dataset, key: str) -> dict:
-    """The parameters, versions or files of code that a dataset records."""
-    return json.loads(data.attrs.get(key, "{}"))
 
 
 def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
@@ -176,7 +219,19 @@ def described(data: xr.Dataset) -> dict:
     return plain(found)
 
 
-def differences(old: xr.Dataset, new: xr.Dataset) -> list[str]:
+def differences(file: str, old: Any, new: Any) -> list[str]:
+    """What differs in the contents of a file, which are those of `content_of`."""
+    if file.endswith(".nc"):
+        return changes(described(old), described(new)) or values_that_differ(old, new)
+    if file.endswith(PICTURES):
+        return ["the picture differs"]
+    # An empty line follows the last line feed.
+    number = common(old, new)
+    pair = [[*side, "the end of the text"][number] or "an empty line" for side in (old, new)]
+    return [f"{Path(file).name}, line {number + 1}: {excerpt(*pair)}"]
+
+
+def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
     """Where numbers and texts of a dataset differ: a line for each variable, the furthest first.
 
     Both datasets have the same variables.
@@ -228,11 +283,15 @@ def excerpt(old: object, new: object) -> str:
     if texts[0] == texts[1]:
         texts = [str(old), str(new)]
     if max(map(len, texts)) > 80:
-        pairs = enumerate(zip_longest(*texts))
-        start = next(index for index, (one, other) in pairs if one != other)
-        start = max(0, start - 30)
+        start = max(0, common(*texts) - 30)
         texts = [text[start : start + 80] for text in texts]
     return " → ".join(texts)
+
+
+def common(one: Sequence, other: Sequence) -> int:
+    """How many elements two sequences have in common before the first difference."""
+    pairs = zip(one, other, strict=False)
+    return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
 
 
 def shown(value: object) -> str:
@@ -244,30 +303,6 @@ def shown(value: object) -> str:
     if isinstance(value, float | np.floating):
         return f"{value:.6g}"
     return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in str(value))
-
-
-def stale(new: xr.Dataset, name: str, config: Mapping, descriptions: Mapping[str, Variable]) -> str:
-    """Name the parameters, descriptions and files that changed since a result was computed; empty
-    if none.
-    """
-    recorded = record(new, "parameters")
-    wanted = {key: value for key, value in config.items() if key in recorded}
-    for stage in config.values():
-        if isinstance(stage, Mapping):
-            wanted |= stage.get(name, {})
-    for word in ("title", "caption", "table"):
-        wanted.pop(word, None)
-    given_by = "config/config.yaml or the Snakefile"
-    found = [f"{line} ({given_by})" for line in changes(recorded, plain(wanted))]
-    for each, variable in new.variables.items():
-        if each in descriptions:
-            today = attributes(descriptions[str(each)], variable.dtype)
-            found += changes(plain(variable.attrs), plain(today), f"{each}.")
-    code = record(new, "code")
-    paths = [CHECKOUT / file for file in code if (CHECKOUT / file).is_file()]
-    now = contents(paths)
-    found += [file for file, content in code.items() if now.get(file) != content]
-    return f"stale, remove it and run again; changed since: {', '.join(found)}" if found else ""
 
 
 # Causes
@@ -300,180 +335,253 @@ def code_of_main() -> dict[str, str]:
     return {line.partition("\t")[2]: line.split()[2] for line in tree}
 
 
-@dataclass(frozen=True)
-class Causes:
-    """What can have changed a result: the code and the versions that are known to give the
-    reference, as accepted, and the code on the main branch.
+def causes(before: Mapping, after: Mapping, main: Mapping | None) -> dict[str, Sequence[str]]:
+    """What differs between the records of a file, by kind.
+
+    `main` has the code on the main branch; it is None if two runs are compared.
     """
-
-    accepted: Mapping
-    main: Mapping
-
-    def of(self, parameters: list[str], code: Mapping, made_with: Mapping) -> str:
-        """The cause of a difference, from changed parameters, and the code and versions of a
-        result.
-        """
-        new = [file for file, content in code.items() if self.accepted["code"].get(file) != content]
-        libraries = {name: made_with.get(name) for name in PACKAGES}
-        before = {name: self.accepted["versions"].get(name) for name in PACKAGES}
-        since = "changed since the last acceptance"
-        causes = {
-            "changed parameter": parameters,
-            "changed": [file for file in new if self.main and self.main.get(file) != code[file]],
-            "other versions": changes(before, libraries),
-        }
-        if not self.main:
-            causes[f"{since} (the main branch is not known here)"] = new
-        elif not any(causes.values()):
-            # The main branch itself differs from its reference.
-            causes = {since: new}
-        found = [f"{what}: {', '.join(which)}" for what, which in causes.items() if which]
-        return "; ".join(found) or "no parameter, code or version has changed: edited by hand?"
-
-
-def causes(project: Project) -> Causes:
-    """The causes that are known today."""
-    path = project.top / ACCEPTED
-    accepted = json.loads(path.read_text("utf-8")) if path.is_file() else {}
-    return Causes({"code": {}, "versions": {}} | accepted, code_of_main())
+    if not before["code"] or not after["code"]:
+        return {"cause": ["not known without a record"]}
+    code = [file for file, known in after["code"].items() if before["code"].get(file) != known]
+    old, new = ({name: each["versions"].get(name) for name in PACKAGES} for each in (before, after))
+    known = before["parameters"] and after["parameters"]
+    found: dict[str, Sequence[str]] = {
+        "changed parameter": changes(before["parameters"], after["parameters"]) if known else [],
+        "changed": code,
+        "other versions": changes(old, new),
+    }
+    since = "changed since the last acceptance"
+    if main:
+        found["changed"] = [file for file in code if main.get(file) != after["code"][file]]
+        # The main branch itself may differ from its reference.
+        found[since] = [] if any(found.values()) else code
+    elif main is not None:
+        found[f"{since} (the main branch is not known here)"] = found.pop("changed")
+    return {what: which for what, which in found.items() if which}
 
 
 # All files
 
 
+@dataclass(frozen=True)
+class Comparison:
+    """Two runs, how they are compared, and what was found.
+
+    Attributes
+    ----------
+    project
+        The workflow.
+    old, new
+        The runs.
+    config
+        The configuration of the new run, if the old one is the reference. Then the new run must be
+        what today's code makes. If it is None, both runs are judged by their records.
+    main
+        The code on the main branch, as in `causes`.
+    files
+        The files that are compared.
+    findings
+        Files that differ, are stale, missing or unexpected.
+    datasets
+        Names of the datasets among them.
+    following
+        Files that were not compared, because one of their datasets differs. A text has its changed
+        sentences, the old and the new one.
+    drawn_elsewhere
+        Pictures that were not compared, because another matplotlib drew them.
+    """
+
+    project: Project
+    old: Run
+    new: Run
+    config: Mapping | None
+    main: Mapping | None
+    files: Sequence[str]
+    findings: list[Finding] = field(default_factory=list)
+    datasets: list[str] = field(default_factory=list)
+    following: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    drawn_elsewhere: list[str] = field(default_factory=list)
+
+    @property
+    def names(self) -> list[str]:
+        """The figures, tables and texts that differ."""
+        return sorted({finding.name for finding in self.findings})
+
+    def verdict(self) -> str:
+        """The last line of the report."""
+        found = f"All {len(self.files)} files agree with {self.old.label}."
+        if self.findings:
+            found = f"Differences in {', '.join(self.names)}."
+        if self.drawn_elsewhere:
+            number = len(self.drawn_elsewhere)
+            found += f" {number} pictures of another matplotlib were not compared."
+        return found
+
+    def text(self) -> str:
+        """The report on a terminal."""
+        lines = [*map(str, self.findings)]
+        for file, pairs in self.following.items():
+            printed = [f"  − {old}\n  + {new}" for old, new in pairs[:SENTENCES]]
+            lines += [f"{file}, changed sentences: {len(pairs)}", *printed] if pairs else []
+        others = sorted(file for file, pairs in self.following.items() if not pairs)
+        if others:
+            lines.append(f"Not compared, because a dataset differs: {', '.join(others)}.")
+        return "\n".join([*lines, self.verdict()])
+
+    def finding(self, file: str) -> Finding | None:
+        """What is wrong with a file; None if nothing is, or if it is listed elsewhere."""
+        name = Path(file).stem
+        runs = (self.old, self.new)
+        for run in runs:
+            if not (run.folder / file).is_file():
+                return Finding(name, [f"{file} is missing in {run.label}"])
+        is_data = file.endswith(".nc")
+        same = not is_data and same_bytes(self.old.folder / file, self.new.folder / file)
+        old: Any = None if same else content_of(self.old, file)
+        new: Any = None if same else content_of(self.new, file)
+        before = self.old.record(file, old if is_data else None)
+        after = self.new.record(file, new if is_data else None)
+        found = [] if same else differences(file, old, new)
+        by_hand = [f"{file} of {run.label}" for run in runs if run.edited(file)]
+        follows = [Path(each).stem for each in after["data"] if Path(each).stem in self.datasets]
+        stale = older(self.old, before) + older(self.new, after)
+        if self.config is not None:
+            stale += outdated(self.project, self.new, file, self.config, new if is_data else None)
+        if stale and not (found and by_hand):
+            line = f"stale, remove it and run again; changed since: {', '.join(stale)}"
+            return Finding(name, [line], usable=False)
+        if not found and (same or before["parameters"] == after["parameters"]):
+            return None
+        if by_hand:
+            return Finding(name, found, {"edited by hand": by_hand}, not self.new.edited(file))
+        if is_data and follows:
+            return Finding(name, found, {"follows from": follows})
+        if follows:
+            self.following[file] = sentences(old, new) if file.endswith(".md") else []
+            return None
+        if file.endswith(PICTURES) and another_matplotlib(before, after):
+            self.drawn_elsewhere.append(file)
+            return None
+        if not is_data and self.rounded(file, before, after):
+            return None
+        if is_data and self.config is not None and described(old) != described(new):
+            # Descriptions are not among the code that a dataset records.
+            today = self.project.today().items()
+            described_by = {each: known for each, known in today if each.endswith("variables.py")}
+            after["code"] = after["code"] | described_by
+        nothing = {"cause": ["no parameter, code or version that is recorded has changed"]}
+        return Finding(name, found, causes(before, after, self.main) or nothing)
+
+    def rounded(self, file: str, before: Mapping, after: Mapping) -> bool:
+        """Whether a file differs only because numbers of its datasets, which agree, are rounded
+        otherwise: the same code made both, or today's code makes that of the reference again.
+        """
+        if self.config is None:
+            return not causes(before, after, None)
+        path = (self.old.folder / file).with_suffix(".nc")
+        with TemporaryDirectory() as folder:
+            try:
+                data = read(path) if path.exists() else None
+                self.project.make(path.stem, data, Path(folder))
+                return same_bytes(Path(folder, Path(file).name), self.old.folder / file)
+            except Exception:  # Whatever a drawing does not find in a dataset.
+                return False
+
+
 def compare(
     project: Project,
-    results: Path,
-    config: Mapping,
+    old: Run,
+    new: Run,
+    config: Mapping | None = None,
     names: Collection[str] = (),
-    makers: Mapping[str, Collection[str]] | None = None,
-) -> Report:
-    """Compare all files of results with the reference, or those of the figures and tables named.
+) -> Comparison:
+    """Compare all files of two runs, or those of the figures and tables named.
 
-    `config` is the configuration of the results. `makers` has the files of code that make a
-    picture, a table or a text. The code of a file that is not among them is all code that did not
-    compute its dataset.
+    If `config` is given, the old run is the reference, and the new run must be what today's code
+    makes with this configuration. If not, both runs are judged by their records.
     """
-    files = [
-        file
-        for file in project.files(project.top, results)
-        if not names or Path(file).stem in names
-    ]
-    if not files or not (results / "figures").is_dir():
-        return Report([f"{results}: there is nothing to compare"])
-    why = causes(project)
-    code = project.today()
-    report = Report(count=len(files))
-    differ: list[str] = []
+    files = project.files(old.folder, new.folder) if (new.folder / "figures").is_dir() else []
+    files = [file for file in files if not names or Path(file).stem in names]
+    main = None if config is None else code_of_main()
+    report = Comparison(project, old, new, config, main, files)
+    if not files:
+        report.findings.append(Finding(str(new.folder), ["there is nothing to compare"]))
+    for run in (old, new):
+        for name, record in run.records.items():
+            if "damaged" in record:
+                line = f"cannot be read in {run.label}: {record['damaged']}"
+                report.findings.append(Finding(name, [line], usable=False))
     for file in files:
-        name = Path(file).stem
-        if line := absent(project, results, file):
-            report.lines.append(f"{name}: {line}")
-            differ += [name] if file.endswith(".nc") else []
-        elif file.endswith(".nc"):
-            found = dataset_lines(project, results, file, config, why, differ)
-            report.lines.extend(f"{name}: {line}" for line in found)
-            differ += [name] if found else []
-        elif same_bytes(project.top / file, results / file):
-            continue
-        elif line := unreadable(project, results, file):
-            report.lines.append(f"{name}: {line}")
-        elif follows(project, file, differ):
-            report.skipped.append(file)
-        elif file.endswith(PICTURES) and another_matplotlib(project, results, name):
-            report.drawn_elsewhere.append(file)
-        elif not made_again(project, results, file):
-            change = "the picture differs"
-            if not file.endswith(PICTURES):
-                change = first_change(project.top / file, results / file)
-            able = without_models(project, results, name, code)
-            if makers and file in makers:
-                able = contents(makers[file])
-            # Pictures have no titles and captions of the configuration.
-            chosen = [] if file.endswith(PICTURES) else given(project, config)
-            line = f"{name}: {change}; {why.of(chosen, able, versions())}"
-            # Both pictures of a figure have the same line.
-            report.lines.extend({line} - {*report.lines})
+        try:
+            found = report.finding(file)
+        except Exception as error:  # Whatever readers raise for a damaged file.
+            line = f"{file} cannot be compared: {error}"
+            found = Finding(Path(file).stem, [line], usable=False)
+        # Both pictures of a figure have the same line.
+        if found and found not in report.findings:
+            report.findings.append(found)
+        if found and file.endswith(".nc"):
+            report.datasets.append(found.name)
     return report
 
 
-def given(project: Project, config: Mapping) -> list[str]:
-    """The parameters of a run that are not those of the checkout."""
-    return changes(plain(project.configuration()), plain(config))
+def older(run: Run, record: Mapping) -> list[str]:
+    """The datasets of a file that were made again after it."""
+    made = {name: run.record(name)["made"].get(name) for name in record["data"]}
+    return [name for name, known in record["data"].items() if made[name] not in (known, None)]
 
 
-def absent(project: Project, results: Path, file: str) -> str:
-    """What to say of a file that one side does not have; empty if both have it."""
-    if not (results / file).is_file():
-        return f"{file} is missing in the results"
-    if not (project.top / file).is_file():
-        return f"{file} is not in the reference; if it is new, accept it"
-    return ""
-
-
-def dataset_lines(
-    project: Project, results: Path, file: str, config: Mapping, why: Causes, differ: list[str]
+def outdated(
+    project: Project, run: Run, file: str, config: Mapping, data: xr.Dataset | None
 ) -> list[str]:
-    """Whether a dataset is stale, and where it differs most from the reference, with the cause.
-
-    `FOLLOWING` datasets follow from those that `differ`.
+    """What changed in the checkout since a file was made: the parameters of a dataset or a text,
+    descriptions and code.
     """
-    name = Path(file).stem
+    if file not in run.records:
+        return ["it has no record"]
+    record = run.record(file, data)
+    recorded = record["parameters"]
+    stages = [stage for stage in config.values() if isinstance(stage, Mapping)]
+    wanted = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
+    if data is not None:
+        entry = wanted.get(Path(file).stem, {}).items()
+        wanted = {key: value for key, value in config.items() if key in recorded}
+        wanted |= {key: value for key, value in entry if key not in ("caption", "table")}
+    given_by = "config/config.yaml or the Snakefile"
+    found = [f"{line} ({given_by})" for line in changes(recorded, plain(wanted)) if recorded]
+    descriptions = project.describe(Path(file).stem)
+    for name, variable in {} if data is None else data.variables.items():
+        if name in descriptions:
+            today = attributes(descriptions[str(name)], variable.dtype)
+            found += changes(plain(variable.attrs), plain(today), f"{name}.")
+    now = contents(path for path in map(CHECKOUT.joinpath, record["code"]) if path.is_file())
+    return found + [each for each, known in record["code"].items() if now.get(each) != known]
+
+
+def another_matplotlib(before: Mapping, after: Mapping) -> bool:
+    """Whether different versions of matplotlib drew the pictures, as their runs record."""
+    drawn_by = [record["versions"].get("matplotlib") for record in (before, after)]
+    return None not in drawn_by and drawn_by[0] != drawn_by[1]
+
+
+def content_of(run: Run, file: str) -> Any:
+    """A dataset, a picture, or the lines of a text.
+
+    Raises ValueError if a file is damaged, or is not what its name says. An example is a pointer of
+    Git LFS.
+    """
+    path = run.folder / file
     try:
-        old = read(project.top / file)
-        new = read(results / file)
-        about = changes(described(old), described(new))
-        found = about or differences(old, new)
-        old_code = stale(new, name, config, project.describe(name))
+        if path.suffix == ".nc":
+            return read(path)
+        if path.suffix == ".svg":
+            return ElementTree.parse(path)
+        content = path.read_bytes()
+        if path.suffix == ".png":
+            return Image.open(BytesIO(content)).load()
+        return content.replace(b"\r\n", b"\n").decode().split("\n")
     except Exception as error:  # Whatever readers raise for a damaged file.
-        return [f"{file} cannot be compared: {error!r}"]
-    parameters = changes(record(old, "parameters"), record(new, "parameters"))
-    if old.attrs.get("title") != new.attrs.get("title"):
-        parameters += [line for line in given(project, config) if f".{name}.title " in line]
-    lines = [old_code] if old_code else []
-    if found or parameters:
-        code = record(new, "code")
-        if about:
-            # Titles and descriptions are not among the code that a dataset records.
-            about_data = ("config/config.yaml", "variables.py")
-            now = project.today().items()
-            code |= {file: content for file, content in now if file.endswith(about_data)}
-        reason = why.of(parameters, code, record(new, "versions"))
-        if name in FOLLOWING and differ:
-            reason = f"follows from {', '.join(differ)}"
-        lines.append("; ".join([*found[:1], reason]))
-    return lines
-
-
-def without_models(
-    project: Project, results: Path, name: str, code: Mapping[str, str]
-) -> dict[str, str]:
-    """The code without the files that computed the dataset of a picture or table, which agrees."""
-    path = results / f"figures/{name}.nc"
-    if not (project.top / f"figures/{name}.nc").exists():
-        return dict(code)
-    computed_by = record(read(path), "code")
-    return {file: content for file, content in code.items() if file not in computed_by}
-
-
-def unreadable(project: Project, results: Path, file: str) -> str:
-    """What to say of a picture or a text that is empty or damaged on one side; empty if it is not.
-
-    An example is a pointer of Git LFS that stands in place of its file.
-    """
-    for side, folder in (("reference", project.top), ("results", results)):
-        path = folder / file
-        try:
-            if path.suffix == ".png":
-                with Image.open(path) as picture:
-                    picture.load()
-            elif path.suffix == ".svg":
-                ElementTree.parse(path)
-            else:
-                path.read_text("utf-8")
-        except Exception as error:  # Whatever readers raise for a damaged file.
-            return f"{file} of the {side} cannot be compared: {type(error).__name__}: {error}"
-    return ""
+        raise ValueError(f"in {run.label} {error!r}") from error
 
 
 def same_bytes(first: Path, second: Path) -> bool:
@@ -485,67 +593,34 @@ def same_bytes(first: Path, second: Path) -> bool:
     return one.replace(b"\r\n", b"\n") == other.replace(b"\r\n", b"\n")
 
 
-def follows(project: Project, file: str, differ: Collection[str]) -> bool:
-    """Whether a file follows from datasets that differ: its own, or for a text all of them."""
-    name = Path(file).stem
-    if (project.top / f"figures/{name}.nc").exists():
-        return name in differ
-    return bool(differ) and not file.endswith(PICTURES)
+def sentences(old: Sequence[str], new: Sequence[str]) -> list[tuple[str, str]]:
+    """The lines of a text that changed, in pairs. A line is a sentence or a row of a table.
 
-
-def another_matplotlib(project: Project, results: Path, name: str) -> bool:
-    """Whether the pictures of both sides were drawn by different versions of matplotlib.
-
-    A picture that names no version was not drawn by this workflow.
+    >>> sentences(["At 82.18.", "So it is."], ["At 83.1.", "New.", "So it is."])
+    [('At 82.18.', 'At 83.1.'), ('', 'New.')]
     """
-    drawn_by = []
-    for side in (project.top, results):
-        with Image.open(side / f"figures/{name}.png") as picture:
-            drawn_by.append(picture.info.get("Software"))
-    return None not in drawn_by and drawn_by[0] != drawn_by[1]
+    # Sentences that differ in numbers only belong together.
+    before, after = ([re.sub(r"\d[\d.]*", "#", line) for line in side] for side in (old, new))
+    pairs = [
+        pair
+        for _, i, j, k, m in SequenceMatcher(None, before, after, autojunk=False).get_opcodes()
+        for pair in zip_longest(old[i:j], new[k:m], fillvalue="")
+    ]
+    return [(one, other) for one, other in pairs if one != other]
 
 
-def made_again(project: Project, results: Path, file: str) -> bool:
-    """Whether today's code makes a file of both sides from the datasets of both sides."""
-    name = Path(file).stem
-    with TemporaryDirectory() as folder:
-        for side in (project.top, results):
-            path = side / f"figures/{name}.nc"
-            try:
-                project.make(name, read(path) if path.exists() else None, Path(folder))
-                agrees = same_bytes(Path(folder, Path(file).name), side / file)
-            except Exception:  # Whatever a drawing does not find in a dataset.
-                agrees = False
-            if not agrees:
-                return False
-    return True
-
-
-def first_change(old: Path, new: Path) -> str:
-    """The first line of a text that differs. After the line feed of the last line, an empty line
-    follows.
-    """
-    contents_of = (path.read_bytes().replace(b"\r\n", b"\n").decode() for path in (old, new))
-    texts = [content.split("\n") for content in contents_of]
-    lines = enumerate(zip_longest(*texts, fillvalue="the end of the text"), 1)
-    number, pair = next((number, pair) for number, pair in lines if pair[0] != pair[1])
-    return f"{new.name}, line {number}: {excerpt(*(line or 'an empty line' for line in pair))}"
-
-
-def write_page(project: Project, results: Path, report: Report) -> Path:
+def write_page(report: Comparison, page: Path) -> Path:
     """Write the page of a comparison, with the pictures of both sides that differ."""
-    page = results / "diff/index.html"
     page.unlink(missing_ok=True)
     pictures = {}
-    for path in sorted((results / "figures").glob("*.png")):
-        sides = [project.top / "figures" / path.name, path]
-        contents_of = [side.read_bytes() for side in sides if side.is_file()]
-        if len(contents_of) == 2 and contents_of[0] != contents_of[1]:
-            pictures[path.stem] = [base64.b64encode(each).decode() for each in contents_of]
+    for path in sorted(report.new.folder.glob("figures/*.png")):
+        sides = (run.folder / "figures" / path.name for run in (report.old, report.new))
+        found = [base64.b64encode(side.read_bytes()).decode() for side in sides if side.is_file()]
+        if len({*found}) == 2:
+            pictures[path.stem] = found
     template = jinja2.Template(TEMPLATE.read_text("utf-8"), autoescape=True)
-    text = template.render(lines=report.text().splitlines(), pictures=pictures)
     with whole(page) as unfinished:
-        unfinished.write_text(text, "utf-8")
+        unfinished.write_text(template.render(report=report, pictures=pictures), "utf-8")
     return page.resolve()
 
 
@@ -553,64 +628,92 @@ def accept(project: Project, results: Path) -> list[str]:
     """Make results the reference, and return the files that were written or removed.
 
     Datasets that agree, and their pictures, stay as they are: only the code that gave them again is
-    noted. Raises ValueError if a result is stale or cannot be read, or if its code is not
-    committed.
+    noted. Raises ValueError if a result is stale, was edited by hand or cannot be read, or if its
+    code is not committed.
     """
     if not git("rev-parse", "HEAD"):
         raise ValueError("nothing is accepted, because there is no git")
-    edited = git("status", "--porcelain", "--", *project.code)
-    if edited:
+    if edited := git("status", "--porcelain", "--", *project.code):
         raise ValueError(f"nothing is accepted, commit first: {edited}")
-    report = compare(project, results, project.configuration())
-    for line in report.lines:
-        if ": stale" in line or "cannot be compared" in line:
-            raise ValueError(f"nothing is accepted, run snakemake again first: {line}")
-    written = []
-    for file in project.files(project.top, results):
-        source = results / file
-        target = project.top / file
-        if not source.is_file():
-            target.unlink()
-        elif target.is_file() and same_bytes(source, target):
-            continue
-        elif file.endswith((".nc", *PICTURES)) and not (
-            source.stem in report.names or file in report.drawn_elsewhere
-        ):
-            continue
-        else:
-            with whole(target) as unfinished:
-                shutil.copyfile(source, unfinished)
-        written.append(file)
-    accepted = {"code": project.today(), "versions": versions()}
-    (project.top / ACCEPTED).write_text(f"{json.dumps(accepted, indent=0)}\n", "utf-8")
-    return written
+    reference = run_in(project.top, "the reference")
+    new = run_in(results, "the results")
+    report = compare(project, reference, new, project.configuration())
+    for finding in report.findings:
+        if not finding.usable:
+            raise ValueError(f"nothing is accepted, run snakemake again first: {finding}")
+    before = {file: content(project.top / file) for file in project.files(project.top)}
+    for file in report.files:
+        if not (results / file).is_file():
+            (project.top / file).unlink()
+        elif Path(file).stem in report.names or file in {
+            *report.following,
+            *report.drawn_elsewhere,
+        }:
+            with whole(project.top / file) as unfinished:
+                unfinished.write_bytes((results / file).read_bytes())
+    made = {file: content(project.top / file) for file in project.files(project.top)}
+    entries = new.record(project.texts[0]).get("entries", {})
+    accepted = {"made": made, "code": project.today(), "versions": versions(), "entries": entries}
+    with whole(project.top / ACCEPTED) as unfinished:
+        unfinished.write_text(f"{json.dumps(accepted, indent=0, ensure_ascii=False)}\n", "utf-8")
+    return [file for file in report.files if before.get(file) != made.get(file)]
+
+
+# The command and the rule
+
+
+def results_of(path: Path, unpacked: Path) -> Path:
+    """The folder of the results of a run: a folder itself, `results` in it, or the same in a zip
+    file, as continuous integration delivers it, which is unpacked.
+    """
+    base = path
+    if path.is_file():
+        shutil.unpack_archive(path, unpacked, "zip")
+        base = unpacked
+    return base if (base / "figures").is_dir() else base / "results"
 
 
 def main(project: Project, arguments: list[str]) -> int:
-    """Compare a folder of results, and print the report: the command `compare.py FOLDER`."""
-    if len(arguments) != 1:
-        print("usage: python workflow/scripts/compare.py FOLDER")
-        return 2
-    report = compare(project, Path(arguments[0]), project.configuration())
-    print(report.text())
-    if (Path(arguments[0]) / "figures").is_dir():
-        print(write_page(project, Path(arguments[0]), report))
-    return 1 if report.lines else 0
+    """Compare a run with the reference, or two runs: the command `compare.py`.
+
+    Returns the exit status: 1 if something differs.
+    """
+    parser = argparse.ArgumentParser(
+        prog="compare.py",
+        description="Compare a run with the reference in git, or two runs with each other.",
+        epilog="The exit status is 1 if something differs. The last line is the path of a page.",
+    )
+    about = "a folder with results, or a zip file of it, as continuous integration delivers it"
+    parser.add_argument("run", type=Path, help=about)
+    parser.add_argument("other", type=Path, nargs="?", help="compare this run with the first one")
+    given = parser.parse_args(arguments)
+    paths = [path for path in (given.run, given.other) if path]
+    page = (paths[-1] if paths[-1].is_dir() else paths[-1].parent) / "diff/index.html"
+    config = None
+    with TemporaryDirectory() as unpacked:
+        try:
+            folders = [results_of(path, Path(unpacked, str(n))) for n, path in enumerate(paths)]
+        except Exception as error:  # Whatever unpacking raises for a damaged file.
+            parser.error(f"a run cannot be read: {error}")
+        runs = [run_in(folder, str(path)) for folder, path in zip(folders, paths, strict=True)]
+        if given.other is None:
+            runs = [run_in(project.top, "the reference"), run_in(folders[0], "the results")]
+            config = project.configuration()
+        report = compare(project, runs[0], runs[1], config)
+        print(report.text())
+        if report.files:
+            print(write_page(report, page))
+    return 1 if report.findings else 0
 
 
-def report_of_run(
-    project: Project,
-    results: Path,
-    config: Mapping,
-    names: Collection[str],
-    makers: Mapping[str, Collection[str]],
-) -> int:
+def report_of_run(project: Project, results: Path, config: Mapping, names: Collection[str]) -> int:
     """Compare the results of a run, and save the report as text and as a page: the rule `diff`.
 
     Returns the exit status: 1 if something differs. Snakemake then prints the log, at its end.
     """
-    report = compare(project, results, config, names, makers)
-    text = f"{report.text()}\n{write_page(project, results, report)}\n"
+    runs = (run_in(project.top, "the reference"), run_in(results, "the results"))
+    report = compare(project, *runs, config, names)
+    text = f"{report.text()}\n{write_page(report, results / 'diff/index.html')}\n"
     (results / "diff/report.txt").write_text(text, "utf-8")
-    print(text, end="", file=sys.stderr if report.lines else sys.stdout)
-    return 1 if report.lines else 0
+    print(text, end="", file=sys.stderr if report.findings else sys.stdout)
+    return 1 if report.findings else 0

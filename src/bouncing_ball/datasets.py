@@ -116,13 +116,36 @@ def save_stage(
     configuration, and as keywords those settings of the run that are among its arguments. A dataset
     records only these.
     """
-    for name, path in snakemake.output.items():
+    for name in snakemake.params.entries:
+        path = snakemake.output[name]
         entry = dict(snakemake.params.entries[name])
         title = entry.pop("title")
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = stage[name](entry, **settings)
         save(dataset, path, title, entry | settings, snakemake.input.code, describe)
+    save_record(snakemake)
+
+
+def save_record(snakemake: Any) -> None:
+    """Record what a job made, and from what, in its output `record`: a file of JSON.
+
+    Paths are those from the folder of the results, and files of code those from the checkout. Each
+    has the hash of its content. A comparison reads the record.
+    """
+    path = Path(snakemake.output.record)
+    results = path.parents[1]
+    data = getattr(snakemake.input, "data", [])
+    found = {
+        "made": contents(set(snakemake.output) - {snakemake.output.record}, results),
+        "data": contents([data] if isinstance(data, str) else data, results),
+        "code": contents(snakemake.input.code),
+        "versions": versions(),
+        "entries": plain(getattr(snakemake.params, "entries", {})),
+    }
+    with whole(path) as unfinished:
+        text = json.dumps(found, indent=1, sort_keys=True, ensure_ascii=False)
+        unfinished.write_text(f"{text}\n", "utf-8")
 
 
 def attributes(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

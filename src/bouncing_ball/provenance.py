@@ -19,19 +19,21 @@ PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries on which numbers and pictures depend."""
 
 
-def contents(files: Iterable[str | Path]) -> dict[str, str]:
-    """Identify text files by content: the hash that git gives to each, by the path in CHECKOUT.
+def content(file: str | Path) -> str:
+    """Identify a file by its content: the hash that git gives to it. Line ends do not count.
 
-    `git show HASH` prints the content if it was committed. Line ends do not count.
+    `git show HASH` prints the content if it was committed.
     """
-    found = {}
-    for file in files:
-        path = Path(file).resolve()
-        text = path.read_bytes().replace(b"\r\n", b"\n")
-        blob = b"blob %d\0" % len(text) + text
-        name = path.relative_to(CHECKOUT).as_posix()
-        found[name] = hashlib.sha1(blob, usedforsecurity=False).hexdigest()
-    return found
+    text = Path(file).read_bytes().replace(b"\r\n", b"\n")
+    blob = b"blob %d\0" % len(text) + text
+    return hashlib.sha1(blob, usedforsecurity=False).hexdigest()
+
+
+def contents(files: Iterable[str | Path], top: Path | None = None) -> dict[str, str]:
+    """The contents of files, by their paths from a folder, which is CHECKOUT if none is given."""
+    base = (top or CHECKOUT).resolve()
+    paths = [Path(file).resolve() for file in files]
+    return {path.relative_to(base).as_posix(): content(path) for path in paths}
 
 
 @cache

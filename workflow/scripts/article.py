@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from bouncing_ball import article, pages
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from bouncing_ball.origins import bare
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
@@ -22,3 +22,4 @@ for name, text in marked.items():
     texts[f"{name}_page"] = pages.page_of(text, name, captions, origins[name])
 for name, text in texts.items():
     Path(snakemake.output[name]).write_text(text, encoding="utf-8", newline="\n")
+save_record(snakemake)

@@ -23,7 +23,7 @@ import time_histories
 import xarray as xr
 
 from bouncing_ball import claims
-from bouncing_ball.datasets import Datasets, parameters, read, save
+from bouncing_ball.datasets import Datasets, parameters, read, save, save_record
 from bouncing_ball.paper import TABLE_1, differences, printed_table
 from bouncing_ball.verdicts import Claim, answer
 
@@ -199,3 +199,4 @@ if __name__ == "__main__":
     found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
     title = "Verdicts that depend on what cannot be read in the paper"
     save(found, snakemake.output.nc, title, {}, snakemake.input.code)
+    save_record(snakemake)

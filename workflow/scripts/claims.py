@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from bouncing_ball.claims import judge
-from bouncing_ball.datasets import read, save
+from bouncing_ball.datasets import read, save, save_record
 from bouncing_ball.tables import all_claims, claims_markdown, comma_separated
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
@@ -15,3 +15,4 @@ save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code)
 Path(snakemake.output.md).write_text(claims_markdown(verdicts), encoding="utf-8", newline="\n")
 table = comma_separated(all_claims(verdicts))
 Path(snakemake.output.csv).write_text(table, encoding="utf-8", newline="\n")
+save_record(snakemake)

@@ -1,9 +1,10 @@
 """Compare results with the reference, print what differs, and write a page with both pictures.
 
 Snakemake runs this script for the target `diff`. Results from elsewhere, such as those of
-continuous integration, are compared with
+continuous integration, are compared with the reference, or with each other:
 
-    python workflow/scripts/compare.py FOLDER
+    python workflow/scripts/compare.py RUN
+    python workflow/scripts/compare.py RUN OTHER
 
 The exit status is 1 if something differs.
 """
@@ -41,10 +42,11 @@ PROJECT = Project(
 )
 
 if __name__ == "__main__" and "snakemake" not in globals():
+    # A console may lack characters such as arrows.
+    sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names, snakemake.params.makers
     results = Path(snakemake.log[0]).parents[1]
-    sys.exit(report_of_run(PROJECT, results, *given))
+    sys.exit(report_of_run(PROJECT, results, snakemake.params.config, snakemake.params.names))

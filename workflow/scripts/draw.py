@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from bouncing_ball.drawing import save_picture
 from bouncing_ball.figures import Empty, draw
 
@@ -15,3 +15,4 @@ try:
 except Empty as error:
     sys.exit(f"configuration: {error}")
 save_picture(figure, png, snakemake.output.svg)
+save_record(snakemake)

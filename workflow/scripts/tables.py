@@ -3,10 +3,11 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from bouncing_ball.tables import TABLES, comma_separated, markdown
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 rows = TABLES[Path(snakemake.output.md).stem](read(snakemake.input.data))
 Path(snakemake.output.md).write_text(markdown(rows), encoding="utf-8", newline="\n")
 Path(snakemake.output.csv).write_text(comma_separated(rows), encoding="utf-8", newline="\n")
+save_record(snakemake)

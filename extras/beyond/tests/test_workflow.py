@@ -73,7 +73,7 @@ class Checkout:
         """The results of a run."""
         base = self.path / "extras/beyond/results"
         found = {str(path.relative_to(base)) for path in base.rglob("*") if path.is_file()}
-        return {name for name in found if not name.startswith("logs/")}
+        return {name for name in found if not name.startswith(("logs/", "records/"))}
 
 
 @pytest.fixture(scope="module")

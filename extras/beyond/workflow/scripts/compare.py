@@ -1,8 +1,10 @@
 """Compare results with the reference, print what differs, and write a page with both pictures.
 
-Snakemake runs this script for the target `diff`; results from elsewhere are compared with
+Snakemake runs this script for the target `diff`; results from elsewhere are compared with the
+reference, or with each other:
 
-    python workflow/scripts/compare.py FOLDER
+    python workflow/scripts/compare.py RUN
+    python workflow/scripts/compare.py RUN OTHER
 """
 
 import sys
@@ -50,5 +52,5 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names, snakemake.params.makers
+    given = snakemake.params.config, snakemake.params.names
     sys.exit(report_of_run(PROJECT, Path("results"), *given))

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from bouncing_ball.drawing import save_picture
 from studies.figures import draw
 
@@ -11,3 +11,4 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = snakemake.input.data
 picture = draw(Path(data).stem, read(data))
 save_picture(picture, snakemake.output.png, snakemake.output.svg)
+save_record(snakemake)

@@ -3,9 +3,10 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from studies.explorer import page
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = read(snakemake.input.data)
 Path(snakemake.output.html).write_text(page(data), encoding="utf-8", newline="\n")
+save_record(snakemake)

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read
+from bouncing_ball.datasets import read, save_record
 from bouncing_ball.tables import comma_separated, markdown
 from studies.tables import TABLES
 
@@ -13,3 +13,4 @@ rows = TABLES[Path(data).stem](read(data))
 texts = {snakemake.output.md: markdown(rows), snakemake.output.csv: comma_separated(rows)}
 for path, text in texts.items():
     Path(path).write_text(text, encoding="utf-8", newline="\n")
+save_record(snakemake)

@@ -370,14 +370,14 @@ def numbers(
     """
     judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
-    others = {name: without_dataset(text, origin[name]) for name, text in texts.items()}
+    others = [each for name in texts for each in without_dataset(texts[name], origin[name])]
     template = article.environment(article.TEMPLATES).get_template("numbers.html.j2")
     contents = [
         ("", "Where the numbers come from"),
         *((name, name.title()) for name in texts),
         ("others", "Without a dataset"),
     ]
-    return framed(template.render(texts=sentences, others=others), "numbers", contents)
+    return framed(template.render(texts=sentences, others=dict.fromkeys(others)), "numbers", contents)
 
 
 def sentences_of(
@@ -398,7 +398,7 @@ def sentences_of(
                 rows.append(
                     {
                         "number": number,
-                        "text": ", ".join(printed.pop(number)),
+                        "text": together(printed.pop(number)),
                         "terms": terms,
                         "datasets": origin[number].datasets,
                         "claims": [row for row in judged if row["claim"] in claims],
@@ -407,6 +407,16 @@ def sentences_of(
         if rows:
             found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
     return found
+
+
+def together(words: Sequence[str], shown: int = 6) -> str:
+    """Join what an expression prints; of a long table the first words, and their number.
+
+    >>> together(["1.03", "1.04"]), together(["1.03", "1.04", "1.05"], 2)
+    ('1.03, 1.04', '1.03, 1.04, … (3 in all)')
+    """
+    text = ", ".join(words[:shown])
+    return text if len(words) <= shown else f"{text}, … ({len(words)} in all)"
 
 
 def without_dataset(text: str, origin: Sequence[origins.Origin]) -> list[tuple[str, str]]:

@@ -11,7 +11,6 @@ import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -141,8 +140,12 @@ def report(project, names=(), config=CONFIG):
     return compare.compare(project, reference, results, config, names)
 
 
+def printed(found):
+    return found.printed("diff.txt.j2").splitlines()
+
+
 def lines(project, **given):
-    return [*map(str, report(project, **given).findings)]
+    return report(project, **given).lines()
 
 
 @pytest.mark.parametrize("linked", [False, True])
@@ -174,7 +177,7 @@ def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp
 
 
 def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
-    assert report(project).text() == "All 8 files agree with the reference."
+    assert printed(report(project)) == ["All 8 files agree with the reference."]
     run(project, height=(1.0, 2.0 + 1e-9))
     assert lines(project) == []
 
@@ -184,7 +187,7 @@ def test_a_parameter_is_the_cause_and_names_no_file(project):
     run(project, height=(1.0, 2.5), verdict="contradicted", text="83", entries=entries, n=2)
     config = {"release": "force", "stage": entries}
     found = report(project, config=config)
-    assert [*map(str, found.findings)] == [
+    assert found.lines() == [
         "fig14: max_height 2 → 2.5 at frequency_ratio = 2; changed parameter: n 1 → 2",
         "claims: verdict reproduced → contradicted at claim = high; follows from: fig14",
     ]
@@ -195,14 +198,12 @@ def test_a_parameter_is_the_cause_and_names_no_file(project):
         "paper.md": changed,
         "supplement.md": changed,
     }
-    assert found.text().splitlines()[2:6] == [
-        "paper.md, changed sentences: 1",
-        "  − is 82",
-        "  + is 83",
-        "supplement.md, changed sentences: 1",
+    assert printed(found)[2:] == [
+        *("paper.md, changed sentences: 1", "  − is 82", "  + is 83"),
+        *("supplement.md, changed sentences: 1", "  − is 82", "  + is 83"),
+        "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg.",
+        "Differences in claims, fig14.",
     ]
-    others = "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg."
-    assert others in found.text()
     # With the configuration in git these results are stale.
     assert lines(project)[0] == (
         "fig14: stale, remove it and run again; changed since: n 2 → 1 "
@@ -248,12 +249,11 @@ def test_a_caption_of_the_checkout_makes_texts_stale(project):
     assert lines(project, config=config) == [f"paper: {since}", f"supplement: {since}"]
 
 
-def test_a_result_without_a_record_is_stale(project):
-    (project.top / "results/records/fig14.json").unlink()
-    (project.top / "results/records/stage.json").write_text("<<<<<<< HEAD\n", "utf-8")
-    found = lines(project)
-    assert found[0].startswith("records/stage.json: cannot be read in the results")
-    assert found[1:] == [f"fig14: {STALE} it has no record"]
+@pytest.mark.parametrize("left", ["", "<<<<<<< HEAD\n"])
+def test_a_result_without_a_record_is_stale(project, left):
+    record = project.top / "results/records/fig14.json"
+    record.write_text(left, "utf-8")
+    assert lines(project) == [f"fig14: {STALE} it has no record"]
     with pytest.raises(ValueError, match="nothing is accepted"):
         compare.accept(project, project.top / "results")
 
@@ -355,8 +355,8 @@ def test_variables_shapes_types_and_infinities_differ(project, change, line):
 def test_titles_and_captions_are_parameters(project):
     entries = {"fig14": ENTRIES["fig14"] | {"title": "Mine", "caption": "Other"}}
     run(project, text="83", entries=entries)
-    found = report(project, config={"release": "force", "stage": entries})
-    assert [*map(str, found.findings)] == ["fig14: changed parameter: title T → Mine"]
+    found = lines(project, config={"release": "force", "stage": entries})
+    assert found == ["fig14: changed parameter: title T → Mine"]
     entries = {"fig14": ENTRIES["fig14"] | {"caption": "Other"}}
     run(project, text="83", entries=entries)
     assert lines(project, config={"release": "force", "stage": entries}) == [
@@ -390,11 +390,10 @@ def test_an_edit_by_hand_is_called_one_and_no_code_is_blamed(project, side, newe
     path = folder / "figures/claims.nc"
     datasets.read(path).assign(verdict=("claim", ["near"])).to_netcdf(path)
     found = report(project).findings
-    assert {str(each).partition("; ")[2] for each in found if each.name != "claims"} == {
-        f"edited by hand: {file} of {side}"
-        for file in ("paper.md", "figures/fig01.png", "figures/fig14.png")
+    files = ["figures/claims.nc", "figures/fig01.png", "figures/fig14.png", "paper.md"]
+    assert {file: each.causes for file, each in found.items()} == {
+        file: {"edited by hand": [f"{file} of {side}"]} for file in files
     }
-    assert f"edited by hand: figures/claims.nc of {side}" in str(found[0])
     if side == "the results":
         if newer == "not committed":
             commit(project.top)
@@ -432,7 +431,7 @@ def test_a_reference_whose_files_are_not_recorded_is_compared(project):
     run(project, text="83")
     assert lines(project)[0].endswith(f"cause: {NOTHING}")
     path.write_text("<<<<<<< HEAD\n", "utf-8")
-    assert lines(project)[0].startswith("figures/accepted.json: cannot be read in the reference")
+    assert lines(project)[0].endswith("cause: not known without a record")
 
 
 def test_the_verdict_of_a_red_run_is_in_its_log(project, capsys):
@@ -466,7 +465,7 @@ def test_a_picture_that_names_no_matplotlib_is_compared_and_so_is_its_svg(projec
     svg.write_text(svg.read_text("utf-8").replace("</svg>", "<g/></svg>"), "utf-8")
     found = report(project)
     assert found.drawn_elsewhere == []
-    assert [*map(str, found.findings)] == [
+    assert found.lines() == [
         f"{name}: the picture differs; edited by hand: figures/{name}.{kind} of the results"
         for name, kind in (("fig01", "svg"), ("fig14", "png"))
     ]
@@ -519,7 +518,9 @@ def test_pictures_of_another_matplotlib_are_counted_and_not_compared(project, mo
     monkeypatch.setattr(datasets, "versions", lambda: other)
     run(replace(project, make=partial(make, form="height {:.3g}")))
     agree = "All 8 files agree with the reference."
-    assert report(project).text() == f"{agree} 2 pictures of another matplotlib were not compared."
+    assert printed(report(project)) == [
+        f"{agree} 2 pictures of another matplotlib were not compared."
+    ]
     redrawn(project.top / "results/figures/fig14.png")
     assert lines(project) == [
         "fig14: the picture differs; edited by hand: figures/fig14.png of the results"
@@ -537,7 +538,7 @@ def test_pictures_of_rounded_numbers_must_be_those_that_the_code_draws(project):
     # Two runs are compared without today's code.
     reference = compare.run_in(project.top, "one")
     results = compare.run_in(project.top / "results", "other")
-    assert compare.compare(project, reference, results).findings == []
+    assert compare.compare(project, reference, results).findings == {}
     edit(project, "src/drawing.py")
     run(replace(other, make=partial(make, form="{:.1f}")))
     assert lines(other) == []
@@ -559,23 +560,27 @@ def test_missing_new_and_damaged_files_are_named(project):
     assert lines(project, names=["fig17"]) == found[:1]
 
 
-def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project):
+def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project, capsys):
     run(project, height=(1.0, 2.5))
     results = project.top / "results"
-    found = report(project)
-    page = compare.write_page(found, results / "diff/index.html")
+    assert compare.report_of_run(project, results, CONFIG, []) == 1
+    page = results / "diff/index.html"
     text = page.read_text("utf-8")
-    assert page.is_absolute() and "max_height 2 → 2.5" in text
+    assert "max_height 2 → 2.5" in text
     shown = [
         text.index(base64.b64encode((side / "figures/fig14.png").read_bytes()).decode())
         for side in (project.top, results)
     ]
     assert shown == sorted(shown)
+    printed = capsys.readouterr().err
+    assert (results / "diff/report.txt").read_text("utf-8") == printed
+    assert printed.splitlines()[-2:] == ["Differences in fig14.", str(page)]
     run(project)
-    assert "fig14" not in compare.write_page(report(project), page).read_text("utf-8")
+    assert compare.report_of_run(project, results, CONFIG, []) == 0
+    assert "fig14" not in page.read_text("utf-8")
 
 
-def test_the_command_prints_the_report_the_page_and_its_status(project, capsys):
+def test_the_command_prints_the_report_the_page_and_its_status(project, capsys, tmp_path):
     results = str(project.top / "results")
     run(project, text="83")
     assert compare.main(project, [results]) == 1
@@ -583,14 +588,17 @@ def test_the_command_prints_the_report_the_page_and_its_status(project, capsys):
     assert printed[-2:] == ["Differences in paper, supplement.", f"{results}/diff/index.html"]
     run(project)
     assert compare.main(project, [results]) == 0
-    assert compare.main(project, [str(project.top / "nothing")]) == 1
-    for arguments, status in ([[], 2], [["--help"], 0], [[__file__], 2]):
+    for arguments, status, line in (
+        ([], 2, "compare.py: error: "),
+        ([str(tmp_path / "nothing")], 2, "compare.py: error: a run cannot be read: there is noth"),
+        ([__file__], 2, "compare.py: error: a run cannot be read: "),
+        (["--help"], 0, "usage: compare.py "),
+    ):
+        capsys.readouterr()
         with pytest.raises(SystemExit) as ended:
             compare.main(project, arguments)
         assert ended.value.code == status
-    captured = capsys.readouterr()
-    assert "usage: compare.py" in captured.out
-    assert captured.err.splitlines()[-1].startswith("compare.py: error: a run cannot be read: ")
+        assert "\n" + line in "\n" + "".join(capsys.readouterr())
 
 
 def two_runs(project, tmp_path):
@@ -618,15 +626,10 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
         other = shutil.make_archive(str(tmp_path / "artifact"), "zip", base)
         page = tmp_path / "diff/index.html"
     assert compare.main(project, [str(one), str(other)]) == 1
-    printed = capsys.readouterr().out.splitlines()
-    assert printed == [
+    assert capsys.readouterr().out.splitlines() == [
         "fig14: max_height 2 → 2.5 at frequency_ratio = 2; changed parameter: n 1 → 2",
-        "paper.md, changed sentences: 1",
-        "  − is 82",
-        "  + is 83",
-        "supplement.md, changed sentences: 1",
-        "  − is 82",
-        "  + is 83",
+        *("paper.md, changed sentences: 1", "  − is 82", "  + is 83"),
+        *("supplement.md, changed sentences: 1", "  − is 82", "  + is 83"),
         "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg.",
         "Differences in fig14.",
         str(page),
@@ -636,27 +639,36 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
     assert compare.main(project, [str(one), str(one)]) == 0
 
 
+def test_a_text_with_another_title_has_no_sentences(project):
+    run(project, height=(1.0, 2.5), text="83")
+    path = project.top / "results/paper.md"
+    path.write_text("another run\nis 83\n", "utf-8")
+    note(project, "article", project.texts, "src/writing.py", ["fig14"], entries=ENTRIES)
+    assert report(project).following["paper.md"] == []
+    assert report(project).following["supplement.md"] == [("is 82", "is 83")]
+
+
 def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
     one = two_runs(project, tmp_path)[0]
     other = provenance.versions() | {"numpy": "9.9"}
     monkeypatch.setattr(datasets, "versions", lambda: other)
     edit(project, "src/model.py")
-    run(project, height=(1.0, 2.5), entries=ENTRIES)
+    run(project, height=(1.0, 2.5))
     runs = [compare.run_in(folder, "a run") for folder in (one, project.top / "results")]
-    (found,) = compare.compare(project, *runs).findings
-    assert found.causes == {
-        "changed": ["src/model.py"],
-        "other versions": [f"numpy {np.__version__} → 9.9"],
-    }
+    causes = {"changed": ["src/model.py"], "other versions": [f"numpy {np.__version__} → 9.9"]}
+    (found,) = compare.compare(project, *runs).findings.values()
+    assert found.causes == causes
     shutil.rmtree(one / "records")
     runs[0] = compare.run_in(one, "a run")
-    # A dataset has its own provenance.
-    assert compare.compare(project, *runs).findings == [found]
-    Path(one / "paper.md").write_text("by hand\n", "utf-8")
+    # A dataset has its own provenance, and a text has none without a record.
+    (found,) = compare.compare(project, *runs).findings.values()
+    assert found.causes == causes
     run(project, text="83")
     runs[1] = compare.run_in(project.top / "results", "another run")
     found = compare.compare(project, *runs).findings
-    assert [each.causes for each in found] == [{"cause": ["not known without a record"]}] * 2
+    assert {file: each.causes for file, each in found.items()} == {
+        text: {"cause": ["not known without a record"]} for text in project.texts
+    }
 
 
 def test_what_differs_is_accepted_and_what_agrees_stays(project):

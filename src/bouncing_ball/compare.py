@@ -24,38 +24,35 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from functools import partial
-from io import BytesIO
 from itertools import takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, TextIO
 from xml.etree import ElementTree
 
-import jinja2
 import numpy as np
 import xarray as xr
 import yaml
 from PIL import Image
 
-from bouncing_ball.datasets import attributes, plain, read, whole
+from bouncing_ball.article import TEMPLATES, environment
+from bouncing_ball.datasets import attributes, plain, read, write
 from bouncing_ball.provenance import CHECKOUT, PACKAGES, content, contents, versions
-from bouncing_ball.variables import Variable
-from bouncing_ball.variables import described as descriptions
+from bouncing_ball.variables import Variable, described
 
 FOLLOWING = ("claims", "choices")
 """Datasets that are made of all others."""
 ACCEPTED = "figures/accepted.json"
 PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
 """Attributes of a dataset that are causes of a difference, or are not compared."""
-INSIDE = ("parameters", "code", "versions")
-"""What a dataset records of itself."""
 PICTURES = (".png", ".svg")
-TEMPLATE = CHECKOUT / "workflow/templates/diff.html.j2"
-SENTENCES = 10
-"""Changed sentences of a text that are printed; the page of a comparison shows all."""
+NOTHING: Mapping[str, Sequence[str]] = {
+    "cause": ["no parameter, code or version that is recorded has changed"]
+}
 
 
 @dataclass(frozen=True)
@@ -81,24 +78,16 @@ class Project:
     texts: tuple[str, ...]
     make: Callable[[str, xr.Dataset | None, Path], None]
     code: tuple[str, ...]
-    describe: Callable[[str], Mapping[str, Variable]] = descriptions
+    describe: Callable[[str], Mapping[str, Variable]] = described
 
     def files(self, *sides: Path) -> list[str]:
         """All files that one of the folders has: datasets first, and `FOLLOWING` last of them."""
         found = {text for text in self.texts if any((side / text).exists() for side in sides)}
-        for side in sides:
-            found.update(f"figures/{path.name}" for path in side.glob("figures/[!.]*"))
-        found.discard(ACCEPTED)
+        found |= {f"figures/{path.name}" for side in sides for path in side.glob("figures/[!.]*")}
         return sorted(
-            found, key=lambda file: (file[-3:] != ".nc", Path(file).stem in FOLLOWING, file)
+            found - {ACCEPTED},
+            key=lambda file: (file[-3:] != ".nc", Path(file).stem in FOLLOWING, file),
         )
-
-    def today(self) -> dict[str, str]:
-        """The files of code, each with the hash of its content."""
-        kinds = (".py", ".j2", ".csv", ".yaml", ".js", ".css", ".json")
-        paths = [CHECKOUT / name for name in self.code]
-        paths += [each for path in paths for each in path.rglob("*.*")]
-        return contents(sorted(path for path in paths if path.suffix in kinds))
 
     def configuration(self) -> dict:
         """The configuration of the checkout."""
@@ -133,10 +122,18 @@ class Run:
         found = {"made": {}, "data": {}, "code": {}, "versions": {}} | known
         found["parameters"] = known.get("entries", {})
         if data is not None:
-            found |= {key: json.loads(data.attrs.get(key, "{}")) for key in INSIDE}
-        if data is not None and found["parameters"]:
-            found["parameters"] |= {"title": data.attrs.get("title")}
+            found |= {
+                key: json.loads(data.attrs.get(key, "{}"))
+                for key in ("parameters", "code", "versions")
+            }
+            # The titles of claims and choices are code.
+            found["parameters"] |= {"title": data.attrs["title"]} if found["parameters"] else {}
         return found | accepted
+
+    def older(self, record: Mapping) -> list[str]:
+        """The datasets of a file that were made again after it."""
+        made = {name: self.record(name)["made"].get(name) for name in record["data"]}
+        return [name for name, known in record["data"].items() if made[name] not in (known, None)]
 
     def edited(self, file: str) -> bool:
         """Whether a file is not what its record names."""
@@ -145,26 +142,22 @@ class Run:
 
 
 def run_in(folder: Path, label: str) -> Run:
-    """The run in a folder, with its records."""
+    """The run in a folder, with its records. A damaged record is none."""
     records: dict[str, dict] = {}
     for path in [*folder.glob("records/*.json"), *folder.glob(ACCEPTED)]:
-        try:
+        with suppress(ValueError):
             record = json.loads(path.read_text("utf-8"))
-        except ValueError as error:
-            record = {"damaged": repr(error)}
-        name = path.relative_to(folder).as_posix()
-        records |= dict.fromkeys([name, *record.get("made", {})], record)
+            files = [path.relative_to(folder).as_posix(), *record.get("made", {})]
+            records |= dict.fromkeys(files, record)
     return Run(label, folder, records)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A figure, a table or a text that differs.
+    """What is wrong with a file.
 
     Attributes
     ----------
-    name
-        The name of its files.
     differences
         What differs, the furthest first.
     causes
@@ -173,14 +166,13 @@ class Finding:
         Whether `accept` may make it the reference.
     """
 
-    name: str
     differences: Sequence[str]
     causes: Mapping[str, Sequence[str]] = field(default_factory=dict)
     usable: bool = True
 
     def __str__(self) -> str:
         causes = [f"{what}: {', '.join(which)}" for what, which in self.causes.items()]
-        return f"{self.name}: {'; '.join([*self.differences[:1], *causes])}"
+        return "; ".join([*self.differences[:1], *causes])
 
 
 # Datasets
@@ -207,7 +199,7 @@ def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
     return found
 
 
-def described(data: xr.Dataset) -> dict:
+def about(data: xr.Dataset) -> dict:
     """What a dataset has apart from numbers: attributes, and types and dimensions of variables."""
     found = {key: value for key, value in data.attrs.items() if key not in PROVENANCE}
     for name, variable in data.variables.items():
@@ -222,7 +214,7 @@ def described(data: xr.Dataset) -> dict:
 def differences(file: str, old: Any, new: Any) -> list[str]:
     """What differs in the contents of a file, which are those of `content_of`."""
     if file.endswith(".nc"):
-        return changes(described(old), described(new)) or values_that_differ(old, new)
+        return changes(about(old), about(new)) or values_that_differ(old, new)
     if file.endswith(PICTURES):
         return ["the picture differs"]
     # An empty line follows the last line feed.
@@ -265,9 +257,9 @@ def distances(name: str, old: xr.Dataset, new: xr.Dataset) -> np.ndarray:
     if y.dtype.kind != "f":
         return unequal
     given = old[name].attrs
-    scale = abs(old[given.get("tolerance_scale", name)].values)
-    if "tolerance_scale" not in given:
-        scale = np.maximum(scale, given["floor"])
+    scale = np.maximum(abs(y), given["floor"])
+    if "tolerance_scale" in given:
+        scale = abs(old[given["tolerance_scale"]].values)
     with np.errstate(all="ignore"):
         ratio = abs(x - y) / (given["tolerance"] * scale)
     return np.where(np.isnan(ratio), unequal, ratio)
@@ -318,46 +310,48 @@ def git(*arguments: str) -> str:
     try:
         names = run(["git", "rev-parse", "--local-env-vars"]).stdout.split()
         environment = {name: value for name, value in os.environ.items() if name not in names}
-        answer = run(["git", "-C", str(CHECKOUT), *arguments], env=environment)
+        return run(["git", "-C", str(CHECKOUT), *arguments], env=environment).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return ""
-    return answer.stdout.strip()
+
+
+def tree(commit: str, *paths: str) -> dict[str, str]:
+    """The hashes of the files of a commit."""
+    listed = git("ls-tree", "-r", commit, *paths)
+    return {line.partition("\t")[2]: line.split()[2] for line in listed.splitlines()}
 
 
 def code_of_main() -> dict[str, str]:
     """The hashes of the files on the main branch where this one left it; empty if no main branch is
     known, as in a shallow checkout.
     """
-    branches = ("origin/HEAD", "origin/main", "main")
-    forks = filter(None, (git("merge-base", "HEAD", branch) for branch in branches))
-    fork = next(forks, "")
-    tree = git("ls-tree", "-r", fork).splitlines() if fork else []
-    return {line.partition("\t")[2]: line.split()[2] for line in tree}
+    bases = (git("merge-base", "HEAD", name) for name in ("origin/HEAD", "origin/main", "main"))
+    forks = [*filter(None, bases)]
+    return tree(forks[0]) if forks else {}
 
 
-def causes(before: Mapping, after: Mapping, main: Mapping | None) -> dict[str, Sequence[str]]:
-    """What differs between the records of a file, by kind.
+def causes(before: Mapping, after: Mapping, main: Mapping) -> Mapping[str, Sequence[str]]:
+    """What differs between the records of a file, by kind. `main` has the code on the main branch.
 
-    `main` has the code on the main branch; it is None if two runs are compared.
+    Parameters count if both records have some.
     """
     if not before["code"] or not after["code"]:
         return {"cause": ["not known without a record"]}
     code = [file for file, known in after["code"].items() if before["code"].get(file) != known]
     old, new = ({name: each["versions"].get(name) for name in PACKAGES} for each in (before, after))
-    known = before["parameters"] and after["parameters"]
+    given = (before["parameters"], after["parameters"])
+    since = "changed since the last acceptance"
     found: dict[str, Sequence[str]] = {
-        "changed parameter": changes(before["parameters"], after["parameters"]) if known else [],
-        "changed": code,
+        "changed parameter": changes(*given) if all(given) else [],
+        "changed": [file for file in code if main and main.get(file) != after["code"][file]],
         "other versions": changes(old, new),
     }
-    since = "changed since the last acceptance"
-    if main:
-        found["changed"] = [file for file in code if main.get(file) != after["code"][file]]
-        # The main branch itself may differ from its reference.
-        found[since] = [] if any(found.values()) else code
-    elif main is not None:
-        found[f"{since} (the main branch is not known here)"] = found.pop("changed")
-    return {what: which for what, which in found.items() if which}
+    if not main:
+        found[f"{since} (the main branch is not known here)"] = code
+    elif not any(found.values()):
+        # The main branch itself differs from its reference.
+        found[since] = code
+    return {what: which for what, which in found.items() if which} or NOTHING
 
 
 # All files
@@ -381,9 +375,7 @@ class Comparison:
     files
         The files that are compared.
     findings
-        Files that differ, are stale, missing or unexpected.
-    datasets
-        Names of the datasets among them.
+        Files that differ, are stale, missing or unexpected, with what is wrong.
     following
         Files that were not compared, because one of their datasets differs. A text has its changed
         sentences, the old and the new one.
@@ -395,97 +387,85 @@ class Comparison:
     old: Run
     new: Run
     config: Mapping | None
-    main: Mapping | None
+    main: Mapping
     files: Sequence[str]
-    findings: list[Finding] = field(default_factory=list)
-    datasets: list[str] = field(default_factory=list)
+    findings: dict[str, Finding] = field(default_factory=dict)
     following: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     drawn_elsewhere: list[str] = field(default_factory=list)
 
     @property
     def names(self) -> list[str]:
         """The figures, tables and texts that differ."""
-        return sorted({finding.name for finding in self.findings})
+        return sorted({Path(file).stem for file in self.findings})
 
-    def verdict(self) -> str:
-        """The last line of the report."""
-        found = f"All {len(self.files)} files agree with {self.old.label}."
-        if self.findings:
-            found = f"Differences in {', '.join(self.names)}."
-        if self.drawn_elsewhere:
-            number = len(self.drawn_elsewhere)
-            found += f" {number} pictures of another matplotlib were not compared."
-        return found
+    def lines(self) -> list[str]:
+        """What is wrong, by name. Both pictures of a figure have the same line."""
+        found = self.findings.items()
+        return list(dict.fromkeys(f"{Path(file).stem}: {each}" for file, each in found))
 
-    def text(self) -> str:
-        """The report on a terminal."""
-        lines = [*map(str, self.findings)]
-        for file, pairs in self.following.items():
-            printed = [f"  − {old}\n  + {new}" for old, new in pairs[:SENTENCES]]
-            lines += [f"{file}, changed sentences: {len(pairs)}", *printed] if pairs else []
-        others = sorted(file for file, pairs in self.following.items() if not pairs)
-        if others:
-            lines.append(f"Not compared, because a dataset differs: {', '.join(others)}.")
-        return "\n".join([*lines, self.verdict()])
+    def printed(self, template: str, **more: Any) -> str:
+        """The report as a template prints it."""
+        return environment(TEMPLATES).get_template(template).render(report=self, **more)
 
     def finding(self, file: str) -> Finding | None:
         """What is wrong with a file; None if nothing is, or if it is listed elsewhere."""
-        name = Path(file).stem
         runs = (self.old, self.new)
         for run in runs:
             if not (run.folder / file).is_file():
-                return Finding(name, [f"{file} is missing in {run.label}"])
+                return Finding([f"{file} is missing in {run.label}"])
         is_data = file.endswith(".nc")
-        same = not is_data and same_bytes(self.old.folder / file, self.new.folder / file)
+        same = not is_data and content(self.old.folder / file) == content(self.new.folder / file)
         old: Any = None if same else content_of(self.old, file)
         new: Any = None if same else content_of(self.new, file)
         before = self.old.record(file, old if is_data else None)
         after = self.new.record(file, new if is_data else None)
         found = [] if same else differences(file, old, new)
         by_hand = [f"{file} of {run.label}" for run in runs if run.edited(file)]
-        follows = [Path(each).stem for each in after["data"] if Path(each).stem in self.datasets]
-        stale = older(self.old, before) + older(self.new, after)
+        stale = self.old.older(before) + self.new.older(after)
         if self.config is not None:
             stale += outdated(self.project, self.new, file, self.config, new if is_data else None)
         if stale and not (found and by_hand):
             line = f"stale, remove it and run again; changed since: {', '.join(stale)}"
-            return Finding(name, [line], usable=False)
+            return Finding([line], usable=False)
         if not found and (same or before["parameters"] == after["parameters"]):
             return None
         if by_hand:
-            return Finding(name, found, {"edited by hand": by_hand}, not self.new.edited(file))
-        if is_data and follows:
-            return Finding(name, found, {"follows from": follows})
+            return Finding(found, {"edited by hand": by_hand}, not self.new.edited(file))
+        main = self.main if self.config is not None else before["code"]
+        follows = [Path(each).stem for each in after["data"] if each in self.findings]
+        if is_data:
+            if self.config is not None and about(old) != about(new):
+                # Descriptions are not among the code that a dataset records.
+                after["code"] = after["code"] | contents(
+                    path
+                    for name in self.project.code
+                    for path in (CHECKOUT / name).rglob("variables.py")
+                )
+            why = {"follows from": follows} if follows else causes(before, after, main)
+            return Finding(found, why)
+        drawn_by = {record["versions"].get("matplotlib") for record in (before, after)} - {None}
         if follows:
-            self.following[file] = sentences(old, new) if file.endswith(".md") else []
-            return None
-        if file.endswith(PICTURES) and another_matplotlib(before, after):
+            # A text with another title is another text.
+            self.following[file] = (
+                sentences(old, new) if file.endswith(".md") and old[0] == new[0] else []
+            )
+        elif file.endswith(PICTURES) and len(drawn_by) == 2:
             self.drawn_elsewhere.append(file)
-            return None
-        if not is_data and self.rounded(file, before, after):
-            return None
-        if is_data and self.config is not None and described(old) != described(new):
-            # Descriptions are not among the code that a dataset records.
-            today = self.project.today().items()
-            described_by = {each: known for each, known in today if each.endswith("variables.py")}
-            after["code"] = after["code"] | described_by
-        nothing = {"cause": ["no parameter, code or version that is recorded has changed"]}
-        return Finding(name, found, causes(before, after, self.main) or nothing)
+        elif not self.rounded(file, before, after):
+            return Finding(found, causes(before, after, main))
+        return None
 
     def rounded(self, file: str, before: Mapping, after: Mapping) -> bool:
         """Whether a file differs only because numbers of its datasets, which agree, are rounded
         otherwise: the same code made both, or today's code makes that of the reference again.
         """
         if self.config is None:
-            return not causes(before, after, None)
+            return causes(before, after, before["code"]) == NOTHING
         path = (self.old.folder / file).with_suffix(".nc")
-        with TemporaryDirectory() as folder:
-            try:
-                data = read(path) if path.exists() else None
-                self.project.make(path.stem, data, Path(folder))
-                return same_bytes(Path(folder, Path(file).name), self.old.folder / file)
-            except Exception:  # Whatever a drawing does not find in a dataset.
-                return False
+        with TemporaryDirectory() as folder, suppress(Exception):
+            self.project.make(path.stem, read(path) if path.exists() else None, Path(folder))
+            return content(Path(folder, Path(file).name)) == content(self.old.folder / file)
+        return False
 
 
 def compare(
@@ -500,35 +480,21 @@ def compare(
     If `config` is given, the old run is the reference, and the new run must be what today's code
     makes with this configuration. If not, both runs are judged by their records.
     """
-    files = project.files(old.folder, new.folder) if (new.folder / "figures").is_dir() else []
-    files = [file for file in files if not names or Path(file).stem in names]
-    main = None if config is None else code_of_main()
+    files = [
+        file
+        for file in project.files(old.folder, new.folder)
+        if not names or Path(file).stem in names
+    ]
+    main = {} if config is None else code_of_main()
     report = Comparison(project, old, new, config, main, files)
-    if not files:
-        report.findings.append(Finding(str(new.folder), ["there is nothing to compare"]))
-    for run in (old, new):
-        for name, record in run.records.items():
-            if "damaged" in record:
-                line = f"cannot be read in {run.label}: {record['damaged']}"
-                report.findings.append(Finding(name, [line], usable=False))
     for file in files:
         try:
             found = report.finding(file)
         except Exception as error:  # Whatever readers raise for a damaged file.
-            line = f"{file} cannot be compared: {error}"
-            found = Finding(Path(file).stem, [line], usable=False)
-        # Both pictures of a figure have the same line.
-        if found and found not in report.findings:
-            report.findings.append(found)
-        if found and file.endswith(".nc"):
-            report.datasets.append(found.name)
+            found = Finding([f"{file} cannot be compared: {error}"], usable=False)
+        if found:
+            report.findings[file] = found
     return report
-
-
-def older(run: Run, record: Mapping) -> list[str]:
-    """The datasets of a file that were made again after it."""
-    made = {name: run.record(name)["made"].get(name) for name in record["data"]}
-    return [name for name, known in record["data"].items() if made[name] not in (known, None)]
 
 
 def outdated(
@@ -541,27 +507,30 @@ def outdated(
         return ["it has no record"]
     record = run.record(file, data)
     recorded = record["parameters"]
-    stages = [stage for stage in config.values() if isinstance(stage, Mapping)]
-    wanted = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
+    wanted = {
+        name: entry
+        for stage in config.values()
+        if isinstance(stage, Mapping)
+        for name, entry in stage.items()
+        if name != "title"
+    }
     if data is not None:
         entry = wanted.get(Path(file).stem, {}).items()
         wanted = {key: value for key, value in config.items() if key in recorded}
         wanted |= {key: value for key, value in entry if key not in ("caption", "table")}
-    given_by = "config/config.yaml or the Snakefile"
-    found = [f"{line} ({given_by})" for line in changes(recorded, plain(wanted)) if recorded]
-    descriptions = project.describe(Path(file).stem)
-    for name, variable in {} if data is None else data.variables.items():
-        if name in descriptions:
-            today = attributes(descriptions[str(name)], variable.dtype)
-            found += changes(plain(variable.attrs), plain(today), f"{name}.")
+    found = [
+        f"{line} (config/config.yaml or the Snakefile)"
+        for line in changes(recorded, plain(wanted))
+        if recorded
+    ]
+    variables = {} if data is None else {str(name): data[name] for name in data.variables}
+    told = project.describe(Path(file).stem)
+    today = {
+        name: attributes(told[name], variables[name].dtype) for name in variables if name in told
+    }
+    found += changes({name: plain(variables[name].attrs) for name in today}, plain(today))
     now = contents(path for path in map(CHECKOUT.joinpath, record["code"]) if path.is_file())
     return found + [each for each, known in record["code"].items() if now.get(each) != known]
-
-
-def another_matplotlib(before: Mapping, after: Mapping) -> bool:
-    """Whether different versions of matplotlib drew the pictures, as their runs record."""
-    drawn_by = [record["versions"].get("matplotlib") for record in (before, after)]
-    return None not in drawn_by and drawn_by[0] != drawn_by[1]
 
 
 def content_of(run: Run, file: str) -> Any:
@@ -576,21 +545,12 @@ def content_of(run: Run, file: str) -> Any:
             return read(path)
         if path.suffix == ".svg":
             return ElementTree.parse(path)
-        content = path.read_bytes()
         if path.suffix == ".png":
-            return Image.open(BytesIO(content)).load()
-        return content.replace(b"\r\n", b"\n").decode().split("\n")
+            with Image.open(path) as picture:
+                return picture.load()
+        return path.read_bytes().replace(b"\r\n", b"\n").decode().split("\n")
     except Exception as error:  # Whatever readers raise for a damaged file.
         raise ValueError(f"in {run.label} {error!r}") from error
-
-
-def same_bytes(first: Path, second: Path) -> bool:
-    """Whether two files are equal; line ends of Windows do not count in texts."""
-    one = first.read_bytes()
-    other = second.read_bytes()
-    if first.suffix == ".png":
-        return one == other
-    return one.replace(b"\r\n", b"\n") == other.replace(b"\r\n", b"\n")
 
 
 def sentences(old: Sequence[str], new: Sequence[str]) -> list[tuple[str, str]]:
@@ -609,21 +569,6 @@ def sentences(old: Sequence[str], new: Sequence[str]) -> list[tuple[str, str]]:
     return [(one, other) for one, other in pairs if one != other]
 
 
-def write_page(report: Comparison, page: Path) -> Path:
-    """Write the page of a comparison, with the pictures of both sides that differ."""
-    page.unlink(missing_ok=True)
-    pictures = {}
-    for path in sorted(report.new.folder.glob("figures/*.png")):
-        sides = (run.folder / "figures" / path.name for run in (report.old, report.new))
-        found = [base64.b64encode(side.read_bytes()).decode() for side in sides if side.is_file()]
-        if len({*found}) == 2:
-            pictures[path.stem] = found
-    template = jinja2.Template(TEMPLATE.read_text("utf-8"), autoescape=True)
-    with whole(page) as unfinished:
-        unfinished.write_text(template.render(report=report, pictures=pictures), "utf-8")
-    return page.resolve()
-
-
 def accept(project: Project, results: Path) -> list[str]:
     """Make results the reference, and return the files that were written or removed.
 
@@ -635,12 +580,11 @@ def accept(project: Project, results: Path) -> list[str]:
         raise ValueError("nothing is accepted, because there is no git")
     if edited := git("status", "--porcelain", "--", *project.code):
         raise ValueError(f"nothing is accepted, commit first: {edited}")
-    reference = run_in(project.top, "the reference")
     new = run_in(results, "the results")
-    report = compare(project, reference, new, project.configuration())
-    for finding in report.findings:
-        if not finding.usable:
-            raise ValueError(f"nothing is accepted, run snakemake again first: {finding}")
+    report = compare(project, run_in(project.top, "the reference"), new, project.configuration())
+    if wrong := [file for file, found in report.findings.items() if not found.usable]:
+        why = f"{Path(wrong[0]).stem}: {report.findings[wrong[0]]}"
+        raise ValueError(f"nothing is accepted, run snakemake again first: {why}")
     before = {file: content(project.top / file) for file in project.files(project.top)}
     for file in report.files:
         if not (results / file).is_file():
@@ -649,13 +593,15 @@ def accept(project: Project, results: Path) -> list[str]:
             *report.following,
             *report.drawn_elsewhere,
         }:
-            with whole(project.top / file) as unfinished:
-                unfinished.write_bytes((results / file).read_bytes())
+            write(project.top / file, (results / file).read_bytes())
     made = {file: content(project.top / file) for file in project.files(project.top)}
-    entries = new.record(project.texts[0]).get("entries", {})
-    accepted = {"made": made, "code": project.today(), "versions": versions(), "entries": entries}
-    with whole(project.top / ACCEPTED) as unfinished:
-        unfinished.write_text(f"{json.dumps(accepted, indent=0, ensure_ascii=False)}\n", "utf-8")
+    accepted = {
+        "made": made,
+        "code": tree("HEAD", "--", *project.code),
+        "versions": versions(),
+        "entries": new.record(project.texts[0])["parameters"],
+    }
+    write(project.top / ACCEPTED, f"{json.dumps(accepted, indent=0)}\n".encode())
     return [file for file in report.files if before.get(file) != made.get(file)]
 
 
@@ -665,12 +611,16 @@ def accept(project: Project, results: Path) -> list[str]:
 def results_of(path: Path, unpacked: Path) -> Path:
     """The folder of the results of a run: a folder itself, `results` in it, or the same in a zip
     file, as continuous integration delivers it, which is unpacked.
+
+    Raises ValueError if there are none, or another error if a zip file is damaged.
     """
-    base = path
     if path.is_file():
         shutil.unpack_archive(path, unpacked, "zip")
-        base = unpacked
-    return base if (base / "figures").is_dir() else base / "results"
+        path = unpacked
+    for folder in (path, path / "results"):
+        if (folder / "figures").is_dir():
+            return folder
+    raise ValueError(f"there is nothing to compare in {path}")
 
 
 def main(project: Project, arguments: list[str]) -> int:
@@ -683,37 +633,51 @@ def main(project: Project, arguments: list[str]) -> int:
         description="Compare a run with the reference in git, or two runs with each other.",
         epilog="The exit status is 1 if something differs. The last line is the path of a page.",
     )
-    about = "a folder with results, or a zip file of it, as continuous integration delivers it"
-    parser.add_argument("run", type=Path, help=about)
+    parser.add_argument("run", type=Path, help="a folder with results, or a zip file of it")
     parser.add_argument("other", type=Path, nargs="?", help="compare this run with the first one")
-    given = parser.parse_args(arguments)
-    paths = [path for path in (given.run, given.other) if path]
-    page = (paths[-1] if paths[-1].is_dir() else paths[-1].parent) / "diff/index.html"
-    config = None
+    paths = [path for path in vars(parser.parse_args(arguments)).values() if path]
     with TemporaryDirectory() as unpacked:
         try:
             folders = [results_of(path, Path(unpacked, str(n))) for n, path in enumerate(paths)]
         except Exception as error:  # Whatever unpacking raises for a damaged file.
             parser.error(f"a run cannot be read: {error}")
         runs = [run_in(folder, str(path)) for folder, path in zip(folders, paths, strict=True)]
-        if given.other is None:
-            runs = [run_in(project.top, "the reference"), run_in(folders[0], "the results")]
+        config = None
+        if len(runs) == 1:
+            runs.insert(0, run_in(project.top, "the reference"))
             config = project.configuration()
-        report = compare(project, runs[0], runs[1], config)
-        print(report.text())
-        if report.files:
-            print(write_page(report, page))
-    return 1 if report.findings else 0
+        beside = paths[-1] if paths[-1].is_dir() else paths[-1].parent
+        return written(compare(project, runs[0], runs[1], config), beside / "diff", sys.stdout)
 
 
 def report_of_run(project: Project, results: Path, config: Mapping, names: Collection[str]) -> int:
-    """Compare the results of a run, and save the report as text and as a page: the rule `diff`.
+    """Compare the results of a run: the rule `diff`.
 
     Returns the exit status: 1 if something differs. Snakemake then prints the log, at its end.
     """
-    runs = (run_in(project.top, "the reference"), run_in(results, "the results"))
-    report = compare(project, *runs, config, names)
-    text = f"{report.text()}\n{write_page(report, results / 'diff/index.html')}\n"
-    (results / "diff/report.txt").write_text(text, "utf-8")
-    print(text, end="", file=sys.stderr if report.findings else sys.stdout)
+    old = run_in(project.top, "the reference")
+    report = compare(project, old, run_in(results, "the results"), config, names)
+    return written(report, results / "diff", sys.stderr if report.findings else sys.stdout)
+
+
+def written(report: Comparison, folder: Path, stream: TextIO) -> int:
+    """Print a report, and save it as a text and as a page with the pictures of both sides.
+
+    Returns the exit status: 1 if something differs.
+    """
+    noted = [*report.findings, *report.following, *report.drawn_elsewhere]
+    pictures = {
+        file: [
+            base64.b64encode(path.read_bytes()).decode()
+            for path in (report.old.folder / file, report.new.folder / file)
+            if path.is_file()
+        ]
+        for file in noted
+        if file.endswith(".png")
+    }
+    page = folder.resolve() / "index.html"
+    write(page, report.printed("diff.html.j2", pictures=pictures).encode())
+    text = f"{report.printed('diff.txt.j2')}{page}\n"
+    write(folder / "report.txt", text.encode())
+    print(text, end="", file=stream)
     return 1 if report.findings else 0

@@ -105,6 +105,12 @@ def whole(path: Path) -> Iterator[Path]:
         unfinished.unlink(missing_ok=True)
 
 
+def write(path: Path, content: bytes) -> None:
+    """Write a file atomically."""
+    with whole(path) as unfinished:
+        unfinished.write_bytes(content)
+
+
 def save_stage(
     stage: Mapping[str, Callable[..., xr.Dataset]],
     snakemake: Any,
@@ -143,9 +149,7 @@ def save_record(snakemake: Any) -> None:
         "versions": versions(),
         "entries": plain(getattr(snakemake.params, "entries", {})),
     }
-    with whole(path) as unfinished:
-        text = json.dumps(found, indent=1, sort_keys=True, ensure_ascii=False)
-        unfinished.write_text(f"{text}\n", "utf-8")
+    write(path, f"{json.dumps(found, indent=1, sort_keys=True)}\n".encode())
 
 
 def attributes(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

@@ -20,13 +20,14 @@ PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 
 
 def content(file: str | Path) -> str:
-    """Identify a file by its content: the hash that git gives to it. Line ends do not count.
+    """Identify a file by its content: the hash that git gives to it.
 
-    `git show HASH` prints the content if it was committed.
+    `git show HASH` prints the content if it was committed. Line ends of texts do not count.
     """
-    text = Path(file).read_bytes().replace(b"\r\n", b"\n")
-    blob = b"blob %d\0" % len(text) + text
-    return hashlib.sha1(blob, usedforsecurity=False).hexdigest()
+    text = Path(file).read_bytes()
+    if Path(file).suffix not in (".png", ".nc"):
+        text = text.replace(b"\r\n", b"\n")
+    return hashlib.sha1(b"blob %d\0" % len(text) + text, usedforsecurity=False).hexdigest()
 
 
 def contents(files: Iterable[str | Path], top: Path | None = None) -> dict[str, str]:

@@ -11,6 +11,5 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 try:
     written = accept(PROJECT, Path(snakemake.log[0]).parents[1])
 except ValueError as error:
-    print(error)
-    sys.exit(1)
+    sys.exit(str(error))
 print(*written, f"{len(written)} files of the reference changed.", sep="\n")

@@ -26,8 +26,8 @@ from bouncing_ball.tables import TABLES, comma_separated, markdown  # noqa: E402
 def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
     """Write the pictures and the tables of a dataset into a folder."""
     if name in FIGURES:
-        shown = [] if data is None else [data]
-        save_picture(draw(name, *shown), folder / f"{name}.png", folder / f"{name}.svg")
+        figure = draw(name) if data is None else draw(name, data)
+        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
     if name in TABLES:
         rows = TABLES[name](data)
         (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
@@ -42,11 +42,11 @@ PROJECT = Project(
 )
 
 if __name__ == "__main__" and "snakemake" not in globals():
-    # A console may lack characters such as arrows.
+    # The encoding of a console may lack characters such as arrows.
     sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    results = Path(snakemake.log[0]).parents[1]
-    sys.exit(report_of_run(PROJECT, results, snakemake.params.config, snakemake.params.names))
+    given = snakemake.params.config, snakemake.params.names
+    sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], *given))

@@ -24,6 +24,7 @@ from bouncing_ball import article, figures, pages, paper, tables
 from bouncing_ball.claims import CLAIMS, judge, table1_ends
 from bouncing_ball.configuration import mistakes
 from bouncing_ball.continuation import NoOrbit
+from bouncing_ball.datasets import computed
 from bouncing_ball.figures import Empty
 from bouncing_ball.verdicts import VERDICTS, answer
 
@@ -172,18 +173,16 @@ def changed(section: str, name: str, changes: dict) -> dict:
     return config
 
 
-def computed(section: str, name: str, config: dict):
+def made(section: str, name: str, config: dict):
     """The dataset of an entry, as the job of its stage saves it."""
     function = stage(section).STAGE[name]
     known = inspect.signature(function).parameters
-    settings = {key: config[key] for key in ("release", "largest_step") if key in known}
-    entry = {key: each for key, each in config[section][name].items() if key != "title"}
-    given = {key: each for key, each in entry.items() if key not in ("caption", "table")}
+    given = {key: config[key] for key in ("release", "largest_step") if key in known}
+    about = ("title", "caption", "table")
+    given |= {key: each for key, each in config[section][name].items() if key not in about}
     with warnings.catch_warnings(action="error"):
-        data = function(dict(given), **settings)
-    return data.assign_attrs(
-        title=ENTRIES[name]["title"], parameters=json.dumps(given | settings, sort_keys=True)
-    )
+        data = computed(function, given)
+    return data.assign_attrs(title=ENTRIES[name]["title"])
 
 
 EVERY = [*CLAIMS, *table1_ends()]
@@ -289,7 +288,7 @@ def assert_edge(section: str, name: str, changes: dict) -> None:
         assert all(line.startswith(f"{section}.{name}.") for line in lines)
         return
     try:
-        data = computed(section, name, config)
+        data = made(section, name, config)
         if name in figures.PLOTS:
             other = paper.other_parameters(name, data, paper.PARAMETERS.get(name, {}))
             assert_picture_is_true(name, data, not other)
@@ -314,7 +313,7 @@ def test_a_setting_of_all_stages_gives_true_pages(key, value):
     for section in STAGES:
         for name in CONFIGURATION[section].keys() & reference().keys():
             if key in inspect.signature(stage(section).STAGE[name]).parameters:
-                found[name] = computed(section, name, config)
+                found[name] = made(section, name, config)
                 if name in figures.PLOTS:
                     assert_picture_is_true(name, found[name], key != "release")
                 assert_numbers_are_true(name, found[name])

@@ -15,7 +15,6 @@ from typing import Any
 import jinja2
 import numpy as np
 import xarray as xr
-from jinja2.ext import Extension
 from numpy.typing import NDArray
 
 from bouncing_ball import measures, origins, paper, restitution, spring_damper, tables
@@ -29,8 +28,11 @@ STIFF_CURVES = ("fig05", "fig06", "fig10")
 
 
 @cache
-def environment(templates: Path, *extensions: type[Extension]) -> jinja2.Environment:
-    """Return the Jinja environment of a folder of templates, with the filters for numbers."""
+def environment(templates: Path, marked: bool = False) -> jinja2.Environment:
+    """Return the Jinja environment of a folder of templates, with the filters for numbers.
+
+    If `marked`, it marks what the expressions print (see `origins`).
+    """
     found = jinja2.Environment(
         loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
         undefined=jinja2.StrictUndefined,
@@ -38,7 +40,7 @@ def environment(templates: Path, *extensions: type[Extension]) -> jinja2.Environ
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
-        extensions=extensions,
+        extensions=[origins.Marks] if marked else [],
     )
     found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
     found.filters.update(listed=listed, zip=zip, mark=origins.mark)
@@ -46,14 +48,14 @@ def environment(templates: Path, *extensions: type[Extension]) -> jinja2.Environ
 
 
 def filled_in(
-    name: str, datasets: Datasets, kind: str = "md", *extensions: type[Extension], **more: Any
+    name: str, datasets: Datasets, kind: str = "md", marked: bool = False, **more: Any
 ) -> str:
     """Fill in a template, in Markdown or HTML.
 
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
     judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
-    template = environment(TEMPLATES, *extensions).get_template(f"{name}.{kind}.j2")
+    template = environment(TEMPLATES, marked).get_template(f"{name}.{kind}.j2")
     return template.render(
         **datasets,
         titles={key: data.attrs["title"] for key, data in datasets.items()},
@@ -78,8 +80,7 @@ def written(name: str, datasets: Datasets) -> str:
     return filled_in(
         name,
         datasets,
-        "md",
-        origins.Marks,
+        marked=True,
         stiff_errors=measures.stiff_errors(**{name: datasets[name] for name in STIFF_CURVES}),
         other_contacts=other_contacts(datasets["hypotheses"]),
         others_with_82=others_with_82(datasets["hypotheses"]),

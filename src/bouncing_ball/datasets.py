@@ -128,9 +128,21 @@ def save_stage(
         title = entry.pop("title")
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
-        dataset = stage[name](entry, **settings)
-        save(dataset, path, title, entry | settings, snakemake.input.code, describe)
+        dataset = computed(stage[name], entry | settings)
+        save(dataset, path, title, parameters(dataset), snakemake.input.code, describe)
     save_record(snakemake)
+
+
+def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
+    """Compute a dataset from its parameters, and record them in it.
+
+    The function takes the parameters of the entry, and as keywords the settings of the run that are
+    among its arguments.
+    """
+    settings = {name: given[name] for name in list(signature(function).parameters)[1:]}
+    entry = {name: each for name, each in given.items() if name not in settings}
+    found = function(entry, **settings)
+    return found.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
 
 
 def save_record(snakemake: Any) -> None:

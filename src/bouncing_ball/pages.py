@@ -377,7 +377,9 @@ def numbers(
         *((name, name.title()) for name in texts),
         ("others", "Without a dataset"),
     ]
-    return framed(template.render(texts=sentences, others=dict.fromkeys(others)), "numbers", contents)
+    return framed(
+        template.render(texts=sentences, others=dict.fromkeys(others)), "numbers", contents
+    )
 
 
 def sentences_of(

@@ -6,7 +6,6 @@ with the other datasets of the run. Datasets of other choices have fewer points 
 figures. Of a run with other parameters than the paper's nothing is varied.
 """
 
-import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import replace
@@ -23,7 +22,7 @@ import time_histories
 import xarray as xr
 
 from bouncing_ball import claims
-from bouncing_ball.datasets import Datasets, parameters, read, save, save_record
+from bouncing_ball.datasets import Datasets, computed, parameters, read, save, save_record
 from bouncing_ball.paper import TABLE_1, differences, printed_table
 from bouncing_ball.verdicts import Claim, answer
 
@@ -35,14 +34,13 @@ ALONG_RATIO = {
     "fig14": error_thresholds.fig14,
 }
 PERMANENT_CONTACT = {"fig11": permanent_contact.fig11, "fig16": permanent_contact.fig16}
-BRANCH_SETTINGS = ("release", "largest_step")
-ALONG_AMPLITUDE: Mapping[str, tuple[Callable, Sequence[str], Sequence[float]]] = {
-    "fig03": (restitution_model.fig03, (), [1.5, 4]),
-    "fig08": (continuation.branches, BRANCH_SETTINGS, [1.2, 3]),
-    "fig09": (continuation.branches, BRANCH_SETTINGS, [1.2, 3]),
-    "fig15": (continuation.fig15, BRANCH_SETTINGS, [1.8, 3]),
+ALONG_AMPLITUDE: Mapping[str, tuple[Callable, Sequence[float]]] = {
+    "fig03": (restitution_model.fig03, [1.5, 4]),
+    "fig08": (continuation.branches, [1.2, 3]),
+    "fig09": (continuation.branches, [1.2, 3]),
+    "fig15": (continuation.fig15, [1.8, 3]),
 }
-"""Functions of figures along Λ, their settings, and other ends of their axes."""
+"""Functions of figures along Λ, and other ends of their axes."""
 EXPONENTS = (2, 3, 6)
 """Other exponents of the largest frequency ratio."""
 RATIOS_OF_FIG_12 = ([1.0, 2.0, 10.0, 100.0], [2.0, 10.0, 100.0, 1e3], [5.0, 10.0, 100.0, 1e4])
@@ -90,13 +88,6 @@ def axis_of(name: str) -> str:
     return f"axis of Fig. {int(name.removeprefix('fig'))}"
 
 
-def recomputed(data: xr.Dataset, compute: Callable, changes: Mapping, *settings: str) -> xr.Dataset:
-    """A dataset computed with other parameters, which it has in its attributes."""
-    given = {**parameters(data), **changes}
-    found = compute(given, *(given[name] for name in settings))
-    return found.assign_attrs(parameters=json.dumps(given))
-
-
 def other_axes(
     data: xr.Dataset, compute: Callable, left: list[float], right: list[float]
 ) -> Iterator[tuple[str, xr.Dataset]]:
@@ -108,7 +99,7 @@ def other_axes(
     first, last = np.round(PER_DECADE * np.log10([min(left), max(right)]))
     ends = {"min": 10 ** (first / PER_DECADE), "max": 10 ** (last / PER_DECADE)}
     axis = {"frequency_ratio": ends | {"samples": int(last - first) + 1}}
-    wide = recomputed(data, compute, axis, "release")
+    wide = computed(compute, parameters(data) | axis)
     wide = wide.assign_coords(frequency_ratio=wide.frequency_ratio.round(12))
     limits = [(end, now["max"]) for end in left] + [(now["min"], end) for end in right]
     for low, high in limits:
@@ -128,10 +119,10 @@ def choices(data: Datasets) -> Iterator[Choice]:
         for name, compute in functions.items():
             for axis, other in other_axes(data[name], compute, left, right):
                 yield Choice(axis_of(name), axis, {name: other})
-    for name, (compute, settings, ends) in ALONG_AMPLITUDE.items():
+    for name, (compute, ends) in ALONG_AMPLITUDE.items():
         for end in ends:
             changes = {"amplitude_max": end, "points": POINTS}
-            other = recomputed(data[name], compute, changes, *settings)
+            other = computed(compute, parameters(data[name]) | changes)
             yield Choice(axis_of(name), f"Λ from 0 to {end:g}", {name: other})
     yield from ratios_of_fig_12(data)
     yield from exponents(data)
@@ -141,7 +132,7 @@ def ratios_of_fig_12(data: Datasets) -> Iterator[Choice]:
     """Other frequency ratios of Fig. 12."""
     for ratios in RATIOS_OF_FIG_12:
         changes = {"frequency_ratio": ratios}
-        other = recomputed(data["fig12"], time_histories.fig12, changes, "release")
+        other = computed(time_histories.fig12, parameters(data["fig12"]) | changes)
         instead = "ϖ = " + ", ".join(f"{ratio:g}" for ratio in ratios)
         yield Choice("ratios of Fig. 12", instead, {"fig12": other})
 
@@ -155,12 +146,10 @@ def exponents(data: Datasets) -> Iterator[Choice]:
     compliant = printed.frequency_ratio.values[1:].tolist()
     every = {"frequency_ratio": [*(10.0**exponent for exponent in EXPONENTS), *compliant]}
     wide = {
-        name: recomputed(
-            data[name], continuation.branches, every | {"points": POINTS}, *BRANCH_SETTINGS
-        )
+        name: computed(continuation.branches, parameters(data[name]) | every | {"points": POINTS})
         for name in ("fig08", "fig09")
     }
-    wide["table1"] = recomputed(data["table1"], continuation.table1, every, "release")
+    wide["table1"] = computed(continuation.table1, parameters(data["table1"]) | every)
     for exponent in EXPONENTS:
         ratios = [10.0**exponent, *compliant]
         other_table = printed.assign_coords(frequency_ratio=ratios)

@@ -26,7 +26,7 @@ from bouncing_ball.verdicts import answer
 
 ROOT = Path(__file__).parents[1]
 PRINTED = printed_table()
-NAMES = sorted({name for claim in claims.CLAIMS for name in claim.datasets} | {"table1"})
+NAMES = sorted({name for claim in claims.CLAIMS for name in claim.datasets} | {*paper.PARAMETERS})
 
 
 @pytest.fixture(scope="module")

@@ -646,7 +646,8 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
 
     A cross marks an orbit for which no sufficient ϖ is known.
     """
-    axes.fill_between(data.restitution, 1 - data.doubled_share, 1, **DOUBLED)
+    if (data.doubled_share > 0).any():
+        axes.fill_between(data.restitution, 1 - data.doubled_share, 1, **DOUBLED)
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
     if (excess > 0).any():

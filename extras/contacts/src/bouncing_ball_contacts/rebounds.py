@@ -66,8 +66,6 @@ MOST_INSTANTS = 96
 """Of the impact within a step, in an answer."""
 # Steps without a move after which a ball has come to rest: no rebound takes so long to begin.
 _LYING = 50
-# Where a body flies freely: no engine finds its contact farther away, in m.
-_REACH = 0.06
 
 
 @dataclass(frozen=True)
@@ -120,6 +118,8 @@ class ByNumber:
     skin : float
         Height in m above the surface at which a ball touches. A ball lies there, so heights are
         counted from it.
+    reach : float
+        Height in m above which a body that rises flies freely, and below which a contact is found.
     """
 
     name: str
@@ -148,6 +148,7 @@ class ByNumber:
     pixels: float = 0.0
     turns: tuple[float, ...] = ()
     skin: float = 0.0
+    reach: float = 0.06
     notes: tuple[str, ...] = ()
     not_for: tuple[str, ...] = ()
 
@@ -251,6 +252,7 @@ _BOX2D_2 = ByNumber(
     is_restless=True,
     set_by="restitutionThreshold",
     skin=step_rules.SKIN,
+    reach=step_rules.SKIN,
     notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3", _HAS_A_SKIN),
 )
 _BOX2D_2_3 = replace(
@@ -273,6 +275,7 @@ _DART = ByNumber(
     threshold=0.1,
     is_of_rebound=True,
     is_restless=True,
+    reach=0.0,
     notes=(_CONSTANT,),
     not_for=("lying capsules",),
 )
@@ -380,6 +383,7 @@ BY_NUMBER = {
                 "step": f"b2World_Step(world, {{value}}f, {step_rules.SUBSTEPS});",
             },
             sinks=_RAPIER.sinks,
+            reach=0.02,
             notes=("Box2D 2 has another rule: --engine box2d-2",),
             not_for=_RAPIER.not_for,
         ),
@@ -422,6 +426,7 @@ BY_NUMBER = {
             },
             pair=PRODUCT,
             sinks=0.0,
+            reach=0.0,
         ),
         _DART,
         replace(
@@ -454,6 +459,7 @@ BY_NUMBER = {
             },
             pixels=_PIXELS / STANDARD_GRAVITY,
             turns=(0.0, 0.5, 1.0),
+            reach=0.03,
             settings={"frictionAir": 0.01},
             designed=({"frictionAir": 0.0},),
             damped_by="frictionAir",
@@ -526,6 +532,7 @@ BY_NUMBER = {
             },
             settings={"soft_cfm": 1e-10, "soft_erp": 0.2},
             designed=({"soft_cfm": 1e-10},),
+            reach=0.0,
             springs="ode",
             depends_on_mass=True,
             notes=("These are numbers of a contact joint",),
@@ -551,6 +558,7 @@ BY_NUMBER = {
             # With such a damper the default spring takes nothing of the penetration back.
             designed=({"max_vel": 1e9, "contact_max_correcting_vel": 1e9, "kd": 1e12},),
             springs="gazebo",
+            reach=0.0,
             depends_on_mass=True,
             notes=("Gazebo Classic, with ODE",),
         ),
@@ -563,6 +571,7 @@ BY_NUMBER = {
                 "enable_restitution=True)",
                 "step": "solver.step(state, following, control, contacts, {value})",
             },
+            reach=0.0,
             not_for=("flat boxes", "lying capsules", "spinning balls"),
         ),
         ByNumber(
@@ -590,6 +599,7 @@ BY_NUMBER = {
             ),
             damped_by="linearDamping",
             kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
+            reach=0.0,
             depends_on_mass=True,
         ),
     )
@@ -714,8 +724,8 @@ def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, 
     return at.step * (np.cumsum(moves, axis=-1) - moves[..., :1]), speeds
 
 
-def _after(steps: Steps, z: float, way: float) -> tuple[float, float]:
-    """Return height and velocity of a ball that flies up again; 0 if it stays.
+def _after(steps: Steps, z: float, way: float, reach: float = 0.0) -> tuple[float, float]:
+    """Return height and velocity of a ball that flies up again above `reach`; 0 if it stays.
 
     It stays if it moves by less than 1e-4 of the `way` of the impact in a step, many times in a
     row.
@@ -730,7 +740,7 @@ def _after(steps: Steps, z: float, way: float) -> tuple[float, float]:
         if lies == _LYING:
             break
         z = z_next
-        if v > 0 and z > _REACH and rises:
+        if v > 0 and z > reach and rises:
             return z, v
     # It lies still, or is pushed out slowly.
     return 0.0, 0.0
@@ -746,10 +756,12 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     0.83
     """
     way = speed * at.step
+    # PyBullet finds large balls farther ahead.
+    reach = max(engine.reach, at.settings.get("ahead", 0.0))
     # Within a step r changes by about g h/v.
     is_short = 0 < at.added < 1e-3 * speed
     instants = instants or (INSTANTS // 6 if is_short else INSTANTS)
-    height = speed**2 / (2 * at.gravity) if at.gravity else _REACH + way
+    height = speed**2 / (2 * at.gravity) if at.gravity else reach + way
     refuse(
         [
             (
@@ -767,7 +779,7 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
     heights = height + way * (np.arange(instants) / instants - 0.5)
     z = engine.skin + heights
     v = np.full(instants, -speed)
-    near = _REACH + 4 * way
+    near = reach + 4 * way
     if at.gravity:
         # Down to where a contact may be found the ball flies freely, longer if it is damped.
         longest = 2 * math.sqrt(2 * height / at.gravity) / at.step
@@ -778,7 +790,7 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
         v = speeds[n]
     most = 2000 + math.ceil(6 * near / way)
     after = [
-        _after(islice(engine.rule(at, *start), most), start[0], way)
+        _after(islice(engine.rule(at, *start), most), start[0], way, reach)
         for start in zip(z.tolist(), v.tolist(), strict=True)
     ]
     z, v = np.array(after).T
@@ -910,7 +922,7 @@ class Case(NamedTuple):
             return best
         if best.deviation > TOLERANCE and speed < 1.5 * self.threshold:
             lower = self._replace(threshold=float(f"{speed / 4:.2g}"))
-            best = min(best, lower.nearest(), key=lambda each: each.deviation)
+            best = min(best, lower.nearest(), key=Tried.rank)
         settled = SETTLED * best.case.settling(best.number)
         if best.case.threshold < settled < 0.9 * speed:
             best = best.case._replace(threshold=float(f"{settled:.2g}")).nearest()
@@ -922,7 +934,7 @@ class Case(NamedTuple):
         for designed in self.engine.designed:
             other = self._replace(settings={**self.settings, **designed})
             if best.deviation > TOLERANCE and other != self:
-                best = min(best, other.with_threshold(), key=lambda each: each.deviation)
+                best = min(best, other.with_threshold(), key=Tried.rank)
         return best
 
 
@@ -942,6 +954,10 @@ class Tried(NamedTuple):
     def has_mean(self) -> bool:
         """Whether the mean of r is the wanted one."""
         return abs(self.restitution.mean - self.case.bounce.restitution) <= TOLERANCE
+
+    def rank(self) -> tuple[bool, float]:
+        """Order of numbers: first those with the wanted mean, and then those nearer to it."""
+        return not self.has_mean, self.deviation
 
     @property
     def does_it(self) -> bool:
@@ -1177,11 +1193,17 @@ def _other_step(found: Tried) -> tuple[Answer, ...]:
     longer = [asked * 2**n for n in range(1, 5) if asked * 2**n <= 1e-3]
     deviations = [found.deviation] if found.has_mean else []
     for step in (*shorter, *longer):
-        best = found.case._replace(step=step).wanted()
-        if best.deviation <= TOLERANCE:
-            return (best.answer(),)
-        if best.has_mean:
-            deviations.append(best.deviation)
+        case = found.case._replace(step=step)
+        # The range of r hardly depends on the number: no search where it is too wide.
+        half = np.ptp(case.restitutions(found.number, case.bounce.impact_speed)) / 2
+        if half > 1.5 * TOLERANCE:
+            deviations.append(half)
+        else:
+            best = case.wanted()
+            if best.deviation <= TOLERANCE:
+                return (best.answer(),)
+            if best.has_mean:
+                deviations.append(best.deviation)
         if len(deviations) > 2 and deviations[-1] >= 0.95 * min(deviations[-3:-1]):
             break
     return ()
@@ -1244,7 +1266,7 @@ def diagnose_number(
     if other is not None and best.deviation > TOLERANCE:
         # The number of one body may not be enough.
         tried = best, case._replace(other=None).wanted()
-        best = min(tried, key=lambda each: each.deviation)
+        best = min(tried, key=Tried.rank)
     # What is given already is no change, nor is what does not do it.
     is_change = (best.case, best.number) != (case, given.get("number")) and best.does_it
     change = best.answer() if is_change else None

@@ -182,7 +182,8 @@ def made(section: str, name: str, config: dict):
     given |= {key: each for key, each in config[section][name].items() if key not in about}
     with warnings.catch_warnings(action="error"):
         data = computed(function, given)
-    return data.assign_attrs(title=ENTRIES[name]["title"])
+    saved = {key: reference()[name].attrs[key] for key in ("title", "code")}
+    return data.assign_attrs(saved)
 
 
 EVERY = [*CLAIMS, *table1_ends()]

@@ -536,6 +536,17 @@ def test_numbers_without_headings_are_labels_only_if_they_end_after_their_begin(
         fit(path)
 
 
+@pytest.mark.parametrize("typed_label", ["0.3\t0.3\t0", "0.3\t0.3", "0,30\t0,30\tfirst", "0.3"])
+def test_a_label_that_is_typed_by_hand_is_read(tmp_path, typed_label):
+    """One such label among exported ones had the whole file refused."""
+    path = tmp_path / "labels.txt"
+    exported = [f"{t:.6f}\t{t:.6f}\t{i}" for i, t in enumerate(TIMES)]
+    path.write_text("\n".join([typed_label, *exported[1:]]))
+    found = fit(path)
+    assert found.restitution == pytest.approx(0.82, abs=1e-6)
+    assert not any("not used" in each for each in found.notes)
+
+
 def test_numbers_are_read_alike_by_command_line_and_column(typed, tmp_path):
     """The line of a file was refused, whose numbers the command read."""
     path = tmp_path / "heights.csv"

@@ -80,8 +80,10 @@ _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
 _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
 # The monitor of a board writes its clock before each line.
 _STAMP = r"\d+:\d+:\d+\.\d{3} -> "
-# Labels of a sound track have a begin, an end and a text, and no heading.
-_LABEL = r"(\d+\.\d{6})\t(\d+\.\d{6})(?:\t|$)"
+# Labels of a sound track have a begin, an end and a text, and no heading. Programs write six
+# decimals; a label that a person types may have fewer, a comma, or no end.
+_LABEL = r"(\d+\.?\d*)(?:\t(\d+\.?\d*))?(?:\t|$)"
+_EXPORTED = r"\d+\.\d{6}\t"
 _UNITS = {
     "interval": "s",
     "flight": "s",
@@ -315,10 +317,14 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
     # A line that begins with a backslash has the frequencies of a label.
-    labels = {i: line for i, line in lines.items() if not line.startswith("\\")}
+    plain = {i: line.replace(",", ".") for i, line in lines.items()}
+    labels = {i: line for i, line in plain.items() if not line.startswith("\\")}
     ends = [re.match(_LABEL, line) for line in labels.values() if line]
-    if ends and all(each and float(each[1]) <= float(each[2]) for each in ends):
-        begin, table = 0, {0: "time (s)\tend\tlabel", **labels}
+    is_exported = any(re.match(_EXPORTED, line) for line in labels.values())
+    if is_exported and all(each and float(each[1]) <= float(each[2] or each[1]) for each in ends):
+        # Impacts have no end.
+        begins = {i: line.partition("\t")[0] for i, line in labels.items()}
+        begin, table = 0, {0: "time (s)", **begins}
     if len(table) < 2:
         raise Refused(f"{name} has no line of numbers below a heading")
     sign = next((each for each in "\t;," if each in table[begin]), "\t")

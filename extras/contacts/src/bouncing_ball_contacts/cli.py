@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import sys
+from pathlib import Path
 from typing import Any
 
 import click
@@ -101,10 +102,17 @@ def _plain(found: Any) -> Any:
     return dataclasses.asdict(found)
 
 
-def _print(found: Any, as_json: bool, explain: bool, written: Answer | None = None) -> None:
-    """Print answers: of one ball or of several, and what to write for an engine."""
+def _print(
+    found: Any,
+    as_json: bool,
+    explain: bool,
+    written: Answer | None = None,
+    heard: Any = None,
+) -> None:
+    """Print answers: of one ball or of several, what was heard, and what to write for an engine."""
     if as_json:
-        values = _plain(found) | ({} if written is None else {"design": _plain(written)})
+        beside = {"heard": heard, "design": written}
+        values = _plain(found) | {name: _plain(each) for name, each in beside.items() if each}
         # Arrays become lists, and numbers that JSON does not have, NaN and Infinity, become null.
         text = json.dumps(values, default=lambda array: array.tolist())
         plain = json.loads(text, parse_constant=lambda _: None)
@@ -198,6 +206,37 @@ def diagnose_command(
     _print(diagnose(Bounce(**bounce), engine, typed, time_step, other=beside), as_json, explain)
 
 
+def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Path]]:
+    """Write the impacts that are heard in a sound as labels and as a picture.
+
+    Return the impacts, and the paths of both files. A file that a person may have changed is kept.
+    """
+    from bouncing_ball_contacts.sounds import listen, picture_of, sound_of
+
+    typed = {"begin": begin, "end": end}
+    given = {name: in_si(name, value, "s") for name, value in typed.items() if value is not None}
+    sound = sound_of(path, **given)
+    heard = listen(sound)
+    stem = "-".join([path.stem, *(f"{name}-{value:g}" for name, value in given.items())])
+    texts = {
+        path.with_name(f"{stem}.txt"): heard.labels,
+        path.with_name(f"{stem}.svg"): picture_of(sound, heard),
+    }
+    refuse(
+        (
+            file.exists() and file.read_text("utf-8", errors="replace") != text,
+            f"{file.name} is there with other contents, such as labels that were corrected: fit "
+            "these, or move the file",
+        )
+        for file, text in texts.items()
+    )
+    for file, text in texts.items():
+        unfinished = file.with_name(f"{file.name}.unfinished")
+        unfinished.write_text(text, "utf-8")
+        unfinished.replace(file)
+    return heard, list(texts)
+
+
 @main.command(
     "fit",
     params=[
@@ -212,6 +251,8 @@ def diagnose_command(
             ["--leave-out"], type=int, multiple=True, help="A line of the file; may be repeated."
         ),
         click.Option(["--ball"], help="One of several in the file."),
+        click.Option(["--from", "begin"], help="Begin of the fall in a sound, such as '1.4 s'."),
+        click.Option(["--to", "end"], help="End of the fall in a sound."),
         click.Option(
             ["--read-at"], help="Where rebound heights are read on the ball: bottom or top."
         ),
@@ -229,6 +270,8 @@ def fit_command(
     recording: tuple[str, ...],
     leave_out: tuple[int, ...],
     ball: str | None,
+    begin: str | None,
+    end: str | None,
     engine: str | None,
     time_step: str | None,
     density: str | None,
@@ -242,12 +285,23 @@ def fit_command(
     """Read a recording of bounces: r over the speed, and an engine's contact.
 
     RECORDING is a file, - for what is piped, a published experiment, such as croquet, or numbers
-    and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms.
+    and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms. Of a sound,
+    drop.wav, the impacts are heard, and written to drop.txt and drop.svg.
     """
     from bouncing_ball_contacts.fits import fit, together
     from bouncing_ball_contacts.recordings import read, typed_readings
 
     source = typed_readings(recording) if len(recording) > 1 else recording[0]
+    heard = None
+    if isinstance(source, str) and source.lower().endswith(".wav"):
+        heard, (labels, picture) = _hear(Path(source), begin, end)
+        if not as_json:
+            click.echo(f"{source}: {heard}; written to {labels.name} and {picture.name}")
+            click.echo("".join(f"! {note}\n" for note in heard.notes), nl=False)
+        source = str(labels)
+        of_fit["resolution"] = of_fit["resolution"] or f"{heard.resolution:.2g} s"
+    is_part = begin is not None or end is not None
+    refuse([(is_part and heard is None, "--from and --to are of a sound: give a file drop.wav")])
     balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     contact = {
@@ -263,7 +317,7 @@ def fit_command(
             option = name.replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
         if len(fits) == 1 or as_json:
-            _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain)
+            _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain, heard=heard)
             return
         each, shared = together(fits)
         _print(each, as_json, explain)
@@ -274,7 +328,7 @@ def fit_command(
     (found,) = fits.values()
     # The contact time of a recording is for springs.
     bounce = found.bounce(is_spring=rows_of(engine)[1] is None, **given)
-    _print(found, as_json, explain, design(bounce, engine, time_step))
+    _print(found, as_json, explain, design(bounce, engine, time_step), heard)
 
 
 @main.command("engines")

@@ -252,7 +252,8 @@ def _text_of(source: Any) -> tuple[str, str]:
     )
     data = path.read_bytes()
     is_text = b"\0" not in data and not data.startswith(b"PK")
-    refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8")])
+    sound = f"a sound as WAV, as by ffmpeg -i {path.name} {path.stem}.wav"
+    refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8, {sound}")])
     return path.name, data.decode("utf-8-sig", errors="replace")
 
 

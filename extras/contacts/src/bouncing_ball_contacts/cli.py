@@ -300,8 +300,8 @@ def fit_command(
             click.echo("".join(f"! {note}\n" for note in heard.notes), nl=False)
         source = str(labels)
         of_fit["resolution"] = of_fit["resolution"] or f"{heard.resolution:.2g} s"
-    is_part = begin is not None or end is not None
-    refuse([(is_part and heard is None, "--from and --to are of a sound: give a file drop.wav")])
+    elif (begin, end) != (None, None):
+        raise Refused("--from and --to are of a sound: give a file drop.wav")
     balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     contact = {

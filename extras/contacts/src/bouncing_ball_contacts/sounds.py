@@ -241,11 +241,9 @@ def series_of(rises: Rises) -> tuple[NDArray[np.intp], float]:
     scores = np.where(is_flight, weights[:, None] + gains, -np.inf)
     ratios = np.full(flights.shape, math.nan)
     previous = np.full(flights.shape, -1)
-    for middle in range(1, len(times) - 1):
+    for middle in np.flatnonzero(is_flight.any(axis=0) & is_flight.any(axis=1)):
         before = np.flatnonzero(is_flight[:, middle])
         after = np.flatnonzero(is_flight[middle])
-        if not len(before) or not len(after):
-            continue
         last = flights[before, middle][:, None]
         step = flights[middle, after]
         error = 2.5 * _JITTER / np.minimum(step, last)
@@ -253,9 +251,8 @@ def series_of(rises: Rises) -> tuple[NDArray[np.intp], float]:
         # The first ratio of a series changes nothing.
         change = np.nan_to_num(ratio - ratios[before, middle][:, None]) / np.hypot(_CHANGE, error)
         reached = scores[before, middle][:, None] + gains[middle, after] - 0.1 * change**2
-        is_low = ratio < math.log(_SMALLEST_RATIO)
-        is_high = ratio > math.log(_LARGEST_RATIO) + error
-        reached[is_low | is_high | (np.abs(change) > 3)] = -np.inf
+        is_ratio = (ratio > math.log(_SMALLEST_RATIO)) & (ratio < math.log(_LARGEST_RATIO) + error)
+        reached[~is_ratio | (np.abs(change) > 3)] = -np.inf
         best = (np.argmax(reached, axis=0), np.arange(len(after)))
         is_better = reached[best] > scores[middle, after]
         previous[middle, after] = np.where(is_better, before[best[0]], -1)
@@ -280,16 +277,12 @@ def _doubts(rises: Rises, series: NDArray[np.intp], exponent: float) -> list[str
     ratios = np.log(flights[1:] / flights[:-1])
     among = rises.costs[series[0] : series[-1] + 1]
     share = rises.costs[series].sum() / among.sum()
-    others = len(among) - len(series)
     usual = math.exp(np.median(ratios))
     return holding(
         [
             (len(series) < 7, f"only {len(series)} impacts"),
-            (
-                ratios.std() > 0.035,
-                f"the ratios deviate by {100 * ratios.std():.0f} %",
-            ),
-            (share < 0.8, f"{others} other sounds are among them"),
+            (ratios.std() > 0.035, f"the ratios deviate by {100 * ratios.std():.0f} %"),
+            (share < 0.8, f"{len(among) - len(series)} other sounds are among them"),
             (usual > 0.97, f"the ratio of intervals is {usual:.3f}"),
             (exponent < _USUAL_EXPONENT, f"loudness goes as the speed to the {exponent:.2f}"),
         ]
@@ -301,12 +294,10 @@ def _other_falls(rises: Rises, series: NDArray[np.intp]) -> list[str]:
     notes = []
     for rest in (slice(series[0]), slice(series[-1] + 1, None)):
         left = Rises(*(each[rest] for each in rises))
-        again, _ = series_of(left)
-        if len(again):
-            ends = left.times[again[[0, -1]]]
-            notes.append(
-                f"another fall: --from {max(ends[0] - 0.05, 0):.2f} --to {ends[1] + 0.05:.2f}"
-            )
+        times = left.times[series_of(left)[0]]
+        if len(times):
+            begin = max(times[0] - 0.1, 0.0)
+            notes.append(f"another fall: --from {begin:.2f} --to {times[-1] + 0.1:.2f}")
     return notes
 
 
@@ -367,27 +358,26 @@ def picture_of(sound: Sound, heard: Heard) -> str:
     first = round((begin - sound.begin) * sound.rate)
     end = round((heard.times[-1] + 0.3 - sound.begin) * sound.rate)
     size = round(sound.rate / _COLUMNS)
-    part = sound.samples[first:end]
-    count = len(part) // size
-    columns = part[: count * size].reshape(count, -1)
+    count = (min(end, len(sound.samples)) - first) // size
+    columns = sound.samples[first : first + count * size].reshape(count, -1)
     heights = _HEIGHT / 2 * (1 - np.column_stack([columns.max(axis=1), columns.min(axis=1)]))
     wave = "".join(f"M{x} {top:.1f}V{low + 0.5:.1f}" for x, (top, low) in enumerate(heights))
 
-    def mark(t: float, colour: str, y: float, text: str) -> str:
+    def mark(t: float, colour: str, top: float, y: float, text: str) -> str:
         x = f"{(t - begin) * sound.rate / size:.1f}"
-        line = f'<path d="M{x} 0V{_HEIGHT}" stroke="{colour}"/>'
+        line = f'<path d="M{x} {top}V{_HEIGHT}" stroke="{colour}"/>'
         return f'{line}<text x="{x}" y="{y}" fill="{colour}" text-anchor="middle">{text}</text>'
 
     tenths = range(math.ceil(10 * begin), math.floor(10 * (begin + count * size / sound.rate)) + 1)
-    view = f'width="{count}" height="{_HEIGHT + 40}" viewBox="0 -20 {count} {_HEIGHT + 40}"'
     return "\n".join(
         [
-            f'<svg xmlns="http://www.w3.org/2000/svg" {view} font-family="sans-serif" '
-            f'font-size="9"><title>{escape(sound.name)}</title>',
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{count}" height="{_HEIGHT + 40}" '
+            f'viewBox="0 -20 {count} {_HEIGHT + 40}" font-family="sans-serif" font-size="9">',
+            f"<title>{escape(sound.name)}</title>",
             '<rect y="-20" width="100%" height="100%" fill="white"/>',
-            *(mark(i / 10, "grey", _HEIGHT + 12, f"{i / 10:.1f} s") for i in tenths),
+            *(mark(i / 10, "grey", _HEIGHT - 6, _HEIGHT + 12, f"{i / 10:.1f} s") for i in tenths),
             f'<path d="{wave}" stroke="steelblue"/>',
-            *(mark(t, "red", -5, str(i)) for i, t in enumerate(heard.times, 1)),
+            *(mark(t, "red", 0, -5, str(i)) for i, t in enumerate(heard.times, 1)),
             "</svg>\n",
         ]
     )

@@ -81,7 +81,7 @@ _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
 # The monitor of a board writes its clock before each line.
 _STAMP = r"\d+:\d+:\d+\.\d{3} -> "
 # Labels of a sound track have a begin, an end and a text, and no heading. Programs write six
-# decimals; a label that a person types may have fewer, a comma, or no end.
+# decimals; a label that a person types may have fewer, or no end.
 _LABEL = r"(\d+\.?\d*)(?:\t(\d+\.?\d*))?(?:\t|$)"
 _EXPORTED = r"\d+\.\d{6}\t"
 _UNITS = {
@@ -318,8 +318,7 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
     # A line that begins with a backslash has the frequencies of a label.
-    plain = {i: line.replace(",", ".") for i, line in lines.items()}
-    labels = {i: line for i, line in plain.items() if not line.startswith("\\")}
+    labels = {i: line for i, line in lines.items() if not line.startswith("\\")}
     ends = [re.match(_LABEL, line) for line in labels.values() if line]
     is_exported = any(re.match(_EXPORTED, line) for line in labels.values())
     if is_exported and all(each and float(each[1]) <= float(each[2] or each[1]) for each in ends):

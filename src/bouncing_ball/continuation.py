@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from bouncing_ball import restitution
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import Numbers
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import Contact, damping_ratio, free_duration
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
 """Fourth equation of an orbit: a function of the family and of orbits y, shape (4, ...). It returns
@@ -167,20 +167,14 @@ def _solve(matrix: NDArray, values: NDArray) -> NDArray:
 def stiff_guess(family: Family, x: Numbers, impact_height: Numbers) -> NDArray:
     """Orbit of the restitution model with given X and Y, as a guess for a stiff contact.
 
-    The contact of the guess lasts half a free oscillation. With the force release it is shorter, as
-    in `spring_damper.force_release_restitution`.
+    The contact of the guess lasts as long as a free impact.
     """
     contact = family.contact
-    damped = np.sqrt(1 - np.asarray(contact.damping_ratio) ** 2)
-    angle = np.pi / damped
-    if contact.release == "force":
-        zeta = contact.damping_ratio
-        angle = angle - np.arctan2(2 * zeta * damped, 1 - 2 * np.asarray(zeta) ** 2) / damped
     numbers = np.broadcast_arrays(
         np.hypot(x, impact_height),
         np.arctan2(impact_height, x),
         -restitution.bounce_velocity(family.n),
-        angle,
+        free_duration(contact.damping_ratio, contact.release),
     )
     return np.stack(numbers).astype(float)
 
@@ -284,7 +278,8 @@ def stable_orbits(
     (4, 2, 2)
     """
     r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
-    contact = Contact(np.atleast_1d(ratios), damping_ratio(r)[:, np.newaxis], release)
+    zeta = damping_ratio(r, release)[:, np.newaxis]
+    contact = Contact(np.atleast_1d(ratios), zeta, release)
     return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis])
 
 

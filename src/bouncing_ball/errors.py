@@ -16,8 +16,10 @@ from scipy.optimize.elementwise import find_root
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import (
+    SPECIAL,
     WALK_START,
     Condition,
+    NoOrbit,
     at_amplitude,
     at_bifurcation,
     bifurcations,
@@ -25,7 +27,7 @@ from bouncing_ball.continuation import (
     stable_orbits,
     walk,
 )
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.restitution import Numbers
 from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
 
@@ -141,7 +143,7 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
 
 
 def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) -> dict[str, Error]:
-    """Relative errors of the quantities of n-T orbits, along ϖ at one amplitude (Eq. 37).
+    """Errors of the quantities of n-T orbits, along ϖ at one amplitude, as in `errors` (Eq. 37).
 
     Parameters
     ----------
@@ -159,17 +161,20 @@ def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) ->
     """
     n = family.n
     phase = restitution.impact_phase(n, r, amplitude)
-    quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers]] = {
-        "max_height": (Family.max_height, restitution.max_height(n, r, amplitude)),
-        "bounce_velocity": (Family.bounce_velocity, restitution.bounce_velocity(n)),
-        "phase": (lambda family, y: y[1], phase),
-        "apparent_restitution": (Family.apparent_restitution, r),
+    limits = {
+        "max_height": restitution.max_height(n, r, amplitude),
+        "bounce_velocity": restitution.bounce_velocity(n),
+        "apparent_restitution": r,
     }
+    measures: dict[str, Callable[[Family, NDArray], NDArray]] = {
+        name: lambda family, y, name=name, limit=limit: relative_error(
+            OBSERVABLES[name](family, y), limit
+        )
+        for name, limit in limits.items()
+    }
+    measures["phase_in_periods"] = lambda family, y: np.abs(y[1] - phase) / (2 * np.pi)
     condition = at_amplitude(amplitude)
-    return {
-        name: _along(family, orbits, condition, value, reference)
-        for name, (value, reference) in quantities.items()
-    }
+    return {name: _along(family, orbits, condition, error) for name, error in measures.items()}
 
 
 def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
@@ -182,13 +187,16 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
             restitution.period_doubling(n, r),
         ),
     }
-    contact = Contact(ratios, damping_ratio(r), release)
+    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
     found = {}
     for name, (kind, test, reference) in kinds.items():
-        orbits = bifurcations(n, kind, contact)[:, 0]
-        condition = at_bifurcation(test)
-        family = Family(n, contact)
-        found[name] = _along(family, orbits, condition, lambda family, y: y[0], reference)
+        orbits = bifurcations(n, kind, family.contact)[:, 0]
+        found[name] = _along(
+            family,
+            orbits,
+            at_bifurcation(test),
+            lambda family, y, reference=reference: relative_error(y[0], reference),
+        )
     return found
 
 
@@ -196,18 +204,14 @@ def _along(
     family: Family,
     orbits: NDArray,
     condition: Condition,
-    value: Callable[[Family, NDArray], NDArray],
-    reference: Numbers,
+    error: Callable[[Family, NDArray], NDArray],
 ) -> Error:
-    """Relative error of a quantity along a scan.
+    """Error of a quantity along a scan.
 
     The contact of the family contains the ratios of the scan. The orbits have the shape
     (4, ratios).
     """
     ratios = np.asarray(family.contact.frequency_ratio)
-
-    def error(family, y):
-        return relative_error(value(family, y), reference)
 
     def between(ratio, below, curve):
         part = np.log(ratio / ratios[below]) / np.log(ratios[below + 1] / ratios[below])
@@ -223,13 +227,14 @@ def _along(
 def errors(
     quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
 ) -> dict[str, Error]:
-    """Relative errors of the named quantities, along ϖ.
+    """Errors of the named quantities, along ϖ, on contacts whose free impact has the restitution r.
 
     Parameters
     ----------
     quantities : sequence of str
-        Any of ``max_height``, ``bounce_velocity``, ``phase``, ``apparent_restitution``,
-        ``saddle_node``, ``period_doubling`` and ``permanent_contact``.
+        Any of ``max_height``, ``bounce_velocity``, ``phase_in_periods``, ``apparent_restitution``,
+        ``saddle_node``, ``period_doubling`` and ``permanent_contact``. Errors are relative, except
+        for the phase: its error is a fraction of the period of the table.
     n : int
         Number of table periods in one cycle.
     r, amplitude : float
@@ -242,8 +247,9 @@ def errors(
     Raises
     ------
     NoOrbit
-        If a quantity of orbits is named, and the amplitude is below the saddle-node of the
-        restitution model (Eq. 7).
+        If no contact with ζ < 1 has this r (`damping_ratio`). Also if a quantity of orbits is
+        named, and the restitution model has no stable orbit at the amplitude: there is nothing to
+        compare with. The message says where the contact of the largest ϖ has stable orbits.
     KeyError
         If a name is unknown.
 
@@ -252,14 +258,27 @@ def errors(
     >>> found["bounce_velocity"].values.round(3).tolist()
     [0.061, 0.006]
     """
+    contact = Contact(ratios, damping_ratio(r, release), release)
+    if np.isnan(contact.damping_ratio):
+        raise NoOrbit(f"r = {r:g}: with the force release, r must be above e⁻² = 0.1353, up to 1")
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
-        family = Family(n, Contact(ratios, damping_ratio(r), release))
+        ends = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+        if not ends[0] <= amplitude < ends[1]:
+            stiffest = replace(contact, frequency_ratio=np.max(ratios))
+            low, high = (bifurcations(n, kind, stiffest)[0].item() for kind in SPECIAL[:2])
+            # A compliant contact may have no such range.
+            of_contact = f"{low:.6g} to {high:.6g}" if low < high else "no Λ that was found"
+            raise NoOrbit(
+                f"Λ = {amplitude:.6g}: the stable {n}-T orbits of the restitution model need Λ "
+                f"from {ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1); those of the contact with "
+                f"ϖ = {np.max(ratios):g} need {of_contact}"
+            )
         orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-        known |= orbit_errors(family, orbits, r, amplitude)
+        known |= orbit_errors(Family(n, contact), orbits, r, amplitude)
     if {"saddle_node", "period_doubling"} & set(quantities):
         known |= bifurcation_errors(n, r, ratios, release)
-    known["permanent_contact"] = permanent_contact_error(ratios, damping_ratio(r), release)
+    known["permanent_contact"] = permanent_contact_error(ratios, contact.damping_ratio, release)
     return {name: known[name] for name in quantities}
 
 
@@ -364,7 +383,7 @@ def lowest_period_doublings(
     doubling. A frequency ratio has half as many exact digits as the amplitude, because the minimum
     is flat.
     """
-    contact = Contact(ratios, damping_ratio(r), release)
+    contact = Contact(ratios, damping_ratio(r, release), release)
     orbits = bifurcations(n, "period doubling", contact)
     families = np.atleast_1d(n)
     turns = np.full(families.size, np.nan)

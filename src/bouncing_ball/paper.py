@@ -71,7 +71,6 @@ QUANTITIES = {
     "max_height": "maximum height",
     "summit": "maximum height in flight",
     "bounce_velocity": "bouncing-off velocity",
-    "phase": "phase of the impact, relative to its value",
     "phase_in_periods": "phase of the impact",
     "apparent_restitution": "apparent restitution coefficient",
     "saddle_node": "Λ of the saddle-node",
@@ -121,7 +120,7 @@ PARAMETERS = {
         restitution=0.65,
         amplitude=1.0,
         # The map has two quantities of its own.
-        quantities={*QUANTITIES} - {"summit", "phase_in_periods"},
+        quantities={*QUANTITIES} - {"summit"},
         tolerances={LIMIT},
         frequency_ratio={"min": 1.0, "max": 1e4},
     ),

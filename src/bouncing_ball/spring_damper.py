@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.restitution import Numbers
 
@@ -24,40 +25,57 @@ def unknown(release: str) -> ValueError:
     return ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
 
 
-def damping_ratio(r: Numbers) -> NDArray:
-    """Damping ratio ζ = -ln r/√(π² + ln² r) for which a free impact has the restitution r (Eq. 16).
+def free_duration(zeta: Numbers, release: str = "displacement") -> NDArray:
+    """Duration of a free impact multiplied by the natural frequency of the contact, for ζ < 1.
 
-    In a free impact no weight acts, and the contact ends at δ = 0. `free_restitution` is the
-    inverse: if you change this formula, change `free_restitution`, too.
+    In a free impact no weight acts, and the table is at rest.
 
-    >>> round(float(damping_ratio(0.85)), 5)
-    0.05166
+    - Displacement release: half a free oscillation, π/√(1 - ζ²).
+    - Force release: 2 arccos ζ/√(1 - ζ²). The contact ends earlier by the angle 2 arcsin ζ, by
+      which its force leads its displacement (Schwager and Pöschel, 2007).
     """
-    logarithm = np.log(r)
-    # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.
-    return 0.0 - logarithm / np.hypot(np.pi, logarithm)
+    if release == "force":
+        # The denominator is finite at ζ = 1.
+        return 2 / np.sinc(np.arccos(zeta) / np.pi)
+    if release != "displacement":
+        raise unknown(release)
+    return np.pi / np.sqrt(1 - np.asarray(zeta) ** 2)
 
 
-def free_restitution(zeta: Numbers) -> NDArray:
-    """Restitution coefficient exp(-πζ/√(1 - ζ²)) of a free impact, the inverse of Eq. 16.
+def free_restitution(zeta: Numbers, release: str = "displacement") -> NDArray:
+    """Restitution coefficient exp(-ζ `free_duration`) of a free impact, for ζ < 1.
 
     >>> round(float(free_restitution(damping_ratio(0.85))), 12)
     0.85
     """
-    zeta = np.asarray(zeta)
-    return np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))
+    return np.exp(-np.asarray(zeta) * free_duration(zeta, release))
 
 
-def force_release_restitution(zeta: Numbers) -> NDArray:
-    """Restitution coefficient of a free impact with the force release, for ζ < 1.
+def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
+    """Damping ratio ζ for which a free impact has the restitution r.
 
-    The contact ends when its force vanishes, before half a free oscillation has passed. The
-    difference is the angle by which the force leads the displacement (Schwager and Pöschel, 2007).
+    It is the inverse of `free_restitution`: if you change one of them, change the other, too.
+
+    - Displacement release: ζ = -ln r/√(π² + ln² r) (Eq. 16).
+    - Force release: the root of 2ζ arccos ζ/√(1 - ζ²) = -ln r. It is NaN for r <= e⁻² = 0.135,
+      because only overdamped contacts, ζ >= 1, have such r.
+
+    >>> round(float(damping_ratio(0.85)), 5), round(float(damping_ratio(0.85, "force")), 5)
+    (0.05166, 0.05348)
     """
-    zeta = np.asarray(zeta)
-    damped = np.sqrt(1 - zeta**2)
-    angle = np.pi - np.arctan2(2 * zeta * damped, 1 - 2 * zeta**2)
-    return np.exp(-zeta / damped * angle)
+    logarithm = np.log(r)
+    if release == "force":
+        found = find_root(
+            lambda zeta, logarithm: zeta * free_duration(zeta, release) + logarithm,
+            (0.0, 1.0),
+            args=(logarithm,),
+            tolerances={"xatol": 1e-15},
+        )
+        return np.where(found.success & (logarithm > -2), found.x, np.nan)[()]
+    if release != "displacement":
+        raise unknown(release)
+    # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.
+    return 0.0 - logarithm / np.hypot(np.pi, logarithm)
 
 
 class Responses(NamedTuple):
@@ -137,11 +155,7 @@ class Contact:
     @property
     def restitution(self) -> NDArray:
         """Restitution coefficient of a free impact, the limit of r_a as ϖ tends to infinity."""
-        if self.release == "displacement":
-            return free_restitution(self.damping_ratio)
-        if self.release != "force":
-            raise unknown(self.release)
-        return force_release_restitution(self.damping_ratio)
+        return free_restitution(self.damping_ratio, self.release)
 
     def responses(self, s: Numbers) -> Responses:
         """Responses I, I′, J, P and Q at times s; `motion` is a linear combination of them.
@@ -205,6 +219,31 @@ class Contact:
         damping = 2 * np.asarray(self.damping_ratio) * self.frequency_ratio
         acceleration = force - damping * velocity - self.frequency_ratio**2 * displacement
         return Motion(displacement, velocity, acceleration)
+
+
+def contact_of_duration(duration: Numbers, r: Numbers, release: str) -> Contact:
+    """Contact whose free impact has a duration and the restitution r.
+
+    Weight and motion of the table change the duration of an impact; the relative change is of the
+    order of 1/ϖ.
+
+    Parameters
+    ----------
+    duration : array_like
+        Duration of the contact in units of 1/Ω: its time multiplied by 2π times the frequency of
+        the table.
+    r : array_like
+        Restitution coefficient. With the force release, e⁻² < r <= 1; ϖ and ζ are NaN otherwise.
+    release : str
+        Condition that ends the contact, ``displacement`` or ``force``. The contact of a real ball
+        cannot pull, and its measured duration ends with its force: ``force``.
+
+    >>> contact = contact_of_duration(0.03, [0.85, 0.3], "force")
+    >>> contact.frequency_ratio.round(1).tolist(), contact.damping_ratio.round(3).tolist()
+    ([101.3, 80.7], [0.053, 0.497])
+    """
+    zeta = damping_ratio(r, release)
+    return Contact(free_duration(zeta, release) / duration, zeta, release)
 
 
 def _quotient(a, b, s):

@@ -86,7 +86,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
 
 
 def thresholds(data: xr.Dataset) -> list[list[str]]:
-    """Frequency ratios above which each error stays within each tolerance.
+    """Frequency ratios above which each error stays within each tolerance, as in `errors.errors`.
 
     A threshold outside of the range scanned is printed as "< lowest" or "> largest".
     """
@@ -100,7 +100,7 @@ def thresholds(data: xr.Dataset) -> list[list[str]]:
     given = parameters(data)
     orbit = f"n = {given['n']}, r = {given['restitution']:g}, Λ = {given['amplitude']:g}"
     tolerances = [f"{100 * tolerance:g} %" for tolerance in data["tolerance"].values]
-    rows = [[f"relative error of an orbit with {orbit}", *tolerances]]
+    rows = [[f"error of an orbit with {orbit}, relative; of the phase in periods", *tolerances]]
     for line in each(data, "quantity"):
         status = line["threshold_status"].values.tolist()
         ratios = line["error_threshold"].values

@@ -125,9 +125,13 @@ SYMBOLS = {
     ),
     "minimum_threshold": Variable("lowest threshold of permanent contact", "2ζ√(1-ζ²)", "Eq. 36"),
     # Errors of the restitution model
-    "relative_error": Variable("relative error of the restitution model", "", "Eqs. 37-38"),
+    "relative_error": Variable(
+        "relative error of the restitution model; of the phase a fraction of a period",
+        "",
+        "Eqs. 37-38",
+    ),
     "error_threshold": Variable(
-        "frequency ratio above which the relative error stays below the tolerance",
+        "frequency ratio above which the error stays below the tolerance",
         "ϖ_1%",
         "Eqs. 37-38",
     ),

@@ -37,7 +37,8 @@ def along_frequency_ratio(
     names: Iterable[str] = QUANTITIES,
 ) -> xr.Dataset:
     """The named quantities of the orbits, shape (case, ϖ), NaN where there is none."""
-    family = Family(n, Contact(ratios, damping_ratio(r)[:, np.newaxis], release))
+    zeta = damping_ratio(r, release)[:, np.newaxis]
+    family = Family(n, Contact(ratios, zeta, release))
     quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), names)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]

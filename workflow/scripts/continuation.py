@@ -49,7 +49,7 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
     branches get as many as the one with most, and the reasons of the ends.
     """
     ratios = np.atleast_1d(parameters["frequency_ratio"])
-    zeta = float(damping_ratio(parameters["restitution"]))
+    zeta = float(damping_ratio(parameters["restitution"], release))
     families = [Family(parameters["n"], Contact(ratio, zeta, release)) for ratio in ratios]
     found = [followed(family, parameters, largest_step) for family in families]
     if all(np.isnan(each.orbits).all() for each in found):
@@ -127,7 +127,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
     printed = printed_table().astype(float)
     printed = printed.where((r, release) == (paper["restitution"], paper["release"]))
     bounds = printed["bound"].values
-    contact = Contact(np.array(ratios), damping_ratio(r), release)
+    contact = Contact(np.array(ratios), damping_ratio(r, release), release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = ends
     duration = angle / np.array(ratios)[:, np.newaxis]
@@ -170,7 +170,7 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
         if np.isnan(turn):
             admissible.append(False)
             continue
-        contact = Contact(turn, damping_ratio(r), release)
+        contact = Contact(turn, damping_ratio(r, release), release)
         orbit = bifurcations(family, "period doubling", contact)
         admissible.append(bool(Family(family, contact).clearance(orbit) > 0))
     return xr.Dataset(

@@ -8,7 +8,7 @@ import xarray as xr
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.datasets import grid, save_stage
-from bouncing_ball.errors import errors, orbit_errors, threshold
+from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 
@@ -19,11 +19,11 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratios = grid(parameters["frequency_ratio"])
-    family = Family(n, Contact(ratios, damping_ratio(r), release))
+    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
     quantities = family.observables(orbits, names)
-    error = orbit_errors(family, orbits, r, amplitude)["max_height"]
+    error = errors(["max_height"], n, r, amplitude, ratios, release)["max_height"]
     found = threshold(ratios, error, parameters["tolerance"])
     return xr.Dataset(
         {

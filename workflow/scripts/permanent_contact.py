@@ -12,7 +12,7 @@ from bouncing_ball.errors import permanent_contact_error, threshold
 
 def fig11(parameters: dict, release: str) -> xr.Dataset:
     """Λ_SD with its lowest value (Eqs. 33 and 36), and Λ_CR (Eq. 9)."""
-    zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
+    zeta = float(spring_damper.damping_ratio(parameters["restitution"], release))
     ratios = grid(parameters["frequency_ratio"])
     lowest_ratio, lowest = spring_damper.lowest_permanent_contact(zeta, release)
     thresholds = spring_damper.permanent_contact(ratios, zeta, release)
@@ -30,7 +30,7 @@ def fig11(parameters: dict, release: str) -> xr.Dataset:
 
 def fig16(parameters: dict, release: str) -> xr.Dataset:
     """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
-    zeta = float(spring_damper.damping_ratio(parameters["restitution"]))
+    zeta = float(spring_damper.damping_ratio(parameters["restitution"], release))
     ratios = grid(parameters["frequency_ratio"])
     error = permanent_contact_error(ratios, zeta, release)
     # The lowest threshold is the only extremum of the error: with it no crossing is missed.

@@ -15,7 +15,6 @@ from itertools import combinations, permutations, product
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 from scipy.optimize.elementwise import find_root
 from scipy.stats import permutation_test
 
@@ -36,7 +35,6 @@ from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
     damping_ratio,
-    force_release_restitution,
 )
 
 DIGIT = 0.001
@@ -57,11 +55,6 @@ def reproduced(units: NDArray) -> NDArray[np.bool_]:
     return abs(units) <= 0.5 + ROUNDING
 
 
-def equal_damping(r: float) -> float:
-    """ζ with which a free impact with the force release has the restitution r."""
-    return brentq(lambda zeta: force_release_restitution(zeta) - r, 1e-3, 0.9, xtol=1e-15)
-
-
 @dataclass(frozen=True)
 class Impact:
     """A contact by its damping ratio as a function of r, its release, and the weight in contact."""
@@ -80,7 +73,7 @@ IMPACTS = {
     "damping as printed": Impact(PRINTED_DAMPING.__getitem__),
     "damping to first order": Impact(lambda r: -np.log(r) / np.pi),
     "force release": Impact(release="force"),
-    "force release, equal r": Impact(equal_damping, "force"),
+    "force release, equal r": Impact(lambda r: damping_ratio(r, "force"), "force"),
     "no gravity in contact": Impact(weight=0.0),
 }
 """The hypotheses that differ in the contact. With "equal r" it has the damping with which a free

@@ -24,7 +24,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratio = parameters["frequency_ratio"]
-    family = Family(n, Contact(ratio, damping_ratio(r), release))
+    family = Family(n, Contact(ratio, damping_ratio(r, release), release))
     y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
     orbit = family.observables(y, STATE)
     half = parameters["samples"] // 2
@@ -57,7 +57,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratios = np.sort(parameters["frequency_ratio"])
     period = 2 * np.pi * n
-    families = [Family(n, Contact(ratio, damping_ratio(r), release)) for ratio in ratios]
+    families = [Family(n, Contact(ratio, damping_ratio(r, release), release)) for ratio in ratios]
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}

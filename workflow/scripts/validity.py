@@ -54,7 +54,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
 
     # The period doublings of the contact.
     ends = place_all[:, 0] == 1
-    contact = Contact(advised, damping_ratio(r_all[ends]), release)
+    contact = Contact(advised, damping_ratio(r_all[ends], release), release)
     doubling = bifurcations(n_all[ends, 0], "period doubling", contact)[0]
     doubled = ((last[ends] - doubling) / (last[ends] - first[ends])).reshape(shape[:2])
     doubled_mean = [mean_share(r, each) for each in doubled]
@@ -95,7 +95,7 @@ def scan(
     """`enough_from` of orbits, shape (quantities, orbits), and their errors at the ratios, with one
     more axis. n, r and Λ have the shape (orbits, 1).
     """
-    family = Family(n, Contact(ratios, damping_ratio(r), release))
+    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
     orbits = orbits_along(family, amplitude)
     enough = enough_from(family, orbits, r, amplitude, tolerance)
     return enough, errors_of_orbits(family, orbits, r, amplitude)

@@ -19,12 +19,19 @@ from scipy.optimize import brentq
 ACCURACY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
 
 
-def restitution_to_damping(r):
-    """Damping ratio ζ (Eq. 16), from the logarithmic decrement of half an oscillation.
+def restitution_to_damping(r, release="displacement"):
+    """Damping ratio ζ with which a free impact has the restitution r.
 
-    The decrement is ln r = -πζ/√(1 - ζ²).
+    It is ζ = sin β with ln r = -θ tan β, where θ is the angle of the damped oscillation in contact:
+    π for the displacement release (Eq. 16), and π - 2β for the force release.
     """
-    return np.sin(np.arctan(-np.log(r) / np.pi))
+    if release == "displacement":
+        return np.sin(np.arctan(-np.log(r) / np.pi))
+
+    def excess(beta):
+        return (np.pi - 2 * beta) * np.tan(beta) + np.log(r)
+
+    return np.sin(brentq(excess, 0, np.pi / 2 - 1e-9, xtol=1e-15))
 
 
 def lag(ratio, zeta, release):

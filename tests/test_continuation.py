@@ -11,7 +11,7 @@ from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
     damping_ratio,
-    force_release_restitution,
+    free_restitution,
     permanent_contact,
 )
 
@@ -236,14 +236,16 @@ def test_orbits_tend_to_the_restitution_model_to_first_order_in_the_stiffness():
 
 @pytest.mark.parametrize("release", RELEASES)
 def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
-    r = np.array([0.05, 0.65, 0.85, 0.999])
+    # With the force release no contact has the r of 0.05.
+    smallest = {"displacement": 0.05, "force": 0.15}[release]
+    r = np.array([smallest, 0.65, 0.85, 0.999])
     amplitude = 1.01 * restitution.saddle_node(2, r) + np.array([0.4, 0.4, 0.8, 0.5])
     ratios = np.array([1.9, 2.0, 3.33, 50.0, 1e3, 1e6])
     found = continuation.stable_orbits(2, r, amplitude, ratios, release)
     assert found.shape == (4, 4, 6)
     np.testing.assert_allclose(found[0], np.outer(amplitude, np.ones(6)), rtol=CORRECTOR)
     for i in range(4):
-        zeta = independent.restitution_to_damping(r[i])
+        zeta = independent.restitution_to_damping(r[i], release)
         for j, ratio in enumerate(ratios):
             assert_on_closed_form(2, ratio, zeta, release, found[:, i, j])
             duration = found[3, i, j] / ratio
@@ -285,25 +287,26 @@ def test_below_the_saddle_node_of_the_restitution_model_there_is_no_orbit():
 
 
 def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
-    # Without tension the impact is more elastic than Eq. 16 has it.
-    zeta = damping_ratio(0.05)
-    lowest = restitution.saddle_node(1, force_release_restitution(zeta))
-    assert lowest < 0.8 * restitution.saddle_node(1, 0.05)
-    y = continuation.stable_orbits(1, 0.05, 1.01 * lowest, [1e3, 1e6], "force")[:, 0]
+    zeta = independent.restitution_to_damping(0.15, "force")
+    assert zeta > 1.7 * damping_ratio(0.15)
+    lowest = restitution.saddle_node(1, 0.15)
+    y = continuation.stable_orbits(1, 0.15, 1.01 * lowest, [1e3, 1e6], "force")[:, 0]
     for j, ratio in enumerate([1e3, 1e6]):
         assert_on_closed_form(1, ratio, zeta, "force", y[:, j])
     with pytest.raises(NoOrbit):
-        continuation.stable_orbits(1, 0.05, 0.99 * lowest, [1e3], "force")
+        continuation.stable_orbits(1, 0.15, 0.99 * lowest, [1e3], "force")
+    some = continuation.stable_orbits(1, [0.05, 0.15], 1.01 * lowest, [1e3], "force")
+    np.testing.assert_array_equal(np.isnan(some[0, :, 0]), [True, False])
 
 
 @pytest.mark.parametrize("seed", [0, 3])
 def test_a_walk_ends_where_its_orbits_cease(seed):
     rng = np.random.default_rng(seed)
-    r = rng.uniform(0.05, 0.6)
+    r = rng.uniform(0.15, 0.6)
     n = int(rng.integers(2, 6))
     release = RELEASES[seed % 2]
     ratios = np.geomspace(0.7, 100, 60)
-    contact = Contact(ratios, damping_ratio(r), release)
+    contact = Contact(ratios, damping_ratio(r, release), release)
     amplitude = restitution.saddle_node(n, contact.restitution) + rng.uniform(0, 0.7)
     walks = [continuation.stable_orbits(n, r, amplitude, ratios, release)[:, 0]]
     for kind in continuation.SPECIAL[:2]:
@@ -331,9 +334,8 @@ def test_the_corrector_gives_nan_where_it_fails_and_only_there():
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_guess_for_a_stiff_contact_is_right_to_the_first_order(release):
     zeta = 0.2
-    r = {"displacement": np.exp(-np.pi * zeta / np.sqrt(1 - zeta**2))}
-    r["force"] = force_release_restitution(zeta)
+    x = restitution.saddle_node(2, free_restitution(zeta, release))
     family = Family(2, Contact(1e5, zeta, release))
-    guess = continuation.stiff_guess(family, restitution.saddle_node(2, r[release]), 0.7)
+    guess = continuation.stiff_guess(family, x, 0.7)
     y = continuation.correct(family, guess, continuation.at_amplitude(guess[0]))
     np.testing.assert_allclose(guess, y, atol=20 / 1e5)

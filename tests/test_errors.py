@@ -6,6 +6,7 @@ from scipy.optimize import brentq, minimize_scalar
 from tests import independent
 
 from bouncing_ball import errors, restitution
+from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.errors import Error
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import (
@@ -71,7 +72,7 @@ def test_the_threshold_of_permanent_contact_is_that_of_equation_34():
 
 def stable_orbit(n, r, amplitude, ratio, release):
     """The stable orbit of the closed form, between the first period doubling and saddle-node."""
-    zeta = independent.restitution_to_damping(r)
+    zeta = independent.restitution_to_damping(r, release)
     angles = np.linspace(2.4, 4.5, 40)
 
     def bifurcation(k, grid):
@@ -92,7 +93,7 @@ def stable_orbit(n, r, amplitude, ratio, release):
 def quantities(n, r, amplitude, ratio, release):
     """Errors from an orbit of the closed form, and its flight."""
     y = stable_orbit(n, r, amplitude, ratio, release)
-    zeta = independent.restitution_to_damping(r)
+    zeta = independent.restitution_to_damping(r, release)
     x = y[0] * np.cos(y[1])
     start = [0, y[2] - x, y[0] * np.sin(y[1]), x, 1]
     gap, rate, table, speed, _ = independent.transfer(ratio, zeta, y[3] / ratio) @ start
@@ -102,7 +103,7 @@ def quantities(n, r, amplitude, ratio, release):
     return {
         "max_height": abs(gap / ratio + table + bounce**2 / 2 - height) / height,
         "bounce_velocity": abs(bounce / (n * np.pi) - 1),
-        "phase": abs(y[1] / phase - 1),
+        "phase_in_periods": abs(y[1] - phase) / (2 * np.pi),
         "apparent_restitution": abs(-rate / start[1] / r - 1),
     }
 
@@ -111,7 +112,7 @@ def quantities(n, r, amplitude, ratio, release):
 KNOWN = {
     "max_height": 82.177,
     "bounce_velocity": 61.22,
-    "phase": 132.57,
+    "phase_in_periods": 18.05,
     "apparent_restitution": 4.78,
     "saddle_node": 59.87,
     "period_doubling": 13.75,
@@ -198,9 +199,34 @@ def test_a_dense_scan_has_the_same_errors_and_threshold(release):
 
 def test_where_there_is_no_orbit_the_error_is_infinite():
     ratios = np.array([1.0, 3.0, 100.0])
-    found = errors.errors(["phase"], 5, 0.65, 3.5, ratios, "displacement")["phase"]
+    found = errors.errors(["max_height"], 5, 0.65, 3.4, ratios, "displacement")["max_height"]
     assert np.isinf(found.values[0])
     assert np.isfinite(found.values[1:]).all()
+
+
+@pytest.mark.parametrize(
+    ("n", "r", "amplitude", "ratio", "release", "message"),
+    [
+        # A stroke of 1.5 mm at 30 Hz, a contact of 2 ms: above the period doubling.
+        (1, 0.8, 2.717, 7.96, "force", r"from 0.349066 to 1.07084 \(Eqs. 7 and R1\); those with ϖ"),
+        # Below the saddle-node; a compliant contact may have no range.
+        (3, 0.05, 8.515, 100.0, "displacement", "to 8.71895 .* ϖ = 100 need 8.50199 to 8.6949"),
+        (1, 0.65, 0.6, 0.5, "displacement", r"from 0.666398 to 1.2394 \(Eqs. 7 and R1\)$"),
+        (1, 0.1, 2.6, 100.0, "force", "r = 0.1: with the force release, r must be above e⁻²"),
+    ],
+)
+def test_without_a_stable_orbit_the_error_is_one_line(n, r, amplitude, ratio, release, message):
+    with pytest.raises(NoOrbit, match=message) as found:
+        errors.errors(["max_height"], n, r, amplitude, np.array([ratio]), release)
+    assert "\n" not in str(found.value)
+
+
+def test_a_ball_whose_contact_ends_with_its_force():
+    """r = 0.65 at ϖ = 77: the contact of Eq. 16 would have another r, and an error of 0.26 %."""
+    ratios = np.array([77.0])
+    found = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "force")["max_height"].values
+    assert found == pytest.approx(quantities(1, 0.65, 1.0, 77.0, "force")["max_height"], abs=1e-8)
+    assert round(100 * found.item(), 2) == 1.07
 
 
 @pytest.mark.parametrize("n", [1, 3])

@@ -41,7 +41,7 @@ def start_of(y):
 
 def quantities(n, r, ratio, release, duration):
     """The quantities of the orbit with a given duration of contact, from the closed form."""
-    zeta = independent.restitution_to_damping(r)
+    zeta = independent.restitution_to_damping(r, release)
     y = independent.orbit(n, ratio, zeta, release, duration)
     start = start_of(y)
     gap, rate, table, speed, _ = independent.transfer(ratio, zeta, duration) @ start
@@ -369,7 +369,7 @@ def test_the_thresholds_of_permanent_contact_are_those_of_the_steady_oscillation
     ratios = {"min": 0.5, "max": 100.0, "samples": 21}
     given = registered("permanent_contact", "fig16", frequency_ratio=ratios)
     data = stage("permanent_contact").STAGE["fig16"](given, release)
-    zeta = independent.restitution_to_damping(given["restitution"])
+    zeta = independent.restitution_to_damping(given["restitution"], release)
 
     def threshold(ratio):
         return threshold_of_permanent_contact(ratio, zeta, release)
@@ -461,7 +461,7 @@ def test_each_threshold_is_the_last_crossing_of_its_error_and_of_its_tolerance()
 def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "frequency_ratio": 20.0}
     data = stage("time_histories").STAGE["fig07"](given | {"samples": 800}, release)
-    zeta = independent.restitution_to_damping(0.65)
+    zeta = independent.restitution_to_damping(0.65, release)
     state = float(data.phase), float(data.impact_velocity)
     moved = independent.cycle(20.0, zeta, release, 1.8, *state)
     assert moved.time == pytest.approx(4 * np.pi, abs=1e-9)

@@ -88,14 +88,36 @@ def test_the_ball_gains_the_work_of_the_table_and_loses_that_of_the_damper(ratio
     assert energy - (u + x) ** 2 / 2 - impact_height == pytest.approx(work, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("r", [1.0, 0.85, 0.3, 0.05])
+@pytest.mark.parametrize("r", [1.0, 0.85, 0.3, 0.14])
 @pytest.mark.parametrize("release", spring_damper.RELEASES)
 def test_the_restitution_of_a_free_impact(r, release):
-    zeta = float(spring_damper.damping_ratio(r))
-    impact = independent.integrate_contact(7.0, zeta, release, 0.0, 0.0, -1.0, weight=0.0)
-    # Some ten steps of the integration, each with 1e-12.
-    assert Contact(7.0, zeta, release).restitution == pytest.approx(impact.rate, abs=1e-11)
-    assert (impact.rate == pytest.approx(r, abs=1e-11)) == (release == "displacement" or r == 1)
+    """A contact that is found from the duration of an impact has this duration, and this r."""
+    contact = spring_damper.contact_of_duration([0.01, 0.4], r, release)
+    zeta = float(contact.damping_ratio)
+    for ratio, duration in zip(contact.frequency_ratio, [0.01, 0.4], strict=True):
+        impact = independent.integrate_contact(ratio, zeta, release, 0.0, 0.0, -1.0, weight=0.0)
+        # Some ten steps of the integration, each with 1e-12.
+        assert impact.rate == pytest.approx(r, abs=1e-11)
+        assert impact.duration == pytest.approx(duration, rel=1e-11)
+    assert contact.restitution == pytest.approx(r, abs=1e-14)
+
+
+@pytest.mark.parametrize("r", [0.05, np.exp(-2), 1.1])
+def test_no_contact_with_the_force_release_has_a_small_r(r):
+    found = spring_damper.contact_of_duration(0.1, [r, 0.5], "force")
+    np.testing.assert_array_equal(np.isnan(found.frequency_ratio), [True, False])
+    # Close to critical damping it is e⁻².
+    impact = independent.integrate_contact(1.0, 0.9999, "force", 0.0, 0.0, -1.0, weight=0.0)
+    assert impact.rate == pytest.approx(np.exp(-2), abs=1e-4)
+
+
+def test_the_formulas_of_the_readme_for_a_measured_duration():
+    r = np.linspace(0.14, 1, 200)
+    exact = spring_damper.contact_of_duration(1.0, r, "force").frequency_ratio
+    by_hand = np.pi + 2 / np.pi * np.log(r) + 0.033 * np.log(r) ** 2
+    assert np.abs(by_hand / exact - 1).max() < 1e-3
+    exact = spring_damper.contact_of_duration(1.0, r, "displacement").frequency_ratio
+    np.testing.assert_allclose(exact, np.hypot(np.pi, np.log(r)), rtol=ROUNDING)
 
 
 def steady_motion(ratio, zeta):
@@ -162,6 +184,8 @@ def test_another_release_is_refused():
         lambda: spring_damper.permanent_contact(10.0, 0.1, "sticky"),
         lambda: spring_damper.lowest_permanent_contact(0.1, "sticky"),
         lambda: Contact(10.0, 0.1, "sticky"),
+        lambda: spring_damper.contact_of_duration(0.1, 0.5, "sticky"),
+        lambda: spring_damper.free_duration(0.1, "sticky"),
     ],
 )
 def test_an_unknown_release_is_refused(function):

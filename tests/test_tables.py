@@ -105,7 +105,12 @@ def test_a_threshold_outside_of_the_scan_is_a_bound():
         {"parameters": json.dumps({"n": 1, "restitution": 0.65, "amplitude": 1.0})},
     )
     assert tables.thresholds(data) == [
-        ["relative error of an orbit with n = 1, r = 0.65, Λ = 1", "10 %", "1 %", "0.5 %"],
+        [
+            "error of an orbit with n = 1, r = 0.65, Λ = 1, relative; of the phase in periods",
+            "10 %",
+            "1 %",
+            "0.5 %",
+        ],
         ["maximum height", "< 20", "82.177", "> 100"],
     ]
     data["threshold_status"] = data.threshold_status.copy(

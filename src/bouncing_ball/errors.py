@@ -267,12 +267,10 @@ def errors(
         if not ends[0] <= amplitude < ends[1]:
             stiffest = replace(contact, frequency_ratio=np.max(ratios))
             low, high = (bifurcations(n, kind, stiffest)[0].item() for kind in SPECIAL[:2])
-            # A compliant contact may have no such range.
-            of_contact = f"{low:.6g} to {high:.6g}" if low < high else "no Λ that was found"
+            of_contact = f"; those with ϖ = {np.max(ratios):g} need {low:.6g} to {high:.6g}"
             raise NoOrbit(
-                f"Λ = {amplitude:.6g}: the stable {n}-T orbits of the restitution model need Λ "
-                f"from {ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1); those of the contact with "
-                f"ϖ = {np.max(ratios):g} need {of_contact}"
+                f"Λ = {amplitude:.6g}: stable {n}-T orbits of the restitution model need Λ from "
+                f"{ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1){of_contact * (low < high)}"
             )
         orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
         known |= orbit_errors(Family(n, contact), orbits, r, amplitude)

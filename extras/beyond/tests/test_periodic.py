@@ -63,7 +63,7 @@ def test_the_orbits_of_the_replication_from_half_on(n, release):
     for r, share in ((1.0, 0.7), (0.85, 1.1), (0.4, 1.05)):
         amplitude = np.hypot(n * np.pi * (1 - r) / (1 + r), 0.6) * share
         y = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-        zeta = damping_ratio(r)
+        zeta = damping_ratio(r, release)
         contact = Contact(ratios, zeta, release)
         family = Family(n, contact)
         seen = np.isfinite(y[0]) & (family.clearance(y) > 0)

@@ -13,6 +13,7 @@ from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
     damping_ratio,
+    free_duration,
     permanent_contact_ratios,
 )
 
@@ -227,6 +228,19 @@ def test_a_ball_whose_contact_ends_with_its_force():
     found = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "force")["max_height"].values
     assert found == pytest.approx(quantities(1, 0.65, 1.0, 77.0, "force")["max_height"], abs=1e-8)
     assert round(100 * found.item(), 2) == 1.07
+
+
+@pytest.mark.parametrize(("release", "least"), [("displacement", 0.05), ("force", 0.14)])
+def test_contacts_on_stiff_orbits_last_as_long_as_free_impacts(release, least):
+    """Within 0.7 % at ϖ = 100, which the README says beside its formula for a measured duration."""
+    mesh = np.meshgrid([1, 2, 3], np.linspace(least, 0.95, 7), [0, 0.01, 0.3, 1], indexing="ij")
+    n, r, place = (each.reshape(-1, 1) for each in mesh)
+    first = restitution.saddle_node(n, r)
+    amplitude = first + place * (restitution.period_doubling(n, r) - first)
+    zeta = damping_ratio(r, release)
+    family = Family(n, Contact(np.array([100.0]), zeta, release))
+    lasting = errors.orbits_along(family, amplitude)[3] / free_duration(zeta, release)
+    assert 0.005 < np.abs(lasting - 1).max() < 0.007
 
 
 @pytest.mark.parametrize("n", [1, 3])

@@ -27,7 +27,7 @@ from bouncing_ball.continuation import (
     stable_orbits,
     walk,
 )
-from bouncing_ball.orbits import OBSERVABLES, Family
+from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import Numbers
 from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
 
@@ -160,21 +160,20 @@ def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) ->
         Errors by the name of the quantity. An error is infinite if the orbit does not exist.
     """
     n = family.n
+    highest = restitution.max_height(n, r, amplitude)
+    velocity = restitution.bounce_velocity(n)
     phase = restitution.impact_phase(n, r, amplitude)
-    limits = {
-        "max_height": restitution.max_height(n, r, amplitude),
-        "bounce_velocity": restitution.bounce_velocity(n),
-        "apparent_restitution": r,
+    # Value on an orbit, its limit, and the unit of the error.
+    quantities: dict[str, tuple[Callable[[Family, NDArray], NDArray], Numbers, Numbers]] = {
+        "max_height": (Family.max_height, highest, highest),
+        "bounce_velocity": (Family.bounce_velocity, velocity, velocity),
+        "phase_in_periods": (lambda family, y: y[1], phase, 2 * np.pi),
+        "apparent_restitution": (Family.apparent_restitution, r, r),
     }
-    measures: dict[str, Callable[[Family, NDArray], NDArray]] = {
-        name: lambda family, y, name=name, limit=limit: relative_error(
-            OBSERVABLES[name](family, y), limit
-        )
-        for name, limit in limits.items()
-    }
-    measures["phase_in_periods"] = lambda family, y: np.abs(y[1] - phase) / (2 * np.pi)
     condition = at_amplitude(amplitude)
-    return {name: _along(family, orbits, condition, error) for name, error in measures.items()}
+    return {
+        name: _along(family, orbits, condition, *measure) for name, measure in quantities.items()
+    }
 
 
 def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
@@ -189,14 +188,10 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
     }
     family = Family(n, Contact(ratios, damping_ratio(r, release), release))
     found = {}
-    for name, (kind, test, reference) in kinds.items():
+    for name, (kind, test, limit) in kinds.items():
         orbits = bifurcations(n, kind, family.contact)[:, 0]
-        found[name] = _along(
-            family,
-            orbits,
-            at_bifurcation(test),
-            lambda family, y, reference=reference: relative_error(y[0], reference),
-        )
+        condition = at_bifurcation(test)
+        found[name] = _along(family, orbits, condition, lambda family, y: y[0], limit, limit)
     return found
 
 
@@ -204,14 +199,19 @@ def _along(
     family: Family,
     orbits: NDArray,
     condition: Condition,
-    error: Callable[[Family, NDArray], NDArray],
+    value: Callable[[Family, NDArray], NDArray],
+    limit: Numbers,
+    unit: Numbers,
 ) -> Error:
-    """Error of a quantity along a scan.
+    """Error of a quantity along a scan: its distance from a limit, in a unit.
 
     The contact of the family contains the ratios of the scan. The orbits have the shape
     (4, ratios).
     """
     ratios = np.asarray(family.contact.frequency_ratio)
+
+    def error(family, y):
+        return np.abs(value(family, y) - limit) / unit
 
     def between(ratio, below, curve):
         part = np.log(ratio / ratios[below]) / np.log(ratios[below + 1] / ratios[below])

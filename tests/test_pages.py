@@ -154,27 +154,32 @@ def test_the_exceptions_are_those_of_the_map(data):
     other["stiff_error"].loc["summit"] = 0.0042
     other["failing_mean"].loc["summit"] = [0.2, 0.0004, 0.0]
     other["doubled_mean"][:] = 0.25
+    other["below_mean"][:] = [0.0, 0.2, 1.3]
     assert pages.exceptions(other)[1:3] == [
         ["maximum height in flight", "0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
         ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
     ]
-    assert pages.exceptions(other)[-1][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
+    assert pages.exceptions(other)[-2][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
+    assert pages.exceptions(other)[-1][2:] == [
+        "every r from 0.05 to 0.95, below the saddle-node",
+        *("none", "20.0 %", "130.0 %"),
+    ]
 
 
 @pytest.mark.parametrize(
     ("shares", "where"),
     [
-        ([[0.1, 0.2], [0.3, 0.4]], "every r from 0.1 to 0.9, next to the period doubling"),
+        ([[0.1, 0.2], [0.3, 0.4]], "every r from 0.1 to 0.9, next to it"),
         ([[0.0, 0.2], [0.3, 0.4]], "n = 1 at some r and n = 2 at every r"),
         ([[0.0, 0.0], [0.3, 0.0]], "n = 2 at some r"),
         ([[0.0, 0.0], [0.0, 0.0]], "no n"),
         ([[0.0, np.nan], [0.1, 0.1]], "–"),
     ],
 )
-def test_the_contact_has_doubled_where_its_share_is_positive(shares, where):
+def test_a_share_at_one_side_of_the_range_is_said_where_it_is_positive(shares, where):
     over = {"n": [1, 2], "restitution": [0.1, 0.9]}
     share = xr.DataArray(shares, over, ("n", "restitution"))
-    assert pages.doubling(xr.Dataset({"doubled_share": share})) == where
+    assert pages.positive(share, "next to it") == where
 
 
 def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):

@@ -736,20 +736,42 @@ def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
     assert float(data.enough_from.sel(n=3).max()) < 1000
 
 
-def test_the_doubled_orbits_are_those_beyond_the_period_doubling_of_the_contact():
+def test_both_ends_of_the_range_are_those_of_the_contact():
     given = few(n=[2], restitution={"min": 0.2, "max": 0.8, "samples": 2})
     data = stage("validity").validity_map(given, "displacement")
     for r in data.restitution.values:
         zeta = independent.restitution_to_damping(r)
-        half = np.pi / 100 / np.sqrt(1 - zeta**2)
-
-        def turn(duration, zeta=zeta):
-            return independent.test_functions(2, 100.0, zeta, "displacement", duration)[1]
-
-        durations = independent.roots(turn, half * np.linspace(0.97, 1.03, 61))
-        orbits = [independent.orbit(2, 100.0, zeta, "displacement", each) for each in durations]
-        (doubling,) = (y[0] for y in orbits if 0 < y[1] < np.pi / 2 and y[2] < 0)
+        node = end_of_range(2, 100.0, zeta, "displacement", "saddle-node")[0]
+        doubling = end_of_range(2, 100.0, zeta, "displacement", "period doubling")[0]
         x = 2 * np.pi * (1 - r) / (1 + r)
         last = np.hypot(x, 2 * (1 + r**2) / (1 + r) ** 2)
-        share = float(data.doubled_share.sel(n=2, restitution=r))
-        assert share == pytest.approx((last - doubling) / (last - x), abs=1e-8)
+        at = data.sel(n=2, restitution=r)
+        assert float(at.doubled_share) == pytest.approx((last - doubling) / (last - x), abs=1e-8)
+        assert float(at.below_share) == pytest.approx((x - node) / (last - x), abs=1e-8)
+
+
+@pytest.mark.parametrize(("n", "r"), [(1, 0.05), (1, 0.6), (3, 0.05), (3, 0.95)])
+def test_below_the_saddle_node_of_the_simple_model_a_stiff_contact_has_a_stable_orbit(n, r):
+    """The motion that is integrated from it repeats itself, with a clear flight."""
+    zeta = independent.restitution_to_damping(r)
+    half = np.pi / 100 / np.sqrt(1 - zeta**2)
+    node = end_of_range(n, 100.0, zeta, "displacement", "saddle-node")
+    x = n * np.pi * (1 - r) / (1 + r)
+    amplitude = (node[0] + x) / 2
+    if (n, r) == (3, 0.05):
+        assert (node[0], x) == pytest.approx((8.50199, 8.52718), abs=5e-6)
+    (duration,) = independent.roots(
+        lambda each: independent.orbit(n, 100.0, zeta, "displacement", each)[0] - amplitude,
+        np.linspace(0.9 * half, node[3] / 100, 400),
+    )[-1:]
+    y = independent.orbit(n, 100.0, zeta, "displacement", duration)
+    assert min(independent.test_functions(n, 100.0, zeta, "displacement", duration)) > 0
+    moved = independent.cycle(100.0, zeta, "displacement", amplitude, y[1], y[2])
+    assert moved.time == pytest.approx(2 * np.pi * n, abs=1e-9)
+    assert moved.velocity == pytest.approx(y[2], abs=1e-9)
+
+
+def test_the_range_of_a_stiff_contact_lies_lower_and_is_wider_at_every_r():
+    map_ = reference()["validity_map"]
+    assert (map_.below_share > map_.doubled_share).all()
+    assert (map_.doubled_share > 0).all()

@@ -48,6 +48,7 @@ def numbers_of_readme() -> set[str]:
             for error in found.stiff_error.max(["n", "restitution", "place"])
         ),
         *(article.fixed(100 * share, 1) for share in found.doubled_mean),
+        *(article.fixed(100 * share, 1) for share in found.below_mean),
         *(article.fixed(r, 2) for r in failing),
         *(
             figures.share_text(mean).strip("< %")

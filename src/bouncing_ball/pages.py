@@ -187,22 +187,28 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
         where = article.failing(validity_map, quantity)
         shares = map(share_text, validity_map.failing_mean.sel(quantity=quantity).values)
         rows.append([QUANTITIES[quantity], article.percent(error, 2) + of, where, *shares])
-    shares = map(share_text, validity_map.doubled_mean.values)
-    return [*rows, ["period", f"doubled at ϖ = {advised}", doubling(validity_map), *shares]]
+    beyond = {
+        "doubled": ("period", "doubled", "next to the period doubling"),
+        "below": ("no orbit in the simple model", "stable orbits", "below the saddle-node"),
+    }
+    for name, (quantity, found, side) in beyond.items():
+        where = positive(validity_map[f"{name}_share"], side)
+        shares = map(share_text, validity_map[f"{name}_mean"].values)
+        rows.append([quantity, f"{found} at ϖ = {advised}", where, *shares])
+    return rows
 
 
-def doubling(validity_map: xr.Dataset) -> str:
-    """Print for which n and r the contact of the advised ϖ has doubled its period.
+def positive(share: xr.DataArray, side: str) -> str:
+    """Print for which n and r a share at one side of the range of Λ is positive.
 
-    It is a dash if the contact has no period doubling for some n and r.
+    It is a dash if the share is missing for some n and r.
     """
-    share = validity_map.doubled_share
     if share.isnull().any():
         return "–"
     if (share > 0).all():
         r = share.restitution
         ends = [article.short(end) for end in (r.min(), r.max())]
-        return f"every r from {' to '.join(ends)}, next to the period doubling"
+        return f"every r from {' to '.join(ends)}, {side}"
     words = {False: "some", True: "every"}
     parts = [
         f"n = {of_n.n.item()} at {words[bool((of_n > 0).all())]} r" for of_n in share if of_n.any()

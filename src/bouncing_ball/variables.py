@@ -186,6 +186,12 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
             tolerance=1e-6,
         ),
         "doubled_mean": Variable("mean of this fraction over r", tolerance=1e-6),
+        "below_share": Variable(
+            "range of Λ below the saddle-node of the restitution model in which the contact of the "
+            "advised frequency ratio has stable orbits, as a fraction of the stable range",
+            tolerance=1e-6,
+        ),
+        "below_mean": Variable("mean of this fraction over r", tolerance=1e-6),
         "curve_n": Variable("family of the curve", "n"),
         "curve_restitution": Variable("restitution coefficient of the curve", "r"),
         "curve_amplitude": Variable("excitation amplitude of the curve", "Λ"),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import bifurcations
+from bouncing_ball.continuation import SPECIAL, bifurcations
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family
@@ -27,7 +27,8 @@ shares of the paper's ϖ change by at most 1e-5.
 
 def validity_map(parameters: dict, release: str) -> xr.Dataset:
     """The ϖ from which on errors stay within the tolerance, the largest errors from the advised ϖ
-    on, and the orbits whose period has doubled on the contact of the advised ϖ.
+    on, and what the contact of the advised ϖ has at both ends of the range of stable orbits: next
+    to its upper end the period has doubled, and below its lower end the contact has stable orbits.
     """
     advised = parameters["advised"]
     tolerance = parameters["tolerance"]
@@ -52,12 +53,16 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     wider = np.geomspace(ratios[0], 10 * ratios[-1], 2 * ratios.size)
     halved, _ = scan(n_all[most], r_all[most], amplitude[most], wider, tolerance / 2, release)
 
-    # The period doublings of the contact.
+    # The range of stable orbits of the contact, in the range of the restitution model.
     ends = place_all[:, 0] == 1
     contact = Contact(advised, damping_ratio(r_all[ends], release), release)
-    doubling = bifurcations(n_all[ends, 0], "period doubling", contact)[0]
-    doubled = ((last[ends] - doubling) / (last[ends] - first[ends])).reshape(shape[:2])
+    node, doubling = (bifurcations(n_all[ends, 0], kind, contact)[0] for kind in SPECIAL[:2])
+    width = last[ends] - first[ends]
+    doubled = ((last[ends] - doubling) / width).reshape(shape[:2])
     doubled_mean = [mean_share(r, each) for each in doubled]
+    # The contact may double its period below the saddle-node of the restitution model.
+    below = ((np.minimum(first[ends], doubling) - node) / width).reshape(shape[:2])
+    below_mean = [mean_share(r, each, np.inf) for each in below]
 
     curves = parameters["curves"]
     n_curve, r_curve, amplitude_curve = (
@@ -80,6 +85,8 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
             "halved_enough_from": (over[:1], np.diagonal(halved)),
             "doubled_share": (over[1:3], np.clip(doubled, 0, 1)),
             "doubled_mean": (over[1:2], doubled_mean),
+            "below_share": (over[1:3], np.maximum(below, 0)),
+            "below_mean": (over[1:2], below_mean),
             "curve_n": ("curve", n_curve),
             "curve_restitution": ("curve", r_curve),
             "curve_amplitude": ("curve", amplitude_curve),
@@ -126,19 +133,21 @@ def failures(
     return share, mean, up_to
 
 
-def mean_share(r: NDArray, values: NDArray) -> float:
-    """The mean over r of values as shares, cut off below 0 and above 1; NaN if one is missing.
+def mean_share(r: NDArray, values: NDArray, most: float = 1.0) -> float:
+    """The mean over r of values as shares, cut off below 0 and above `most`; NaN if one is missing.
 
-    It is the integral of a cubic spline, and of 0 or 1 where the spline is beyond.
+    It is the integral of a cubic spline, and of 0 or `most` where the spline is beyond.
     """
     if np.isnan(values).any():
         return np.nan
     spline = CubicSpline(r, values)
-    cuts = np.concatenate([spline.solve(end, extrapolate=False) for end in (0, 1)])
+    cuts = np.concatenate(
+        [spline.solve(end, extrapolate=False) for end in (0, most) if end < np.inf]
+    )
     places = np.unique([r[0], *cuts[np.isfinite(cuts)], r[-1]])
-    # Between two places the spline is below 0, from 0 to 1, or above 1, and so is its mean.
+    # Between two places the spline is below 0, from 0 to `most`, or above it, and so is its mean.
     means = [spline.integrate(*part) / np.ptp(part) for part in pairwise(places)]
-    return float(np.clip(means, 0, 1) @ np.diff(places) / np.ptp(r))
+    return float(np.clip(means, 0, most) @ np.diff(places) / np.ptp(r))
 
 
 def finer(grid: NDArray, steps: int) -> NDArray:

@@ -637,7 +637,7 @@ def bifurcations_move(table1, lowest):
     "as the frequency ratio falls the stability range is extended",
     "table1",
     remark="the range of Table 1; at ϖ = 2 there are further stable ranges; both ends move, and on "
-    "the validity map the range at ϖ = 100 begins lower and is wider at every r",
+    "the validity map the range at ϖ = 100 begins lower and is wider at every r of it",
 )
 def range_widens(table1):
     width = from_the_stiffest(table1)["computed"].diff("bound")

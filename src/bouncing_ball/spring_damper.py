@@ -25,21 +25,25 @@ def unknown(release: str) -> ValueError:
     return ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
 
 
-def free_duration(zeta: Numbers, release: str = "displacement") -> NDArray:
-    """Duration of a free impact multiplied by the natural frequency of the contact, for ζ < 1.
+def free_angle(zeta: Numbers, release: str) -> NDArray | float:
+    """Angle by which the damped oscillation turns in a free impact, for ζ < 1.
 
     In a free impact no weight acts, and the table is at rest.
 
-    - Displacement release: half a free oscillation, π/√(1 - ζ²).
-    - Force release: 2 arccos ζ/√(1 - ζ²). The contact ends earlier by the angle 2 arcsin ζ, by
-      which its force leads its displacement (Schwager and Pöschel, 2007).
+    - Displacement release: π, half an oscillation.
+    - Force release: 2 arccos ζ = π - 2 arcsin ζ. The contact ends earlier by the angle by which its
+      force leads its displacement (Schwager and Pöschel, 2007).
     """
     if release == "force":
-        # The denominator is finite at ζ = 1.
-        return 2 / np.sinc(np.arccos(zeta) / np.pi)
+        return 2 * np.arccos(zeta)
     if release != "displacement":
         raise unknown(release)
-    return np.pi / np.sqrt(1 - np.asarray(zeta) ** 2)
+    return np.pi
+
+
+def free_duration(zeta: Numbers, release: str) -> NDArray:
+    """Duration of a free impact multiplied by the natural frequency of the contact, for ζ < 1."""
+    return free_angle(zeta, release) / np.sqrt(1 - np.asarray(zeta) ** 2)
 
 
 def free_restitution(zeta: Numbers, release: str = "displacement") -> NDArray:
@@ -48,7 +52,8 @@ def free_restitution(zeta: Numbers, release: str = "displacement") -> NDArray:
     >>> round(float(free_restitution(damping_ratio(0.85))), 12)
     0.85
     """
-    return np.exp(-np.asarray(zeta) * free_duration(zeta, release))
+    zeta = np.asarray(zeta)
+    return np.exp(-free_angle(zeta, release) * zeta / np.sqrt(1 - zeta**2))
 
 
 def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
@@ -67,11 +72,11 @@ def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
     if release == "force":
         found = find_root(
             lambda zeta, logarithm: zeta * free_duration(zeta, release) + logarithm,
-            (0.0, 1.0),
+            (0.0, np.nextafter(1.0, 0.0)),
             args=(logarithm,),
             tolerances={"xatol": 1e-15},
         )
-        return np.where(found.success & (logarithm > -2), found.x, np.nan)[()]
+        return np.where(found.success, found.x, np.nan)[()]
     if release != "displacement":
         raise unknown(release)
     # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.

@@ -125,11 +125,7 @@ SYMBOLS = {
     ),
     "minimum_threshold": Variable("lowest threshold of permanent contact", "2ζ√(1-ζ²)", "Eq. 36"),
     # Errors of the restitution model
-    "relative_error": Variable(
-        "relative error of the restitution model; of the phase a fraction of a period",
-        "",
-        "Eqs. 37-38",
-    ),
+    "relative_error": Variable("relative error of the restitution model", "", "Eqs. 37-38"),
     "error_threshold": Variable(
         "frequency ratio above which the error stays below the tolerance",
         "ϖ_1%",
@@ -146,8 +142,13 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         "restitution_range": Variable("end of the stability range, restitution model", "Λ"),
     },
     "thresholds": {
+        "relative_error": Variable(
+            "error of the restitution model: relative, but for the phase a fraction of a period",
+            "",
+            "Eqs. 37-38",
+        ),
         "quantity": Variable("quantity compared between the two models"),
-        "tolerance": Variable("relative error tolerated", equation="Eqs. 37-38"),
+        "tolerance": Variable("error tolerated", equation="Eqs. 37-38"),
     },
     "validity_map": {
         "quantity": Variable("quantity compared between the two models"),

@@ -214,7 +214,7 @@ def test_the_numbers_of_statements_are_those_of_formulas_of_their_own(reference,
 
 # What changes in a dataset, and the verdict that it must change.
 CHANGES = {
-    "stiff limit": ("thresholds", "relative_error", 100.0, "not reproduced"),
+    "stiff limit": ("thresholds", "relative_error", 200.0, "not reproduced"),
     "contact lengthens": ("fig13", "contact_duration", -1.0, "not reproduced"),
     "superimposed when stiff": ("fig08", "contact_duration", 100.0, "not reproduced"),
     "range widens": ("table1", "computed", -1.0, "not reproduced"),
@@ -495,8 +495,8 @@ def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
 
 
 @pytest.mark.parametrize("name", sorted(paper.PARAMETERS))
-def test_claims_under_other_parameters_are_not_asked(reference, name):
-    data = reference[name]
+def test_claims_under_other_parameters_are_not_asked(name):
+    data = every_dataset()[name]
     given = parameters(data)
     assert not paper.other_parameters(name, data, paper.PARAMETERS[name])
     for key, needed in paper.PARAMETERS[name].items():

@@ -495,7 +495,7 @@ def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
 
 
 @pytest.mark.parametrize("name", sorted(paper.PARAMETERS))
-def test_claims_under_other_parameters_are_not_asked(name):
+def test_claims_under_other_parameters_are_not_asked(reference, name):
     data = every_dataset()[name]
     given = parameters(data)
     assert not paper.other_parameters(name, data, paper.PARAMETERS[name])

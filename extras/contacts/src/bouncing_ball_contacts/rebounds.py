@@ -507,6 +507,7 @@ BY_NUMBER = {
             springs="pybullet",
             is_restless=True,
             calmed_by="contactProcessingThreshold",
+            notes=("Bullet's own bodies, as in C++ and ammo.js, have no linearDamping of 0.04",),
             # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
             # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
             not_for=(
@@ -645,7 +646,8 @@ NAMES = {
     "bevyxpbd": "",
     "blender": "has Bullet: take pybullet",
     "box3d": "",
-    "ammo": "is Bullet: take pybullet",
+    "ammo": "is Bullet: take pybullet with linearDamping=0",
+    "babylon": "has several engines: take cannon-es for its Cannon",
     "brax": "",
     "chaos": "",
     "chrono": "",
@@ -654,6 +656,7 @@ NAMES = {
     "gdevelop": "has Box2D: take box2d-2.3",
     "godot": "has two engines: take godot-jolt for Jolt Physics",
     "dojo": "",
+    "dyn4j": "",
     "gymnasium": "has no engine of its own: take mujoco, or box2d-2.3",
     "havok": "",
     "haxball": "",
@@ -664,8 +667,10 @@ NAMES = {
     "p2": "",
     "phaser": "has two engines: take matter-js for Matter",
     "physac": "",
-    "physijs": "is Bullet: take pybullet",
+    "physijs": "is Bullet: take pybullet with linearDamping=0",
+    "playcanvas": "has Bullet: take pybullet with linearDamping=0",
     "physx3": "",
+    "reactphysics3d": "",
     "rigidipc": "",
     "sapien": "has PhysX: take physx for PhysX 5",
     "simscape": "",

@@ -264,10 +264,10 @@ def rounded(number: float, is_share: bool) -> str:
 def three_digits(value: float) -> str:
     """Print a number with three digits, and all digits of a larger one.
 
-    >>> three_digits(0.0297), three_digits(2975.3), three_digits(-7.318e-5)
-    ('0.0297', '2975', '-7.32·10⁻⁵')
+    >>> three_digits(0.0297), three_digits(2975.3), three_digits(999.7), three_digits(-7.318e-5)
+    ('0.0297', '2975', '1000', '-7.32·10⁻⁵')
     """
-    if abs(value) >= 1000:
+    if abs(value) >= 999.5:
         return f"{value:.0f}"
     digits, _, exponent = f"{value:.3g}".partition("e")
     if not exponent:

@@ -240,6 +240,9 @@ def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
                 for dim, index in zip(old[name].dims, worst, strict=True)
             ]
             text += f" at {', '.join(at)}" if at else ""
+            text += (
+                f" (tolerance {old[name].tolerance:g})" if "tolerance" in old[name].attrs else ""
+            )
             text += f", and {count - 1} more of {distance.size} values" if count > 1 else ""
             far.append((distance[worst], text))
     return [text for _, text in sorted(far, key=lambda each: -each[0])]
@@ -665,14 +668,13 @@ def written(report: Comparison, folder: Path, stream: TextIO) -> int:
 
     Returns the exit status: 1 if something differs.
     """
-    noted = [*report.findings, *report.following, *report.drawn_elsewhere]
     pictures = {
         file: [
             base64.b64encode(path.read_bytes()).decode()
             for path in (report.old.folder / file, report.new.folder / file)
             if path.is_file()
         ]
-        for file in noted
+        for file in [*report.findings, *report.following, *report.drawn_elsewhere]
         if file.endswith(".png")
     }
     page = folder.resolve() / "index.html"

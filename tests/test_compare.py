@@ -23,6 +23,7 @@ from tests.conftest import Named
 from bouncing_ball import compare, datasets, provenance, variables
 from bouncing_ball.drawing import save_picture
 
+HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
 CONFIG = {"release": "force", "stage": ENTRIES}
 FILES = (
@@ -188,7 +189,7 @@ def test_a_parameter_is_the_cause_and_names_no_file(project):
     config = {"release": "force", "stage": entries}
     found = report(project, config=config)
     assert found.lines() == [
-        "fig14: max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09); changed parameter: n 1 → 2",
+        f"fig14: {HIGHER}; changed parameter: n 1 → 2",
         "claims: verdict reproduced → contradicted at claim = high; follows from: fig14",
     ]
     changed = [("is 82", "is 83")]
@@ -627,7 +628,7 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
         page = tmp_path / "diff/index.html"
     assert compare.main(project, [str(one), str(other)]) == 1
     assert capsys.readouterr().out.splitlines() == [
-        "fig14: max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09); changed parameter: n 1 → 2",
+        f"fig14: {HIGHER}; changed parameter: n 1 → 2",
         *("paper.md, changed sentences: 1", "  − is 82", "  + is 83"),
         *("supplement.md, changed sentences: 1", "  − is 82", "  + is 83"),
         "Not compared, because a dataset differs: figures/fig14.png, figures/fig14.svg.",

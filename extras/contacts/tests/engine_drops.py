@@ -48,6 +48,11 @@ class Body(NamedTuple):
 BALL = Body()
 
 
+def apart(radius):
+    """Return the distance of balls in m, so that large ones do not touch each other."""
+    return max(3.0, 3 * radius)
+
+
 def lines_of(text):
     """Return the code that sets the parameters, and the code of a step."""
     *sets, steps = as_python(text)
@@ -73,7 +78,7 @@ def chipmunk(text, drops, radius, steps, kind=BALL):
     balls = []
     for place, drop in enumerate(drops):
         body = pymunk.Body()
-        body.position = (3 * place, radius + drop)
+        body.position = (apart(radius) * place, radius + drop)
         body.angular_velocity = kind.spin
         shape = shapes[kind.shape](body)
         shape.mass = kind.mass
@@ -122,7 +127,7 @@ def dart(text, drops, radius, steps, kind=BALL):
         add(ball, ball.createFreeJointAndBodyNodePair(), shapes[kind.shape](), kind.mass)
         # The axis of a capsule is z, and its quarter turn is about x.
         turn = math.pi / 2 if kind.shape == "capsule" else 0.0
-        ball.setPositions([turn, 0, 0, 3 * place, 0, 0.5 + radius + drop])
+        ball.setPositions([turn, 0, 0, apart(radius) * place, 0, 0.5 + radius + drop])
         ball.setVelocities([0, kind.spin, 0, 0, 0, 0])
         balls.append(ball)
     heights = []
@@ -148,7 +153,9 @@ def box2d_2(text, drops, radius, steps, kind=BALL):
     exec(sets, {"fixtureDef": fixture})
     balls = [
         world.CreateDynamicBody(
-            position=(3 * place, radius + drop), angularVelocity=kind.spin, fixtures=fixture
+            position=(apart(radius) * place, radius + drop),
+            angularVelocity=kind.spin,
+            fixtures=fixture,
         )
         for place, drop in enumerate(drops)
     ]
@@ -179,7 +186,7 @@ def rapier(text, drops, radius, steps, kind=BALL):
     balls = []
     for place, drop in enumerate(drops):
         ball = rapier3d.RigidBody.dynamic(
-            translation=(3 * place, radius + drop, 0), angvel=(0, 0, kind.spin)
+            translation=(apart(radius) * place, radius + drop, 0), angvel=(0, 0, kind.spin)
         )
         shape = of(shapes[kind.shape]().mass(kind.mass))
         balls.append(world.add_body(ball, colliders=[shape]))
@@ -203,7 +210,7 @@ def newton_xpbd(text, drops, radius, steps, kind=BALL):
     half = math.sqrt(0.5)
     turned = warp.quat(half, 0.0, 0.0, half) if kind.shape == "capsule" else warp.quat_identity()
     for place, drop in enumerate(drops):
-        at = warp.transform(warp.vec3(3.0 * place, 0.0, radius + drop), turned)
+        at = warp.transform(warp.vec3(apart(radius) * place, 0.0, radius + drop), turned)
         body = builder.add_body(xform=at)
         if kind.shape == "box":
             builder.add_shape_box(body, hx=radius, hy=radius, hz=radius, cfg=material)
@@ -261,7 +268,9 @@ def gazebo_sim(text, drops, radius, steps, kind=BALL):
     ]
     ball = f"<sphere><radius>{radius!r}</radius></sphere>"
     for place, drop in enumerate(drops):
-        at = dict(x=3.0 * place, z=float(radius + drop), name=f"ball{place}", is_static=False)
+        at = dict(
+            x=apart(radius) * place, z=float(radius + drop), name=f"ball{place}", is_static=False
+        )
         of = dict(mass=kind.mass, inertia=0.4 * kind.mass * radius**2, shape=ball, bounce=bounce)
         models.append(_MODEL.format(**at, **of))
     with tempfile.TemporaryDirectory() as folder:

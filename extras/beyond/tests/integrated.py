@@ -1,14 +1,17 @@
-"""One impact and the flight after it, by an integrator and a bracketing root finder.
+"""Motions of a ball by an integrator and a bracketing root finder.
 
 It shares no formula with the package but the forces of laws: the contact is a differential equation
-with an event. The table is a sine, or a sum of harmonics (k, a, p) of a sin(kτ + p).
+with an event, and a corrected impact comes from the definition of its quantities. The table is a
+sine, or a sum of harmonics (k, a, p) of a sin(kτ + p).
 """
+
+from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.balls import SpringDamper
+from bouncing_ball_beyond.balls import Corrected, SpringDamper
 
 SINE = ((1, 1.0, 0.0),)
 
@@ -27,15 +30,16 @@ def acceleration(ball, gap, rate):
     return ball.force(max(-gap, 0.0), -rate, **ball.values)
 
 
-def contact(ball, amplitude, tau, u, harmonics=SINE):
-    """The release after an impact at the time tau with the closing speed u: time, δ, δ′, height.
+def touching(ball, amplitude, tau, u, harmonics=SINE, gravity=1.0):
+    """The release after an impact at the time tau with the closing speed u: time, δ, δ′, and the
+    motion up to it, a function of time with (δ, δ′).
 
-    An impact with u < 0 is a contact that resumes where its force is zero. The height is the
-    greatest one in the contact, by samples.
+    An impact with u < 0 is a contact that resumes where its force is zero.
     """
+    waves = tuple(harmonics)
 
     def motion(t, y):
-        return [y[1], -1 - amplitude * waveform(harmonics, t, 2) + acceleration(ball, *y)]
+        return [y[1], -gravity - amplitude * waveform(waves, t, 2) + acceleration(ball, *y)]
 
     def release(t, y):
         if t < tau + 1e-6:
@@ -56,22 +60,63 @@ def contact(ball, amplitude, tau, u, harmonics=SINE):
         max_step=0.02,
         dense_output=True,
     )
-    end = found.t_events[0][0]
-    gap, speed = found.y_events[0][0]
+    return found.t_events[0][0], *found.y_events[0][0], found.sol
+
+
+def contact(ball, amplitude, tau, u, harmonics=SINE):
+    """The release as in `touching`, with the greatest height in the contact, by samples."""
+    end, gap, speed, motion = touching(ball, amplitude, tau, u, harmonics)
     times = np.linspace(tau, end, 20001)
-    heights = amplitude * waveform(harmonics, times) + found.sol(times)[0]
+    heights = amplitude * waveform(harmonics, times) + motion(times)[0]
     return end, gap, speed, heights.max()
 
 
-def flight(amplitude, leaves, gap, speed, harmonics=SINE):
-    """The first landing at δ = 0 after a release: time, closing speed and greatest height."""
+def free_impact(ball, u):
+    """r, D, t_c and σ of a free impact of a contact, from their definitions."""
+
+    def impulse(speed, load=0.0):
+        end, _, bounced, _ = touching(ball, 0.0, 0.0, speed, gravity=load)
+        return speed + bounced + load * end
+
+    duration, gap, w, _ = touching(ball, 0.0, 0.0, u, gravity=0.0)
+    # The moment of the force ∫ t δ″ dt, by parts.
+    centroid = (duration * w - gap) / (u + w)
+    load, step = 1e-3 * u / duration, 1e-3 * u
+    by_load = (impulse(u, load) - impulse(u, -load)) / (2 * load)
+    by_speed = (impulse(u + step) - impulse(u - step)) / (2 * step)
+    return w / u, duration, centroid, by_load - centroid * by_speed
+
+
+@cache
+def linear_impact(ratio, zeta, release):
+    """r, D, t_c and σ of a spring and a damper, which are those of every speed."""
+    return free_impact(SpringDamper(ratio, damping_ratio=zeta, release=release), 1.0)
+
+
+def instant(ball, amplitude, tau, u, harmonics=SINE):
+    """δ and δ′ after an impact that is an instant, and the t_c of the ball: δ = -u t_c."""
+    if not isinstance(ball, Corrected):
+        return 0.0, ball.restitution * u, 0.0
+    of = ball.of
+    r, _, centroid, loss = linear_impact(float(of.frequency_ratio), float(of.zeta), of.release)
+    load = 1 + amplitude * waveform(harmonics, tau, 2)
+    return -u * centroid, r * u + loss * load, centroid
+
+
+def flight(amplitude, leaves, gap, speed, harmonics=SINE, centroid=0.0):
+    """The first landing at δ = t_c δ′ after a release: time, closing speed and greatest height."""
     height = gap + amplitude * waveform(harmonics, leaves)
     velocity = speed + amplitude * waveform(harmonics, leaves, 1)
 
     def above(t):
-        return height + velocity * t - t * t / 2 - amplitude * waveform(harmonics, leaves + t)
+        gap = height + velocity * t - t * t / 2 - amplitude * waveform(harmonics, leaves + t)
+        rate = velocity - t - amplitude * waveform(harmonics, leaves + t, 1)
+        return gap - centroid * rate
 
-    times = np.arange(1e-6, 200.0, 2e-3)
+    # The ball is below the lowest point of the table after this time.
+    lowest = height + amplitude * sum(abs(a) for _, a, _ in harmonics)
+    longest = velocity + np.sqrt(velocity**2 + 2 * lowest) + 1
+    times = np.arange(1e-6, longest, 2e-3)
     below = (above(times[:-1]) > 0) & (above(times[1:]) <= 0)
     first = np.flatnonzero(below)[0]
     time = brentq(above, times[first], times[first + 1], xtol=1e-14)
@@ -85,13 +130,32 @@ def leg(ball, amplitude, tau, u, harmonics=SINE):
 
     Also the greatest height up to it.
     """
-    leaves, gap, speed, lifted = tau, 0.0, 0.0, -np.inf
     if ball.has_duration:
         leaves, gap, speed, lifted = contact(ball, amplitude, tau, u, harmonics)
-    else:
-        speed = ball.restitution * u
-    lands, closing, summit = flight(amplitude, leaves, gap, speed, harmonics)
-    return lands, closing, max(summit, lifted)
+        lands, closing, summit = flight(amplitude, leaves, gap, speed, harmonics)
+        return lands, closing, max(summit, lifted)
+    gap, speed, centroid = instant(ball, amplitude, tau, u, harmonics)
+    return flight(amplitude, tau, gap, speed, harmonics, centroid)
+
+
+def heights(ball, amplitude, tau, u, times, harmonics=SINE):
+    """Heights of a ball at times after an impact, in contacts and flights."""
+    found = np.full(len(times), np.nan)
+    while tau <= times[-1]:
+        leaves = tau
+        if ball.has_duration:
+            leaves, gap, speed, motion = touching(ball, amplitude, tau, u, harmonics)
+            during = np.flatnonzero((times >= tau) & (times < leaves))
+            for i in during:
+                found[i] = motion(times[i])[0] + amplitude * waveform(harmonics, times[i])
+        else:
+            gap, speed, _ = instant(ball, amplitude, tau, u, harmonics)
+        s = times[times >= leaves] - leaves
+        velocity = speed + amplitude * waveform(harmonics, leaves, 1)
+        level = gap + amplitude * waveform(harmonics, leaves)
+        found[times >= leaves] = level + velocity * s - s * s / 2
+        tau, u, _ = leg(ball, amplitude, tau, u, harmonics)
+    return found
 
 
 def around(orbit, shift=(0.0, 0.0)):

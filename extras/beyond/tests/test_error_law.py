@@ -438,18 +438,18 @@ SKEWED = Table([(1, 1.0, 0.0), (3, 0.05, 0.7)])
 @pytest.mark.parametrize("table", [SINE, SKEWED])
 @pytest.mark.parametrize("r", [0.05, 0.3, 0.65, 0.95])
 def test_errors_at_the_saddle_node_of_the_restitution_model_are_those_next_to_it(table, r):
-    """Also if Λ differs from C/max w′ by rounding; the phase of a sine is 0 there."""
+    """Also if Λ differs from C/max w′ by rounding; the phase after the steepest rise is 0 there."""
     ball = SpringDamper(300.0, restitution=r)
     node = np.pi * (1 - r) / (1 + r) / table.slope
     amplitude = node * (1 + np.array([-1e-16, 0.0, 1e-16, 1e-15, 1e-12, 1e-10]))
-    names = [name for name in QUANTITIES if table is SKEWED or name != "phase"]
+    names = [name for name in QUANTITIES if name != "phase"]
     for errors in (law_errors, exact_errors):
         found = errors(ball, amplitude=amplitude, table=table)
         next_to_it = errors(ball, amplitude=node * (1 + 1e-9), table=table)
         for name in names:
             np.testing.assert_allclose(found[name], next_to_it[name], atol=1e-4, err_msg=name)
-    if table is SINE:
-        assert np.isinf(law_errors(ball, amplitude=node)["phase"])
+    # On other tables than the sine, rounding errors of the phase are as large as √eps.
+    assert abs(law_errors(ball, amplitude=node, table=table)["phase"]) > 1e4
 
 
 def test_orbits_at_their_saddle_node_are_found_on_both_sides():

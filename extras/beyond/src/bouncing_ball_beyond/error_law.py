@@ -169,7 +169,7 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
     return {
         "max_height": lift + impact.half**2 / 2,
         "bounce_velocity": impact.half + 0 * lift,
-        "phase": phase,
+        "phase": phase - table.steepest,
         "apparent_restitution": impact.restitution + 0 * lift,
         "saddle_node": impact.line / table.slope + anywhere,
         "period_doubling": table.amplitude_at(impact.line, impact.doubling)[0] + anywhere,
@@ -480,7 +480,8 @@ def contact_values(
     Returns
     -------
     dict of arrays
-        Values by name. They are NaN if there is no orbit. A corrected ball has instantaneous
+        Values by name. They are NaN if there is no orbit. The phase is counted from the phase at
+        which the table rises fastest, which is 0 for a sine. A corrected ball has instantaneous
         impacts. Its phase, velocity and apparent restitution belong to contacts that start t_c
         before these impacts and end D - t_c after them.
     """
@@ -577,7 +578,7 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     return {
         "max_height": equations.max_height(z),
         "bounce_velocity": velocity,
-        "phase": touch,
+        "phase": touch - table.steepest,
         "apparent_restitution": (velocity - amplitude * table(leaves, 1)) / speed,
     }
 

@@ -51,40 +51,6 @@ def test_two_impacts_in_two_periods_between_the_first_two_doublings():
     assert end.min() < 1e-6
 
 
-@pytest.mark.parametrize(
-    "ball",
-    [
-        bb.Rigid(0.85),
-        bb.SpringDamper(8.0, restitution=0.7),
-        bb.SpringDamper(8.0, restitution=0.7, release="force"),
-        bb.Corrected(bb.SpringDamper(8.0, restitution=0.7)),
-        bb.hunt_crossley(1000.0, 0.08),
-        bb.tsuji(restitution=0.85, duration=0.1, speed=3.0),
-        bb.linear(8.0, 0.1, release="approach"),
-    ],
-)
-def test_exponents_of_stable_orbits_are_those_of_their_multipliers(ball):
-    """The exponent is ln|μ|/m, and the sum of both ln(det)/m."""
-    orbit = bb.orbit(ball, amplitude=1.0)
-    start = {"phase": orbit.phase + 0.01, "relative_velocity": orbit.relative_impact_velocity}
-    found = bb.lyapunov(ball, amplitude=1.0, **start)
-    multipliers = np.abs(orbit.multipliers)
-    assert found.kind == "periodic"
-    assert abs(found.lyapunov_exponent - np.log(multipliers.max())) < 1e-6
-    assert abs(found.exponent_sum - np.log(multipliers.prod())) < 1e-6
-    assert found.lyapunov_error == 0
-
-
-def test_a_ball_with_a_force_law_ends_on_its_orbit_from_anywhere():
-    """Also if no ball repeats itself in the first impacts, so that there are no orbits to store."""
-    ball = bb.hunt_crossley(1000.0, 0.08)
-    orbit = bb.orbit(ball, amplitude=1.0)
-    assert bb.orbit_of_motion(ball, amplitude=1.0, phase=1.0).distance(orbit) < 1e-9
-    found = bb.basins(ball, amplitude=1.0, starts=3)
-    assert found.kind.values.tolist() == ["periodic"]
-    assert found.share == 1
-
-
 def test_the_exponent_of_chaos_is_that_of_neighbours_that_separate():
     """The growth of a distance of 10⁻⁹ over 12 impacts, averaged over a chaotic motion."""
     ball = bb.SpringDamper(20.0, restitution=0.85)

@@ -516,6 +516,7 @@ def lyapunov(pair):
     trace, determinant = pair.multiplied
     largest = abs(np.roots([1.0, -trace, determinant])).max()
     assert_close(found.lyapunov_exponent, np.log(largest), 1e-4)
+    assert_close(found.exponent_sum, np.log(determinant), 1e-4)
 
 
 # The error of a restitution coefficient

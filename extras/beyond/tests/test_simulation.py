@@ -112,40 +112,6 @@ def test_chaotic_motions_are_those_of_an_integrator_as_long_as_digits_last(ball)
     assert (np.abs(found.values - (tau - 0.5)) < 1e-10 + 10 * parted).all()
 
 
-def test_the_corrected_model_and_a_law_of_hertz_are_simulated():
-    """An instant is where the ball of the continued flight is below the table by u t_c."""
-    corrected = bb.Corrected(bb.SpringDamper(20.0, restitution=0.65))
-    r, _, centroid, loss = (float(x) for x in corrected.signature(1.0))
-    found = bb.simulate(corrected, amplitude=1.2, phase=0.6, velocity=-3.0, impacts=20)
-    tau, u, times = 0.6, 3.0 + 1.2 * np.cos(0.6), [0.0]
-    for _ in range(19):
-        gap, w = -u * centroid, r * u + loss * (1 - 1.2 * np.sin(tau))
-
-        def above(t, tau=tau, gap=gap, w=w):
-            table = 1.2 * (np.sin(tau) - np.sin(tau + t))
-            rate = w + 1.2 * (np.cos(tau) - np.cos(tau + t)) - t
-            return gap + (w + 1.2 * np.cos(tau)) * t - t * t / 2 + table - centroid * rate
-
-        time = first_crossing(above, np.arange(0.1, 50, 1e-3))
-        u = time - w - 1.2 * (np.cos(tau) - np.cos(tau + time))
-        tau += time
-        times.append(tau - 0.6)
-    assert np.abs(found.time.values - times).max() < 1e-10
-
-    hertz = bb.tsuji(stiffness=2000.0, damping=0.5)
-
-    def law(gap, rate):
-        return hertz.force(-gap, -rate, **hertz.parameters)
-
-    found = bb.simulate(hertz, amplitude=1.2, phase=0.6, velocity=-3.0, impacts=6)
-    tau, u = 0.6, 3.0 + 1.2 * np.cos(0.6)
-    for k in range(5):
-        leaves, w = contact(1.2, tau, u, lambda gap, rate: law(min(gap, 0.0), rate))
-        assert abs(found.contact_duration[k] - (leaves - tau)) < 1e-7
-        tau, u = flight(1.2, leaves, 0.0, w)
-        assert abs(found.time[k + 1] - (tau - 0.6)) < 1e-6
-
-
 @pytest.mark.parametrize("law", [bb.tsuji(1000.0, 0.1), bb.kuwabara_kono(1000.0, 0.02)], ids=repr)
 def test_instants_of_laws_are_where_they_are_defined(law):
     """There δ = -u t_c(u) after a flight, also where t_c depends on u."""

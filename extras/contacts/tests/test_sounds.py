@@ -264,11 +264,13 @@ def test_a_part_of_a_sound(typed, drop):
     hint = typed(f"fit {drop}")[1].splitlines()[1].removeprefix("! another fall: ")
     status, out, err = typed(f"fit {drop} {hint}")
     assert (status, err) == (0, "") and "another fall" not in out
-    assert len(list(drop.parent.glob("drop-begin-*-end-*.txt"))) == 1
+    assert len(list(drop.parent.glob("drop-from-*-to-*.txt"))) == 1
     r = float(re.search(r"r = (\S+)", out)[1])
     assert r == pytest.approx(0.75, abs=0.01)
     assert "0.2 s are needed" in typed(f"fit {drop} --from 3 --to 2")[2]
     assert "0.2 s are needed" in typed(f"fit {drop} --from 99s")[2]
+    assert "--from: 'x' does not begin with a number" in typed(f"fit {drop} --from x")[2]
+    assert "before the sound" in typed(f"fit {drop} --from=-1")[2]
     assert "of a sound" in typed("fit croquet --from 1")[2]
 
 

@@ -213,11 +213,11 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
     """
     from bouncing_ball_contacts.sounds import listen, picture_of, sound_of
 
-    typed = {"begin": begin, "end": end}
-    given = {name: in_si(name, value, "s") for name, value in typed.items() if value is not None}
-    sound = sound_of(path, **given)
+    typed = {"--from": begin, "--to": end}
+    given = {option: in_si(option, text, "s") for option, text in typed.items() if text is not None}
+    sound = sound_of(path, given.get("--from", 0.0), given.get("--to", float("inf")))
     heard = listen(sound)
-    stem = "-".join([path.stem, *(f"{name}-{value:g}" for name, value in given.items())])
+    stem = "".join([path.stem, *(f"{option[1:]}-{value:g}" for option, value in given.items())])
     texts = {
         path.with_name(f"{stem}.txt"): heard.labels,
         path.with_name(f"{stem}.svg"): picture_of(sound, heard),

@@ -152,6 +152,10 @@ def sound_of(path: Path, begin: float = 0.0, end: float = math.inf) -> Sound:
     refuse(
         [
             (
+                begin < 0,
+                f"a part of {path.name} that begins at {begin:g} s begins before the sound",
+            ),
+            (
                 lasts < 0.2,
                 f"{path.name} has {lasts:.3g} s of sound in this part of {len(data) / rate:.4g} s: "
                 "0.2 s are needed",

@@ -232,7 +232,7 @@ def test_a_ball_whose_contact_ends_with_its_force():
 
 @pytest.mark.parametrize(("release", "least"), [("displacement", 0.05), ("force", 0.14)])
 def test_contacts_on_stiff_orbits_last_as_long_as_free_impacts(release, least):
-    """Within 0.7 % at ϖ = 100, which docs/your-ball.md says beside its formula for a measured duration."""
+    """Within 0.7 % at ϖ = 100, as docs/your-ball.md says beside its formula for a duration."""
     mesh = np.meshgrid([1, 2, 3], np.linspace(least, 0.95, 7), [0, 0.01, 0.3, 1], indexing="ij")
     n, r, place = (each.reshape(-1, 1) for each in mesh)
     first = restitution.saddle_node(n, r)

@@ -177,7 +177,10 @@ class Contact:
         # The force 1 is real, so one root gives its response. The force e^{is} is complex, so both
         # roots are needed: P is the imaginary part of its response, and Q is the real part.
         unit = _quotient(0, root, s).imag / root.imag
-        wave = (_quotient(1j, root, s) - _quotient(1j, np.conj(root), s)) / (root - np.conj(root))
+        both = _quotient(1j, root, s) - _quotient(1j, np.conj(root), s)
+        # Complex arithmetic warns of NaN, which marks elements for which no contact exists.
+        with np.errstate(invalid="ignore"):
+            wave = both / (root - np.conj(root))
         return Responses(
             impulse=free.imag / root.imag,
             impulse_rate=(free * root).imag / root.imag,

@@ -622,6 +622,8 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
     if kind == "folder of the run":
         one, other = one.parent, other.parent
         page = other / "diff/index.html"
+        # A checkout has the reference beside the results.
+        shutil.copytree(project.top / "figures", one / "figures")
     if kind.startswith("zip"):
         base = other.parent if "several" in kind else other
         other = shutil.make_archive(str(tmp_path / "artifact"), "zip", base)

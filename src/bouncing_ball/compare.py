@@ -612,15 +612,15 @@ def accept(project: Project, results: Path) -> list[str]:
 
 
 def results_of(path: Path, unpacked: Path) -> Path:
-    """The folder of the results of a run: a folder itself, `results` in it, or the same in a zip
-    file, as continuous integration delivers it, which is unpacked.
+    """The folder of the results of a run: `results` in a folder, or the folder itself, or the same
+    in a zip file, as continuous integration delivers it, which is unpacked.
 
     Raises ValueError if there are none, or another error if a zip file is damaged.
     """
     if path.is_file():
         shutil.unpack_archive(path, unpacked, "zip")
         path = unpacked
-    for folder in (path, path / "results"):
+    for folder in (path / "results", path):
         if (folder / "figures").is_dir():
             return folder
     raise ValueError(f"there is nothing to compare in {path}")

@@ -83,7 +83,7 @@ def of_ode(p, m, h, z, v):
 
 def of_cannon(p, m, h, z, v):
     four = 4 * p["contactEquationRelaxation"]
-    soft = 4 / (h * h * p["contactEquationStiffness"] * (1 + four))
+    soft = 4 / (h * h * p.get("contactEquationStiffness", 1e7) * (1 + four))
     push = G * h - (4 * z / h + (1 + p["restitution"]) * v * four) / (1 + four)
     v += max(push / (1 + soft * m), 0.0) if z < 0 else 0.0
     # The default of linearDamping is 0.01, and gravity acts after it.

@@ -66,26 +66,51 @@ def tops(rng, r, impacts, error, scatter):
     return Recording("heights", "heights", (np.array(heights),))
 
 
-def drops(rng, r, heights, each, error, scatter):
+def drops(rng, r, heights, each, error, scatter, shared=0.0, height_error=0.0):
+    """Trials of each height, which share an error of ln r, and one of the height in m."""
     h = np.repeat(heights, each)
-    v = np.sqrt(2 * G * h)
-    up = h * (r(v) * np.exp(scatter * rng.normal(size=len(h)))) ** 2
+    true = np.repeat(heights + shared_errors(rng, height_error, len(heights)), each)
+    v = np.sqrt(2 * G * true)
+    of_height = np.repeat(shared_errors(rng, shared, len(heights)), each)
+    up = true * (r(v) * np.exp(of_height + scatter * rng.normal(size=len(h)))) ** 2
     # The drop height is set, the rebound is read.
-    return Recording(
-        "drops", "drops", (np.column_stack([h, up + error * rng.normal(size=len(h))]),)
-    )
+    pairs = np.column_stack([h, up + error * rng.normal(size=len(h))])
+    return Recording("drops", "drops", (pairs,), groups=h)
 
 
-def speeds(rng, r, v, error, scatter):
-    out = v * r(v) * np.exp(scatter * rng.normal(size=len(v)))
+def shared_errors(rng, size, groups):
+    if size == 0:
+        return np.zeros(groups)
+    size = PUBLISHED * math.exp(WIDTH * rng.normal()) if size is None else size
+    return size * rng.normal(size=groups)
+
+
+def speeds(rng, r, v, error, scatter, shared=0.0, films=0):
+    film = np.arange(len(v)) % films if films else None
+    of_film = shared_errors(rng, shared, films)[film] if films else 0.0
+    out = v * r(v) * np.exp(of_film + scatter * rng.normal(size=len(v)))
     noisy = [v + error * rng.normal(size=len(v)), out + error * rng.normal(size=len(v))]
-    return Recording("speeds", "speeds", (np.column_stack(noisy),))
+    return Recording("speeds", "speeds", (np.column_stack(noisy),), groups=film)
 
 
-def coefficients(rng, r, v, error, scatter, stated):
-    e = r(v) * np.exp(scatter * rng.normal(size=len(v))) + error * rng.normal(size=len(v))
+def coefficients(rng, r, v, error, scatter, stated, shared=0.0):
+    _, of = np.unique(v, return_inverse=True)
+    of_speed = shared_errors(rng, shared, len(v))[of]
+    e = r(v) * np.exp(of_speed + scatter * rng.normal(size=len(v)))
+    e += error * rng.normal(size=len(v))
     given = np.full(len(v), error) if stated else None
-    return Recording("coefficients", "coefficients", (np.column_stack([v, e]),), given)
+    pairs = np.column_stack([v, e])
+    return Recording("coefficients", "coefficients", (pairs,), given, groups=v)
+
+
+def several_balls(rng, r, balls, impacts, error, scatter, shared):
+    """Flights of several balls of one kind, in a column `group`."""
+    chains = []
+    for own in shared_errors(rng, shared, balls):
+        found = flights(rng, lambda v, own=own: r(v) * math.exp(own), impacts, error, scatter)
+        chains += found.chains
+    groups = np.repeat(np.arange(balls), impacts)
+    return Recording("balls", "flights", tuple(chains), groups=groups)
 
 
 def flat(e):
@@ -446,6 +471,155 @@ KINDS = [
         "60 pairs of speeds from 1 to 5 m/s to 0.2 m/s",
         flat(0.8),
         partial(speeds, v=np.geomspace(1, 5, 60), error=0.2, scatter=0),
+    ),
+    # Impacts of one height, film or ball share an error.
+    (
+        "10 trials at each of 5 heights set to 5 mm, read to 3 mm, scatter 0.005",
+        flat(0.85),
+        partial(
+            drops,
+            heights=np.linspace(0.2, 1, 5),
+            each=10,
+            error=3e-3,
+            scatter=5e-3,
+            height_error=5e-3,
+        ),
+    ),
+    (
+        "5 trials at each of 3 heights, shared 0.025, scatter 0.01",
+        soft(0.8),
+        partial(
+            drops,
+            heights=np.geomspace(0.3, 1.5, 3),
+            each=5,
+            error=2e-3,
+            scatter=0.01,
+            shared=0.025,
+        ),
+    ),
+    (
+        "10 trials at each of 3 heights, shared 0.05, scatter 0.02",
+        soft(0.75),
+        partial(
+            drops,
+            heights=np.geomspace(0.4, 1.6, 3),
+            each=10,
+            error=2e-3,
+            scatter=0.02,
+            shared=0.05,
+        ),
+    ),
+    (
+        "4 trials at each of 3 heights, any shared, any scatter",
+        soft(0.7),
+        partial(
+            drops,
+            heights=np.geomspace(0.2, 2, 3),
+            each=4,
+            error=2e-3,
+            scatter=None,
+            shared=None,
+        ),
+    ),
+    (
+        "3 trials at each of 4 heights, any shared, any scatter, v^-0.05",
+        partial(power, 0.8, -0.05),
+        partial(
+            drops,
+            heights=np.geomspace(0.2, 2, 4),
+            each=3,
+            error=2e-3,
+            scatter=None,
+            shared=None,
+        ),
+    ),
+    (
+        "10 trials at each of 4 heights, shared 0.025, scatter 0.01, 1/(1 + b v)",
+        steep(0.7),
+        partial(
+            drops,
+            heights=np.geomspace(0.3, 1.5, 4),
+            each=10,
+            error=2e-3,
+            scatter=0.01,
+            shared=0.025,
+        ),
+    ),
+    (
+        "3 trials at each of 10 heights, shared 0.015, scatter 0.01",
+        flat(0.6),
+        partial(
+            drops,
+            heights=np.geomspace(0.1, 2, 10),
+            each=3,
+            error=2e-3,
+            scatter=0.01,
+            shared=0.015,
+        ),
+    ),
+    (
+        "1, 2, 3, 10 and 20 trials at 5 heights, shared 0.02, scatter 0.01",
+        soft(0.8),
+        partial(
+            drops,
+            heights=np.geomspace(0.3, 1.5, 5),
+            each=[1, 2, 3, 10, 20],
+            error=2e-3,
+            scatter=0.01,
+            shared=0.02,
+        ),
+    ),
+    (
+        "1, 3, 10 and 20 trials at 4 heights, scatter 0.03",
+        soft(0.8),
+        partial(
+            drops,
+            heights=np.geomspace(0.3, 1.5, 4),
+            each=[1, 3, 10, 20],
+            error=2e-3,
+            scatter=0.03,
+        ),
+    ),
+    (
+        "5 coefficients at each of 4 speeds with stated errors of 0.005, shared 0.02",
+        soft(0.6),
+        partial(
+            coefficients,
+            v=np.repeat(np.linspace(1, 4, 4), 5),
+            error=5e-3,
+            scatter=0,
+            stated=True,
+            shared=0.02,
+        ),
+    ),
+    (
+        "3 films of 5 impacts to 0.03 m/s, shared 0.02, scatter 0.005",
+        flat(0.8),
+        partial(
+            speeds,
+            v=np.repeat(np.geomspace(1.5, 4.5, 5), 3),
+            error=0.03,
+            scatter=0.005,
+            shared=0.02,
+            films=3,
+        ),
+    ),
+    (
+        "6 films of 4 impacts to 0.02 m/s, any shared, any scatter",
+        soft(0.85),
+        partial(
+            speeds,
+            v=np.repeat(np.geomspace(1.5, 4.5, 4), 6),
+            error=0.02,
+            scatter=None,
+            shared=None,
+            films=6,
+        ),
+    ),
+    (
+        "5 balls heard, 6 impacts each, 0.5 ms, shared 0.02, scatter 0.01",
+        flat(0.75),
+        partial(several_balls, balls=5, impacts=6, error=5e-4, scatter=0.01, shared=0.02),
     ),
 ]
 

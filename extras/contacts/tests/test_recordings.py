@@ -180,6 +180,9 @@ def test_names_of_another_kind_are_asked_for(tmp_path):
     with pytest.raises(Refused, match="column 'surface' has grass, wood: name it 'ball' for one"):
         fit(columns | {"surface": surfaces})
     assert len(fit(columns | {"remark": surfaces}).impacts.speed) == 4
+    grouped = fit(columns | {"group": surfaces})
+    assert list(grouped.impacts.groups) == surfaces
+    assert any("impacts of one group share" in note for note in grouped.notes)
     path = tmp_path / "rows.csv"
     path.write_text(BALLS["in rows"].replace("ball,", "type,"))
     with pytest.raises(Refused, match="column 'type' has golf, tennis: name it 'ball' for one"):
@@ -269,7 +272,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("v_in (mm/s)\tv_out (mm/s)\n3,000\t2,400", "'3,000' .* read as 3000 or as 3 mm/s"),
         (
             "type,drop (m),rebound (m)\n1,1,.67\n1,2,1.35\n2,1,.3\n2,2,.6",
-            "'type' looks like groups: name it 'ball' for one result each, or 'remark'",
+            "'type' looks like groups: name it 'ball' for one result each, or 'group'",
         ),
         ("height\n1000\n900\n800", "is it in cm or mm"),
         ("frame\n10\n200\n350", "frames are times with a line above .* # frame rate: 30"),
@@ -407,6 +410,31 @@ def test_a_note_says_what_was_done(text, said, tmp_path):
     path = tmp_path / "recording.csv"
     path.write_text(text)
     assert [note for note in fit(path).notes if re.search(said, note)]
+
+
+@pytest.mark.parametrize(
+    "columns",
+    [
+        # A series ends where another ball begins.
+        {"interval (s)": [0.9, 0.72, 0.9, 0.7, 0.9, 0.74]},
+        {"height (cm)": [100, 64, 100, 62, 100, 66]},
+        {"drop (cm)": [100, 80, 100, 80, 100, 80], "rebound (cm)": [64, 51, 62, 50, 66, 53]},
+        {"v in (m/s)": [4, 3, 4.1, 3.1, 4.2, 3.2], "v out (m/s)": [3.2, 2.4, 3.2, 2.4, 3.4, 2.6]},
+        {"h0 (m)": [1] * 6, "h1 (m)": [0.64, 0.63, 0.66, 0.64, 0.65, 0.63]},
+    ],
+)
+def test_a_column_group_pools_balls_whose_impacts_share_an_error(columns):
+    found = fit(columns | {"group": ["a", "", "b", "b", "c", "c"]})
+    assert sorted(set(found.impacts.groups)) == ["a", "b", "c"]
+    assert "3 groups deviate" in str(found) or len(found.impacts.speed) == 3
+
+
+def test_a_film_is_a_group(tmp_path):
+    path = tmp_path / "films.csv"
+    path.write_text("t,y\n" + "\n\n".join([track()] * 3))
+    found = fit(path)
+    assert "means of 3 films deviate" in str(found)
+    assert list(found.impacts.groups) == [0] * 6 + [1] * 6 + [2] * 6
 
 
 def test_a_line_without_r_has_no_error_either():

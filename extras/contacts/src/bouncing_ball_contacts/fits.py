@@ -17,7 +17,6 @@ from bouncing_ball_contacts.intervals import (
     KINDS,
     Curves,
     Impacts,
-    are_told,
     curves_of,
     estimate,
     impacts_of,
@@ -37,6 +36,8 @@ from bouncing_ball_contacts.units import (
 
 _NO_SCALE = "heights in px have no speed: give them in cm for a speed, the drag or an engine"
 _WITH_DRAG = ("flights", "heights", "drops", "track")
+# What the impacts of a group have in common, if no column names the groups.
+_GROUPS = {"drops": "height", "coefficients": "speed", "track": "film"}
 # Mass in kg and diameter in m of the balls that the drag changes little and much.
 _GOLF_BALL = (0.0459, 0.0427)
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
@@ -55,7 +56,8 @@ class Fit:
     restitution, interval
         Restitution coefficient, and both ends of its 95 % interval.
     scatter
-        Root mean square of the deviations of single impacts from the curve.
+        Root mean square of the deviations of single impacts from the curve, or those of the means
+        of three groups or more.
     slope
         Exponent of the speed in r; NaN if the speeds differ by no more than their errors.
     contact_time
@@ -88,8 +90,19 @@ class Fit:
         at = f" at {self.speed:.3g} m/s" if self.recording.has_scale else ""
         return f"{title}: r = {r} ({ends}){at}"
 
+    @property
+    def _groups(self) -> tuple[int, str]:
+        """Number and name of groups of several impacts; 0 without groups."""
+        groups = self.impacts.groups
+        count = len(np.unique(groups))
+        has_names = groups.dtype.kind == "U"
+        name = "group" if has_names else _GROUPS.get(self.recording.kind, "")
+        return count * (count < len(groups)), name
+
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
+        groups, name = self._groups
+        deviate = f"means of {groups} {name}s" if groups > 2 else "single impacts"
         count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
         slope = self.slope
         said = [
@@ -98,7 +111,7 @@ class Fit:
                 "the speeds differ by no more than their errors",
             ),
             (not math.isnan(slope), f"r goes as v^{slope:+.3f}"),
-            (len(v) > 1, f"single impacts deviate by {self.scatter:.4f}"),
+            (len(v) > 1, f"{deviate} deviate by {self.scatter:.4f}"),
         ]
         more = "; ".join([f"from {self.recording.kind}", *filter(None, [", ".join(holding(said))])])
         return [
@@ -321,6 +334,7 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
     size = _size_note(found, read_at)
     contact = _contact_note(found)
     is_taken_off = bool(contact and found.contact_time)
+    groups, group = found._groups
     return tuple(
         holding(
             [
@@ -339,6 +353,11 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
                 (size, size),
                 (drag, drag),
                 (contact and not is_taken_off, contact),
+                (
+                    0 < groups < 3,
+                    f"impacts of one {group} share an error, which the interval contains from "
+                    f"three {group}s on",
+                ),
                 (
                     len(v) < 3,
                     "the interval is wide, because there are fewer than three impacts",
@@ -441,7 +460,7 @@ def fit(
     value = math.exp(estimated.value)
     if estimated.low > 0:
         raise Refused(f"{recording.name}: r = {value:.4f} is above 1 by more than its error")
-    has_slope = v.max() > v.min() and are_told(impacts, known)
+    has_slope = v.max() > v.min() and curves.has_slope
     _, low, high = estimated.of_r
     found = Fit(
         recording=recording,

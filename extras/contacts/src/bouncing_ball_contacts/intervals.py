@@ -31,13 +31,26 @@ a scatter below s is that of a larger sum than the one at s (`_below`). So s = 0
 of its own. (H. K. Iyer, C. M. Wang, T. Mathew, J. Am. Stat. Assoc. 99 (2004) 1060, have such
 intervals for laboratories that measure the same.) Above its middle the prior of scatter multiplies
 this distribution. Two impacts leave no deviation, and have the posterior for all s > 0.
+
+Impacts of one group, such as the trials of one height, share an error bⱼ. If group j has nⱼ impacts
+i, their mean is::
+
+    ȳⱼ = β + c f(x̄ⱼ) + bⱼ + Σᵢ eᵢ/nⱼ,    var ȳⱼ = var b + var e/nⱼ
+
+so means of different groups are independent, and their variances are equal for equal nⱼ. The fit
+above is made to the means, whose scatter s contains bⱼ: impacts of one group count as one impact
+(S. G. Donald, K. Lang, Review of Economics and Statistics 89 (2007) 221; J. M. Wooldridge, American
+Economic Review 93 (2003) 133). For a constant r and no prior of s that is Student's t with one
+degree of freedom less than groups. At least three groups are needed (`group_means`).
 """
 
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import optimize, special
 
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
@@ -61,6 +74,7 @@ KINDS = {
 # logarithm, and the width of c.
 _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
+_SCATTER_OF_GROUPS = 0.04
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
@@ -88,6 +102,10 @@ class Impacts:
         speeds in m/s, or r. Both have one matrix for each series, because series share no reading.
     usual
         Usual standard deviation of a reading.
+    groups
+        What impacts that share an error have in common: a height, a film, or a name.
+    scatter
+        Middle of the prior of scatter.
     """
 
     speed: Array
@@ -95,6 +113,8 @@ class Impacts:
     readings: tuple[Array, ...]
     of_speed: tuple[Array, ...]
     usual: float
+    groups: NDArray[Any]
+    scatter: float = _SCATTER
 
     @property
     def restitution(self) -> Array:
@@ -198,7 +218,33 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
         _, after = speeds_of(after, drag)
     series = [each for values in chains for each in _derivatives(kind, values)]
     readings, of_speed = zip(*series, strict=True)
-    return Impacts(before, np.log(after / before), readings, of_speed, KINDS[kind][1])
+    groups = np.arange(len(pairs)) if recording.groups is None else recording.groups
+    return Impacts(before, np.log(after / before), readings, of_speed, KINDS[kind][1], groups)
+
+
+def group_means(
+    impacts: Impacts, known: float | Array | None
+) -> tuple[Impacts, float | Array | None]:
+    """Return the mean of each group as one impact, and the standard deviation of its readings.
+
+    Impacts of one or two groups are returned as they are: two means leave no deviation by which the
+    errors of the groups are known.
+    """
+    names, of, sizes = np.unique(impacts.groups, return_inverse=True, return_counts=True)
+    if not 3 <= len(names) < len(of):
+        return impacts, known
+    is_each = np.ndim(known) > 0
+    begins = np.cumsum([0, *map(len, impacts.readings[:-1])])
+    means = []
+    # Errors of each r become the unit of its reading.
+    for matrices in impacts.errors(known if is_each else 1.0):
+        rows: list[list[Array]] = [[] for _ in names]
+        for i, matrix in zip(of[begins], matrices, strict=True):
+            rows[i].append(matrix.sum(axis=0) / sizes[i])
+        means.append(tuple(np.concatenate(each)[None] for each in rows))
+    log_v, log_r = (np.bincount(of, each) / sizes for each in (np.log(impacts.speed), impacts.log_r))
+    found = Impacts(np.exp(log_v), log_r, *means, impacts.usual, names, _SCATTER_OF_GROUPS)
+    return found, 1.0 if is_each else known
 
 
 def misread(impacts: Impacts) -> Lines:
@@ -260,6 +306,8 @@ class Curves:
         Sizes of the scatter s, shape (ratio, size).
     scatter
         Root mean square of the errors of r about the mean curve.
+    has_slope
+        Whether the speeds differ by more than errors of the readings would make (`are_told`).
     """
 
     scatter_sizes: Array
@@ -268,6 +316,7 @@ class Curves:
     slope: Array
     spread: Array
     scatter: float
+    has_slope: bool
 
 
 @dataclass(frozen=True)
@@ -323,12 +372,12 @@ def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
 
 
 def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
-    """Return the weights by the confidence distribution of the scatter."""
+    """Return the weights by the confidence distribution of the scatter, in units of its middle."""
     # No scatter has a weight of its own, and each other one what is nearest to it.
     ends = (below[1:-1] + below[2:]) / 2
     ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
     weights = np.diff(ends, axis=0)
-    above = np.maximum(np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER, 0.0)
+    above = np.maximum(np.log(scatter) / _WIDTH_OF_SCATTER, 0.0)
     weights[1:] *= np.exp(-(above**2) / 2)[..., None]
     return weights / weights.sum(axis=0) * posterior.sum(axis=0)
 
@@ -380,8 +429,9 @@ def curves_of(
     """Return the smooth curves about a speed in m/s.
 
     ``known`` is the standard deviation of the readings, or that of each r; None if it is not known.
-    Then readings are multiples of ``rounding``, if it is not 0.
+    Then readings are multiples of ``rounding``, if it is not 0. Groups are fitted by their means.
     """
+    impacts, known = group_means(impacts, known)
     n = len(impacts.log_r)
     unit = impacts.usual if known is None else known
     each_variance = [np.sum(each**2, axis=1) for each in impacts.errors(unit)[0]]
@@ -410,7 +460,8 @@ def curves_of(
     scatter = np.outer(ratio, sizes)
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
-    prior[1:] -= (np.log(scatter / _SCATTER) / _WIDTH_OF_SCATTER) ** 2 / 2
+    usual_scatter = scatter / impacts.scatter
+    prior[1:] -= (np.log(usual_scatter) / _WIDTH_OF_SCATTER) ** 2 / 2
     # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading.
     # Bends less their mean, times the ones, are orthogonal to these, so that c is found first. The
     # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
@@ -455,7 +506,7 @@ def curves_of(
     if n > 2:
         # One exponent at a time, because these arrays are the largest ones.
         below = [_below(weights, each[None], y, sizes) for each in columns]
-        confidence = _confidence(confidence, np.concatenate(below, axis=-1), scatter)
+        confidence = _confidence(confidence, np.concatenate(below, axis=-1), usual_scatter)
     return Curves(
         scatter_sizes=np.concatenate([np.zeros_like(scatter[:1]), scatter]),
         confidence=confidence,
@@ -464,6 +515,7 @@ def curves_of(
         spread=np.sqrt((1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends),
         # A curve has two parameters, and a constant r has one.
         scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 1 - has_slope, 1)),
+        has_slope=has_slope,
     )
 
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
@@ -99,6 +100,9 @@ class Recording:
         Whether lengths are known; of heights in px only the ratios are.
     head : dict
         Quantities in the head of the file.
+    groups : array
+        What each impact shares an error with: the height of its drop, its film, or the name in a
+        column ``group``; None without any.
     notes : tuple of str
         What a user has to know.
     """
@@ -113,6 +117,7 @@ class Recording:
     digit: float = 0.0
     has_scale: bool = True
     head: dict[str, str] = field(default_factory=dict)
+    groups: NDArray[Any] | None = None
     notes: tuple[str, ...] = ()
 
 
@@ -130,6 +135,12 @@ def rounding_of(recording: Recording) -> float:
 # Numbers to series.
 
 
+def _series(table: Table) -> list[Table]:
+    """Return the lines of each recording of each group."""
+    groups = table.parts("group").values()
+    return [part for each in groups for part in each.parts("recording").values()]
+
+
 def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     """Return the runs of numbers between missing numbers, with their lines.
 
@@ -140,7 +151,7 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
         matrix = np.column_stack([table.values(each) for each in columns])
         runs += zip(matrix, np.broadcast_to(table.lines[:, None], matrix.shape), strict=True)
     else:
-        for part in table.parts("recording").values():
+        for part in _series(table):
             begins = [0]
             for each in part.of("count"):
                 begins += (np.flatnonzero(np.diff(each.numbers) > 1) + 1).tolist()
@@ -152,6 +163,12 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
         for values, lines in runs
         for piece in np.ma.clump_unmasked(np.ma.masked_invalid(values))
     ]
+
+
+def _groups(table: Table, lines: Sequence[int], default: Array | None) -> NDArray[Any] | None:
+    """Return the group of the impact in each line, if there is a column of groups."""
+    names = dict(zip(table.lines.tolist(), table.names("group"), strict=True))
+    return np.array([names[line] for line in lines]) if table.of("group") else default
 
 
 def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
@@ -229,6 +246,7 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         # The errors of intervals that were rounded one by one do not cancel, as those of times.
         digit=0.0 if kind == "flights" else min(each.digit for each in columns),
         head=table.head,
+        groups=_groups(table, [i for _, lines in runs for i in lines[1:].tolist()], None),
     )
     rounding = rounding_of(found) if found.chains else 0.0
     # Rounding has the standard deviation of a resolution that is 1/√12 of it.
@@ -277,15 +295,18 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
     numbers = np.concatenate(rows)
     is_there = ~np.isnan(numbers).any(axis=1)
     pairs = numbers[is_there, :2]
+    lines = np.tile(table.lines, len(others))[is_there]
     if kind != "coefficients":
         unit = "m" if kind == "drops" else "m/s"
         said = table.head.get("resolution")
         grows = 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
-        _refuse_growth(table, kind, pairs, np.tile(table.lines, len(others))[is_there], grows)
+        _refuse_growth(table, kind, pairs, lines, grows)
     read_off = columns if kind == "speeds" else columns[1:]
     digit = min(each.digit for each in read_off)
     uncertainty = numbers[is_there, 2] if errors else None
-    return Recording(table.name, kind, (pairs,), uncertainty, digit=digit)
+    # A height of a drop and a speed of a coefficient are set once for all trials.
+    groups = _groups(table, lines.tolist(), None if kind == "speeds" else pairs[:, 0])
+    return Recording(table.name, kind, (pairs,), uncertainty, digit=digit, groups=groups)
 
 
 def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float = 0.0) -> None:
@@ -343,7 +364,7 @@ def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, floa
 def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Lines]]:
     """Return the times, positions and lines of each film; an empty line or a name divides films."""
     films = []
-    for part in table.parts("recording").values():
+    for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
         # A frame without a position is no end of a film.
@@ -390,8 +411,8 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     # Upside down no flight is a parabola.
     ways = [
         [
-            (lines[i], impact)
-            for t, y, lines in films
+            (lines[i], film, impact)
+            for film, (t, y, lines) in enumerate(films)
             for i, impact in _impacts_of_track(t, way * y).items()
         ]
         for way in (1, -1)
@@ -399,7 +420,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     impacts = max(ways, key=len)
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    numbers, found = zip(*impacts, strict=True)
+    numbers, film_of, found = zip(*impacts, strict=True)
     tracks, *speeds, gravities = zip(*found, strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
     lines = np.array(numbers)
@@ -428,7 +449,8 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]
-    return Recording(table.name, "track", tracks, notes=tuple(holding(notes)))
+    groups = _groups(table, numbers, np.array(film_of) if len(films) > 1 else None)
+    return Recording(table.name, "track", tracks, groups=groups, notes=tuple(holding(notes)))
 
 
 # What was measured.
@@ -520,7 +542,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
         if _is_group(each, kind):
             raise Refused(
                 f"{table.name}: column {each.name!r} looks like groups: name it 'ball' for one "
-                "result each, or 'remark' for one of all"
+                "result each, or 'group' for one of all"
             )
     unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
@@ -586,7 +608,7 @@ def read(
         if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
                 f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
-                "'ball' for one result each, or 'remark' for one of all"
+                "'ball' for one result each, or 'group' for one of all"
             )
     balls = table.parts("ball")
     if ball is None:

@@ -46,6 +46,7 @@ NAMES = {
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
+    "group": "group, groups",
     "remark": "remark, note, comment, label",
 }
 """What a column has, and the names that say so."""
@@ -59,7 +60,7 @@ _ROLES = {
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
-TEXTS = ("ball", "recording", "remark", "count", "frame")
+TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
 _SPELLED = {
     "inches": "in",
@@ -186,13 +187,15 @@ class Table:
         """Return the columns that contain a quantity."""
         return [each for each in self.columns if each.role == role]
 
-    def parts(self, role: str) -> "dict[str, Table]":
-        """Return the lines of each name in a column; an empty cell has the name above it."""
-        name = ""
+    def names(self, role: str) -> list[str]:
+        """Return the name in a column for each line; an empty cell has the name above it."""
         cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
+        return list(itertools.accumulate(cells[0], lambda above, cell: cell or above))
+
+    def parts(self, role: str) -> "dict[str, Table]":
+        """Return the lines of each name in a column."""
         rows_of: dict[str, list[int]] = {}
-        for i, cell in enumerate(cells[0]):
-            name = cell or name
+        for i, name in enumerate(self.names(role)):
             rows_of.setdefault(name, []).append(i)
         parts = {}
         for part, rows in rows_of.items():

@@ -48,7 +48,7 @@ def test_trials_of_one_height_share_its_error():
         found = fit(trials(rng, 0.025))
         held.append(found.interval[0] <= 0.85 <= found.interval[1])
         assert len(found.impacts.speed) == 50
-        assert "means of 5 heights deviate by" in str(found)
+        assert "means of 5 groups deviate by" in str(found)
     # Of 20 more than 3 are missed once in 60 times, if 95 % hold.
     assert sum(held) >= 17
 
@@ -74,7 +74,9 @@ def test_one_height_or_two_leave_its_error_out_and_a_note_says_so():
         found = fit(columns)
         single = replace(found.recording, groups=None)
         assert found.interval == fit(single, resolution=None).interval
-        assert any("impacts of one height share an error" in note for note in found.notes)
+        assert any(
+            "impacts of one height, film or ball share an error" in note for note in found.notes
+        )
 
 
 def test_the_readings_of_a_mean_are_those_of_its_impacts():

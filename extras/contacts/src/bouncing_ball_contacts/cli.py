@@ -289,7 +289,8 @@ def fit_command(
     drop.wav, the impacts are heard, and written to drop.txt and drop.svg.
     """
     from bouncing_ball_contacts.fits import fit, together
-    from bouncing_ball_contacts.recordings import read, typed_readings
+    from bouncing_ball_contacts.recordings import read
+    from bouncing_ball_contacts.tables import typed_readings
 
     source = typed_readings(recording) if len(recording) > 1 else recording[0]
     heard = None

@@ -12,7 +12,7 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import MOST_WARNINGS
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.flights import drag_of
+from bouncing_ball_contacts.flights import drag_of, impact_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
     Curves,
@@ -36,8 +36,6 @@ from bouncing_ball_contacts.units import (
 
 _NO_SCALE = "heights in px have no speed: give them in cm for a speed, the drag or an engine"
 _WITH_DRAG = ("flights", "heights", "drops", "track")
-# What the impacts of a group have in common, if no column names the groups.
-_GROUPS = {"drops": "height", "coefficients": "speed", "track": "film"}
 # Mass in kg and diameter in m of the balls that the drag changes little and much.
 _GOLF_BALL = (0.0459, 0.0427)
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
@@ -91,24 +89,23 @@ class Fit:
         return f"{title}: r = {r} ({ends}){at}"
 
     @property
-    def _groups(self) -> tuple[int, str]:
-        """Number and name of groups of several impacts; 0 without groups."""
-        groups = self.impacts.groups
-        count = len(np.unique(groups))
-        has_names = groups.dtype.kind == "U"
-        name = "group" if has_names else _GROUPS.get(self.recording.kind, "")
-        return count * (count < len(groups)), name
+    def _groups(self) -> int:
+        """Number of groups of several impacts, or 0."""
+        count = len(np.unique(self.impacts.groups))
+        return count * (count < len(self.impacts.groups))
 
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
-        groups, name = self._groups
-        deviate = f"means of {groups} {name}s" if groups > 2 else "single impacts"
+        groups = self._groups
+        deviate = f"means of {groups} groups" if groups > 2 else "single impacts"
         count = "1 impact" if len(v) == 1 else f"{len(v)} impacts"
         slope = self.slope
         said = [
             (
                 math.isnan(slope) and v.max() > v.min(),
-                "the speeds differ by no more than their errors",
+                "r is taken as constant"
+                if groups > 2
+                else "the speeds differ by no more than their errors",
             ),
             (not math.isnan(slope), f"r goes as v^{slope:+.3f}"),
             (len(v) > 1, f"{deviate} deviate by {self.scatter:.4f}"),
@@ -323,6 +320,35 @@ def _contact_note(found: Fit) -> str:
     )
 
 
+def _gravity_note(found: Fit) -> str:
+    """Return how gravity changes in a film; empty if r changes by less than half of the interval.
+
+    If gravity is k₁ g in the first flights of n impacts and k₂ g in the last ones, speeds are wrong
+    by these factors, and the mean of ln r by ln(k₂/k₁)/n. A parabola through n positions with the
+    error σ in a time T has a gravity with the variance 720 σ²/(n T⁴).
+    """
+    if found.recording.kind != "track":
+        return ""
+    chains = found.recording.chains
+    gravity, misfit = np.array([impact_of(each)[2:] for each in chains]).T
+    flights = [[each[each[:, 2] == after, 0] for after in (0, 1)] for each in chains]
+    weights = [sum(len(t) * np.ptp(t) ** 4 for t in both) for both in flights]
+    # Three standard errors, and the drag of a table tennis ball that falls from 2 m.
+    doubt = 3 * misfit * np.sqrt(720 / np.array(weights)) + 0.005 * gravity
+    films = np.cumsum(
+        [each[0, 0] < last[0, 0] for last, each in itertools.pairwise([chains[0], *chains])]
+    )
+    ratios = [
+        np.max((gravity - doubt)[films == film]) / np.min((gravity + doubt)[films == film])
+        for film in range(films[-1] + 1)
+    ]
+    changes = found.restitution * math.log(max(*ratios, 1.0)) / len(gravity)
+    return (
+        f"gravity is not one number: {gravity.min():.4g} to {gravity.max():.4g} units/s² from "
+        f"flight to flight, which makes r wrong by up to {changes:.2g}: is the camera oblique?"
+    ) * (changes > (found.interval[1] - found.interval[0]) / 2)
+
+
 def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> tuple[str, ...]:
     """Return the notes on a fit, the severest first; `value` is r before it is limited to 1."""
     impacts = found.impacts
@@ -333,8 +359,8 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
     drag = _drag_note(found, reading)
     size = _size_note(found, read_at)
     contact = _contact_note(found)
+    gravity = _gravity_note(found)
     is_taken_off = bool(contact and found.contact_time)
-    groups, group = found._groups
     return tuple(
         holding(
             [
@@ -343,6 +369,7 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
                     f"{', '.join(wrong)}: far from all others, as by one wrong or missing number; "
                     "--leave-out leaves its line out",
                 ),
+                (gravity, gravity),
                 (value > 1, f"r = {value:.4f} is above 1 within its error: 1 is taken"),
                 # A speed that is typed is rounded.
                 (
@@ -354,9 +381,9 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
                 (drag, drag),
                 (contact and not is_taken_off, contact),
                 (
-                    0 < groups < 3,
-                    f"impacts of one {group} share an error, which the interval contains from "
-                    f"three {group}s on",
+                    0 < found._groups < 3,
+                    "impacts of one height, film or ball share an error, which the interval "
+                    "contains from three on",
                 ),
                 (
                     len(v) < 3,

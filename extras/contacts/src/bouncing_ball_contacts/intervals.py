@@ -42,6 +42,11 @@ above is made to the means, whose scatter s contains bⱼ: impacts of one group 
 (S. G. Donald, K. Lang, Review of Economics and Statistics 89 (2007) 221; J. M. Wooldridge, American
 Economic Review 93 (2003) 133). For a constant r and no prior of s that is Student's t with one
 degree of freedom less than groups. At least three groups are needed (`group_means`).
+
+The speed of an impact that follows another one is larger for a larger r, so bⱼ would make a slope
+of the means ȳⱼ over x̄ⱼ, which hides it. Such means are taken at one speed: only the prior of c then
+says how r changes with the speed. A drop height is set, and does not depend on bⱼ; its error is
+one reading of all its trials.
 """
 
 import math
@@ -106,6 +111,8 @@ class Impacts:
         What impacts that share an error have in common: a height, a film, or a name.
     scatter
         Middle of the prior of scatter.
+    is_set
+        Whether speeds were set, and do not follow from the impact before.
     """
 
     speed: Array
@@ -115,6 +122,7 @@ class Impacts:
     usual: float
     groups: NDArray[Any]
     scatter: float = _SCATTER
+    is_set: bool = True
 
     @property
     def restitution(self) -> Array:
@@ -219,7 +227,10 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     series = [each for values in chains for each in _derivatives(kind, values)]
     readings, of_speed = zip(*series, strict=True)
     groups = np.arange(len(pairs)) if recording.groups is None else recording.groups
-    return Impacts(before, np.log(after / before), readings, of_speed, KINDS[kind][1], groups)
+    is_set = kind in ("drops", "coefficients")
+    log_r = np.log(after / before)
+    usual = KINDS[kind][1]
+    return Impacts(before, log_r, readings, of_speed, usual, groups, is_set=is_set)
 
 
 def group_means(
@@ -233,18 +244,29 @@ def group_means(
     names, of, sizes = np.unique(impacts.groups, return_inverse=True, return_counts=True)
     if not 3 <= len(names) < len(of):
         return impacts, known
-    is_each = np.ndim(known) > 0
-    begins = np.cumsum([0, *map(len, impacts.readings[:-1])])
-    means = []
     # Errors of each r become the unit of its reading.
-    for matrices in impacts.errors(known if is_each else 1.0):
+    unit = known if isinstance(known, np.ndarray) else 1.0
+    begins = np.cumsum([0, *map(len, impacts.readings[:-1])])
+
+    def of_means(matrices: list[Array]) -> tuple[Array, ...]:
+        """Return the derivatives of each mean with respect to all readings of its group."""
         rows: list[list[Array]] = [[] for _ in names]
         for i, matrix in zip(of[begins], matrices, strict=True):
             rows[i].append(matrix.sum(axis=0) / sizes[i])
-        means.append(tuple(np.concatenate(each)[None] for each in rows))
-    log_v, log_r = (np.bincount(of, each) / sizes for each in (np.log(impacts.speed), impacts.log_r))
-    found = Impacts(np.exp(log_v), log_r, *means, impacts.usual, names, _SCATTER_OF_GROUPS)
-    return found, 1.0 if is_each else known
+        if impacts.is_set:
+            # The set height is one reading of all trials.
+            rows = [[np.append(np.sum(each, axis=0)[:1], np.array(each)[:, 1])] for each in rows]
+        return tuple(np.concatenate(each)[None] for each in rows)
+
+    readings, of_speed = map(of_means, impacts.errors(unit))
+    log_v = np.bincount(of, np.log(impacts.speed)) / sizes
+    if not impacts.is_set:
+        log_v[:] = np.mean(np.log(impacts.speed))
+    log_r = np.bincount(of, impacts.log_r) / sizes
+    means = Impacts(
+        np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, _SCATTER_OF_GROUPS
+    )
+    return means, 1.0 if isinstance(known, np.ndarray) else known
 
 
 def misread(impacts: Impacts) -> Lines:

@@ -19,35 +19,23 @@ from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.tables import HEADINGS, TEXTS, Column, Lines, Table, table_of
+from bouncing_ball_contacts.tables import (
+    LAYOUTS,
+    TEXTS,
+    Column,
+    Lines,
+    Table,
+    headings_for,
+    table_of,
+)
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
     holding,
-    in_si,
     positive,
     units_of,
 )
 
-LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
-    ("drops", ("drop height", "rebound height")),
-    ("drops", ("drop height", "trial")),
-    ("drops", ("drop height", "height")),
-    ("drops", ("height", "rebound height")),
-    ("drops", ("drop height", "average")),
-    ("speeds", ("speed before", "speed after")),
-    ("speeds", ("speed", "speed after")),
-    ("coefficients", ("speed", "restitution")),
-    ("coefficients", ("speed before", "restitution")),
-    ("track", ("time", "position")),
-    ("track", ("time", "height")),
-    ("times", ("time",)),
-    ("times", ("touch",)),
-    ("flights", ("interval",)),
-    ("flights", ("flight",)),
-    ("heights", ("height",)),
-)
-"""What was measured is the first row whose columns are all there."""
 _PAIRS = ("drops", "speeds", "coefficients")
 # Without its other half such a column says that another one is missing.
 _HALVES = ("drop height", "rebound height", "trial", "speed before", "speed after", "restitution")
@@ -56,7 +44,7 @@ _COMPUTED = {
     "drops": ("restitution", "average"),
     "speeds": ("restitution",),
     "track": ("restitution", "speed", ""),
-    "times": ("restitution", "interval", "height"),
+    "times": ("restitution", "interval", "height", "drop height"),
     "flights": ("restitution",),
     "heights": ("restitution",),
 }
@@ -149,6 +137,9 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     runs: list[tuple[Array, Lines]] = []
     if len(columns) > 1:
         matrix = np.column_stack([table.values(each) for each in columns])
+        # A stopwatch writes 0 for stops that did not happen.
+        is_over = np.flip(np.cumsum(np.flip(matrix, axis=1) > 0, axis=1), axis=1) == 0
+        matrix[is_over] = math.nan
         runs += zip(matrix, np.broadcast_to(table.lines[:, None], matrix.shape), strict=True)
     else:
         for part in _series(table):
@@ -171,7 +162,7 @@ def _groups(table: Table, lines: Sequence[int], default: Array | None) -> NDArra
     return np.array([names[line] for line in lines]) if table.of("group") else default
 
 
-def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
+def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) -> None:
     """Refuse durations in s that are too short, too long or not positive."""
     half = len(flights) // 2
     # Flights get shorter, even if r is 0.997.
@@ -180,10 +171,10 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines) -> None:
             f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
             "and y"
         )
-    past = "the time is not after the one before: sort the lines, or leave an empty line where "
+    past = f"the time is not after the one before: sort the lines, or {another}"
     short = "a flight of {} s is too short: is the unit right?"
     long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide "
-    table.refuse(flights <= 0, f"{past}another recording begins", lines=lines)
+    table.refuse(flights <= 0, past, lines=lines)
     table.refuse(flights < 1e-3, short, flights, lines=lines)
     table.refuse(flights > 9, f"{long}times of slow motion", flights, lines=lines)
 
@@ -236,6 +227,9 @@ def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) 
 def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     runs = _runs(table, columns)
+    # Times of one line that get shorter are those between touches.
+    if len(columns) > 1 and all(np.all(np.diff(values) < 0) for values, _ in runs):
+        kind = kind.replace("times", "flights")
     if kind == "times":
         runs = [(np.diff(times), lines[1:]) for times, lines in runs]
     found = Recording(
@@ -259,6 +253,11 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     grows = rounding if kind == "heights" else 2 * rounding
     film = "; times of a film need a line # frame rate: 30" if kind == "times" else ""
     remedy = "delete this line" if kind == "times" else "add it to the next flight"
+    another = "leave an empty line where another recording begins"
+    first = "its line"
+    if len(columns) > 1:
+        another = f"write one heading, as {columns[0].name}, over runs side by side"
+        first = f"column {columns[0].name!r}"
     what = "height of {} m" if kind == "heights" else "flight of {} s"
     for values, lines in runs:
         if kind == "heights":
@@ -270,13 +269,13 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
                 lines=lines,
             )
         else:
-            _refuse_durations(table, values, lines)
+            _refuse_durations(table, values, lines, another)
             _refuse_echoes(table, values, lines, grows, remedy)
         table.refuse(
             values[1:] > _GROWTH * values[:-1] + grows,
-            f"a {what} follows one of {{}}: an impact is missing, the first time is the release, "
-            "or another recording begins (leave an empty line before it, or --leave-out its line); "
-            f"readings with such errors need --resolution{film}",
+            f"a {what} follows one of {{}}: an impact is missing (--leave-out its line), the first "
+            f"time is the release (delete {first}), or {another}; readings with such errors need "
+            f"--resolution{film}",
             values[1:],
             values[:-1],
             lines=lines[1:],
@@ -461,6 +460,8 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
     roles = {each.role for each in table.columns}
     # An r beside times was computed of these.
     computed = {"restitution"} if {"time", "interval"} & roles else set()
+    # So is the drop height beside the touches of each fall.
+    computed |= {"drop height"} if "touch" in roles else set()
     is_half = bool(roles & set(_HALVES) - computed)
     layouts = [each for each in LAYOUTS if not is_half or each[0] in _PAIRS]
     kind, needed = next((each for each in layouts if roles >= set(each[1])), ("", ()))
@@ -470,7 +471,10 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         )
         by_rate = "frames are times with a line above the headings, # frame rate: 30; "
         film = by_rate if "frame" in roles else ""
-        raise Refused(f"{table.name}: no bounces, as {there}: {film}{HEADINGS}")
+        raise Refused(
+            f"{table.name}: no bounces, as {there}: {film}write {headings_for(table.columns)}; a "
+            "title or a comment begins with #"
+        )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
         counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
@@ -480,8 +484,8 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         if each.role == other.role and not is_counted:
             raise Refused(
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
-                f"{other.name!r}: successive bounces are named h0, h1, h2, repeated drops trial 1, "
-                "trial 2, and of several balls one is below the other, with a column 'ball'"
+                f"{other.name!r}: write trial 1,trial 2 over repeated drops, h0,h1,h2 over "
+                "successive tops, and the same heading over runs side by side"
             )
     return kind, columns
 
@@ -618,33 +622,3 @@ def read(
             return {name: _recording(part, leave_out)}
     known = ", ".join(filter(None, balls)) or "no column of balls"
     raise Refused(f"{table.name} has {known}: name one, --ball")
-
-
-def typed_readings(words: Sequence[str]) -> dict[str, Any]:
-    """Return a column of numbers that are typed with their unit, as in 1.80 1.21 0.82 m.
-
-    Lengths are successive heights. Increasing times are times of impacts; other times are intervals
-    between impacts.
-
-    Raises
-    ------
-    Refused
-        If a word is not a number, or the unit is not a unit of length or time.
-    """
-    # Commas divide numbers that have points.
-    text = " ".join(words)
-    text = re.sub(r",(?=\d*\.)", " ", text)
-    found = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
-    numbers = [each[1] for each in found if each and each[1]]
-    units = {each[2] for each in found if each and each[2]}
-    unit = units.pop() if len(units) == 1 and None not in found else ""
-    if unit not in units_of("s") + units_of("m"):
-        raise Refused(
-            f"recording: {' '.join(words)!r} are no heights or times with one unit: write "
-            "1.80 1.21 0.82 m, or give one file"
-        )
-    values = [in_si("recording", number, "") for number in numbers]
-    if unit in units_of("m"):
-        return {f"height ({unit})": numbers}
-    is_time = all(later > earlier for earlier, later in itertools.pairwise(values))
-    return {f"{'time' if is_time else 'interval'} ({unit})": numbers}

@@ -50,18 +50,42 @@ NAMES = {
     "remark": "remark, note, comment, label",
 }
 """What a column has, and the names that say so."""
-HEADINGS = (
-    "name them drop height and rebound height, time, interval, height, speed before and speed "
-    "after, speed and restitution, or t and y, and write several balls one below the other, with a "
-    "column 'ball'; a title or a comment begins with #"
+LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
+    ("drops", ("drop height", "rebound height")),
+    ("drops", ("drop height", "trial")),
+    ("drops", ("drop height", "height")),
+    ("drops", ("height", "rebound height")),
+    ("drops", ("drop height", "average")),
+    ("speeds", ("speed before", "speed after")),
+    ("speeds", ("speed", "speed after")),
+    ("coefficients", ("speed", "restitution")),
+    ("coefficients", ("speed before", "restitution")),
+    ("track", ("time", "position")),
+    ("track", ("time", "height")),
+    ("times", ("time",)),
+    ("times", ("touch",)),
+    ("flights", ("interval",)),
+    ("flights", ("flight",)),
+    ("heights", ("height",)),
 )
+"""What was measured is the first row whose columns are all there."""
 _ROLES = {
     re.sub(r"[ .]", "", name.lower()): role
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
+_INHERITED = ("m", "m/s")
+_USUAL = {"m": "cm", "s": "s", "m/s": "m/s", "": ""}
+# Words next to the name of a column that are not the name of a ball.
+_NO_BALL = (
+    "first|second|third|fourth|last|next|total|energy|mean|average|max|maximum|min|minimum|std|"
+    "error|theoretical|ratio|x|in"
+)
 TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
+_READINGS = "|".join(
+    name for role, names in NAMES.items() if role not in TEXTS for name in names.split(", ")
+)
 _SPELLED = {
     "inches": "in",
     "feet": "ft",
@@ -159,6 +183,11 @@ class Column:
         steps = np.diff(self.numbers)
         return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
 
+    def may_be(self, role: str) -> bool:
+        """Return whether a column that is not known may have this role; times increase."""
+        is_time = role != "time" or bool(np.all(np.diff(self.numbers) > 0))
+        return is_time and not self.role and self.unit in ("", *units_of(_UNITS.get(role, "m")))
+
     @property
     def is_ambiguous(self) -> bool:
         """Whether 1.500 may be 1500, because no instrument writes thousandths of the unit."""
@@ -190,7 +219,10 @@ class Table:
     def names(self, role: str) -> list[str]:
         """Return the name in a column for each line; an empty cell has the name above it."""
         cells = [each.cells for each in self.of(role)] or [[""] * len(self.lines)]
-        return list(itertools.accumulate(cells[0], lambda above, cell: cell or above))
+        names = [""]
+        for cell in cells[0]:
+            names.append(cell or names[-1])
+        return names[1:]
 
     def parts(self, role: str) -> "dict[str, Table]":
         """Return the lines of each name in a column."""
@@ -227,7 +259,9 @@ class Table:
         said = f"a {what} of {{}} {unit}".strip() + f" below {column.name!r} is "
         small = "not positive, or too small: is the unit right?"
         large = f"large: is it in {meant}? write the unit behind the heading"
-        self.refuse((values < _SMALLEST) & (column.role != "time"), said + small, values)
+        self.refuse(
+            (values < _SMALLEST) & (column.role not in ("time", "touch")), said + small, values
+        )
         self.refuse(values > (most if column.unit else bare), said + large, values)
         return values
 
@@ -257,7 +291,40 @@ def _text_of(source: Any) -> tuple[str, str]:
     is_text = b"\0" not in data and not data.startswith(b"PK")
     sound = f"a sound as WAV, as by ffmpeg -i {path.name} {path.stem}.wav"
     refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8, {sound}")])
-    return path.name, data.decode("utf-8-sig", errors="replace")
+    text = data.decode("utf-8-sig", errors="replace")
+    # A single line of numbers is read as the arguments of the command.
+    is_typed = re.fullmatch(r"[-+−.\d][^\n:;#\t]*\s*", text)
+    return path.name, _columns_as_text(typed_readings(text.split())) if is_typed else text
+
+
+def typed_readings(words: Sequence[str]) -> dict[str, Any]:
+    """Return a column of numbers that are typed with their unit, as in 1.80 1.21 0.82 m.
+
+    Lengths are successive heights. Increasing times are times of impacts; other times are intervals
+    between impacts.
+
+    Raises
+    ------
+    Refused
+        If a word is not a number, or the unit is not a unit of length or time.
+    """
+    # Commas divide numbers that have points.
+    text = " ".join(words)
+    text = re.sub(r",(?=\d*\.)", " ", text)
+    found = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
+    numbers = [each[1] for each in found if each and each[1]]
+    units = {each[2] for each in found if each and each[2]}
+    unit = units.pop() if len(units) == 1 and None not in found else ""
+    if unit not in units_of("s") + units_of("m"):
+        raise Refused(
+            f"recording: {' '.join(words)!r} are no heights or times with one unit: write "
+            "1.80 1.21 0.82 m, or give one file"
+        )
+    values = [in_si("recording", number, "") for number in numbers]
+    if unit in units_of("m"):
+        return {f"height ({unit})": numbers}
+    is_time = all(later > earlier for earlier, later in itertools.pairwise(values))
+    return {f"{'time' if is_time else 'interval'} ({unit})": numbers}
 
 
 def _columns_as_text(columns: Mapping[str, Any]) -> str:
@@ -338,22 +405,63 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     return head, rows, sign != ","
 
 
+def _name_in(heading: str) -> tuple[str, str]:
+    """Return the name of a run or a ball in a heading, and the heading without it."""
+    program = re.search(_SERIES, heading, re.IGNORECASE)
+    if program:
+        return program[0].strip(": "), heading.replace(program[0], "")
+    title, unit, role = _heading(heading)
+    for pattern in (
+        f"(?P<plain>{_READINGS}) (?P<ball>.+)",
+        f"(?P<ball>.+?):? (?P<plain>{_READINGS})",
+    ):
+        found = re.fullmatch(pattern, title, re.IGNORECASE)
+        if found and not role and not re.fullmatch(_NO_BALL, found["ball"], re.IGNORECASE):
+            return found["ball"], found["plain"] + f" ({unit})" * bool(unit)
+    return "", heading
+
+
+def _series_in(headings: list[str], rows: list[list[str]]) -> list[tuple[str, str]]:
+    """Return the name of each column's series, and the heading without it.
+
+    A heading that returns begins another run, and the name of a ball may be the heading of its
+    rebounds.
+    """
+    found = [_name_in(each) for each in headings]
+    columns = [_heading(plain) for _, plain in found]
+    is_drop = {role for _, _, role in columns} - {"", *TEXTS} == {"drop height"}
+    for i, (title, unit, role) in enumerate(columns):
+        plain = found[i][1]
+        is_other = re.match(rf"({_NO_BALL})\b", title, re.IGNORECASE)
+        has_numbers = rows and all(re.match(r"[.\d]|$", row[i]) for row in rows)
+        if role and headings.count(plain) > 1:
+            found[i] = str(headings[: i + 1].count(plain)), plain
+        elif (
+            is_drop
+            and title
+            and not (role or is_other)
+            and unit in ("", *units_of("m"))
+            and has_numbers
+        ):
+            found[i] = title, f"rebound height ({unit})" if unit else "rebound height"
+    return found
+
+
 def _below_each_other(
     name: str, headings: list[str], lines: list[int], rows: list[list[str]]
 ) -> tuple[list[str], list[int], list[list[str]]]:
-    """Return the headings, line numbers and rows of series that a program wrote side by side.
+    """Return the headings, line numbers and rows of series that are side by side.
 
     A column without the name of a series, such as one time of all, belongs to each series.
     """
-    found = [re.search(_SERIES, each, re.IGNORECASE) for each in headings]
-    names = [each[0].strip(": ") if each else "" for each in found]
+    names, plain = zip(*_series_in(headings, rows), strict=True)
     series = {
         each: [i for i, other in enumerate(names) if other in ("", each)]
         for each in dict.fromkeys(filter(None, names))
     }
-    if len(series) < 2:
+    shared = [_heading(each)[2] for each, named in zip(plain, names, strict=True) if not named]
+    if len(series) < 2 or len([each for each in shared if each not in ("", *TEXTS)]) > 1:
         return headings, lines, rows
-    plain = [re.sub(_SERIES, "", each, flags=re.IGNORECASE) for each in headings]
     kinds = {tuple(plain[i] for i in columns) for columns in series.values()}
     if len(kinds) > 1:
         both = " and ".join(
@@ -368,7 +476,28 @@ def _below_each_other(
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    return ["recording", *kinds.pop()], numbers, stacked
+    is_program = any(re.search(_SERIES, each, re.IGNORECASE) for each in headings)
+    divides = "recording" if is_program or "1" in series else "ball"
+    return [divides, *kinds.pop()], numbers, stacked
+
+
+def headings_for(columns: Sequence[Column]) -> str:
+    """Return how the headings would be written: by the layout that fits most of the columns."""
+    readings = [each for each in columns if each.role not in TEXTS]
+
+    def fitting(roles: Sequence[str]) -> int:
+        """Return how well the columns fit, in order; a name counts more than a unit."""
+        both = zip(readings, roles, strict=False)
+        return sum(3 * (each.role == role) or each.may_be(role) for each, role in both) - len(roles)
+
+    best = max((roles for _, roles in LAYOUTS), key=fitting)
+    units = [
+        each.unit * (each.may_be(role) or each.role == role)
+        for each, role in zip(readings, best, strict=False)
+    ]
+    usual = (_USUAL[_UNITS.get(role, "m")] for role in best)
+    written = itertools.zip_longest(best, units[: len(best)], usual)
+    return ",".join(f"{role} ({unit or other})".replace(" ()", "") for role, unit, other in written)
 
 
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
@@ -388,10 +517,6 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     unknown = set(leave_out) - set(lines)
     refuse(
         [
-            (
-                _number(headings[0] or "no", is_decimal_comma) is not None,
-                f"{name}, line {begin}: a table begins with headings: {HEADINGS}",
-            ),
             (unknown, f"{name} has no line {min(unknown, default=0)} of numbers to leave out"),
             *(
                 (
@@ -413,7 +538,7 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
             i = numbers.index(None)
             raise Refused(
                 f"{name}, line {lines[i]}: {cells[i]!r} below {title!r} is no number; a unit "
-                "stands in the heading, as in height (cm)"
+                f"stands in the heading, as in {title} (cm)"
             )
         column = Column(title, unit, role, cells, np.array(numbers, float))
         if role and column.is_ambiguous:
@@ -426,11 +551,30 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)
+    if _number(headings[0] or "no", is_decimal_comma) is not None:
+        said = f"a table begins with headings: write {headings_for(columns)}"
+        raise Refused(f"{name}, line {begin}: {said}")
+    columns = _with_units(columns)
     pixels = [each for each in columns if each.unit == "px" and _UNITS.get(each.role) == "m"]
     largest = max((np.nanmax(each.numbers, initial=0.0) for each in pixels), default=0.0)
     if largest > 0:
         columns = [replace(each, pixel=1 / largest) if each in pixels else each for each in columns]
     return Table(name, head, _with_times(head, columns), np.array(lines))
+
+
+def _with_units(columns: list[Column]) -> list[Column]:
+    """Give heights and speeds without a unit that of the others, and times of a line their role."""
+    units = {_UNITS.get(each.role, ""): each.unit for each in reversed(columns) if each.unit}
+    inherited = {unit: units.get(unit, "") for unit in _INHERITED}
+    times = [each for each in columns if each.role == "time" and re.search(r"\d$", each.name)]
+    return [
+        replace(
+            each,
+            unit=each.unit or inherited.get(_UNITS.get(each.role, ""), ""),
+            role="touch" if each in times[: len(times) * (len(times) > 1)] else each.role,
+        )
+        for each in columns
+    ]
 
 
 def _with_times(head: Mapping[str, str], columns: list[Column]) -> list[Column]:

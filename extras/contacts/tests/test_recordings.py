@@ -255,7 +255,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("COR,v\n0.82 ± 0.01,1", "'0.82 ± 0.01' below 'COR' is no number"),
         ('drop (mm),rebound (mm)\n"1,000","640"', "'1,000' below 'drop' is no number"),
         ("0.3\n1.2\n1.9", "line 1: a table begins with headings: write time .s.$"),
-        ("1.9\n1.2\n0.9", "line 1: a table begins with headings: write height .cm.$"),
+        ("1.9\n1.2\n0.9", "line 1: a table begins with headings: write interval .s.$"),
         (
             "time,t\n0.9,0.72",
             "two columns are both time, 'time' and 't': .* same heading over runs",
@@ -265,7 +265,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("1.80 1.21 0.82", "are no heights or times with one unit: write 1.80 1.21 0.82 m"),
         ("drop (cm),first rebound,second rebound\n100,64,41", "'first rebound' is not known"),
         ("zeit (ms)\n900\n1500", "'zeit' is not known: write time .ms."),
-        ("t [s],weg [cm]\n0,1\n1,2", "'weg' is not known: write time .s.,position .cm."),
+        ("t [s],weg [cm]\n0,1\n1,2", "'weg' looks like a measurement, but time are read"),
         ("vor (m/s),nach (m/s)\n3,2", "write speed before .m/s.,speed after .m/s."),
         ("start,rebound (cm)\n1,2", "write drop height .cm.,rebound height .cm."),
         ("H,T0,T1,T2\n1,0,.45,1.17", "the first time is the release .delete column 'T0'."),

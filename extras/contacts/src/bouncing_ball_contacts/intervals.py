@@ -45,8 +45,7 @@ degree of freedom less than groups. At least three groups are needed (`group_mea
 
 The speed of an impact that follows another one is larger for a larger r, so bⱼ would make a slope
 of the means ȳⱼ over x̄ⱼ, which hides it. Such means are taken at one speed: only the prior of c then
-says how r changes with the speed. A drop height is set, and does not depend on bⱼ; its error is
-one reading of all its trials.
+says how r changes with the speed. A drop height is set, and does not depend on bⱼ.
 """
 
 import math
@@ -253,9 +252,6 @@ def group_means(
         rows: list[list[Array]] = [[] for _ in names]
         for i, matrix in zip(of[begins], matrices, strict=True):
             rows[i].append(matrix.sum(axis=0) / sizes[i])
-        if impacts.is_set:
-            # The set height is one reading of all trials.
-            rows = [[np.append(np.sum(each, axis=0)[:1], np.array(each)[:, 1])] for each in rows]
         return tuple(np.concatenate(each)[None] for each in rows)
 
     readings, of_speed = map(of_means, impacts.errors(unit))

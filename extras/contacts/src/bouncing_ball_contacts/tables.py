@@ -490,7 +490,8 @@ def headings_for(columns: Sequence[Column]) -> str:
         both = zip(readings, roles, strict=False)
         return sum(3 * (each.role == role) or each.may_be(role) for each, role in both) - len(roles)
 
-    best = max((roles for _, roles in LAYOUTS), key=fitting)
+    # A touch is written as start, stop 1 or T0.
+    best = max((roles for _, roles in LAYOUTS if "touch" not in roles), key=fitting)
     units = [
         each.unit * (each.may_be(role) or each.role == role)
         for each, role in zip(readings, best, strict=False)

@@ -404,10 +404,6 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     refuse(
         [
             (
-                bounce.restitution is None,
-                "the restitution is missing: --restitution 0.8 or restitution=0.8",
-            ),
-            (
                 bounce.stiffness is not None and engine.unit != "N/m",
                 f"{engine.name} has no stiffness in N/m: give the penetration",
             ),

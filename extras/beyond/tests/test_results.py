@@ -221,23 +221,11 @@ def test_lines_are_solid_where_orbits_are_stable(rigid):
     assert sorted(marks) == ["o", "s"]
 
 
-def test_a_wide_range_has_a_logarithmic_axis():
-    ball = SpringDamper(2.0, restitution=0.85)
-    one = orbit(ball, amplitude=0.9)
-    near = follow(one, along="frequency_ratio", to=20.0)
-    far = follow(one, along="frequency_ratio", to=300.0)
-    assert plot(near, quantity="max_height").axes[0].get_xscale() == "linear"
-    assert plot(far, quantity="max_height").axes[0].get_xscale() == "log"
-
-
-def test_a_legend_has_the_colours_of_curves_and_a_curve_to_zero_is_not_logarithmic(rigid):
+def test_a_legend_has_the_colours_of_curves(rigid):
     kinds = "period doubling", "saddle-node"
-    ranges = {"amplitude": (1e-12, 10.0), "restitution": (0.0, 1.0)}
-    curves = [special_curve(rigid.first(kind), ranges=ranges) for kind in kinds]
-    assert min(curve.z[:, -2].min() for curve in curves) < 1e-9
+    curves = [special_curve(rigid.first(kind)) for kind in kinds]
     figure = plot(*curves)
     axes = figure.axes[0]
-    assert axes.get_xscale() == "linear"
     colour = {text.get_text(): line.get_color() for line, text in legend_of(figure)}
     drawn = {line.get_color() for line in axes.lines if line.get_linestyle() != "None"}
     assert len({colour[kind] for kind in kinds} & drawn) == 2

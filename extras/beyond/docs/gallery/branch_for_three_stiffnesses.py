@@ -4,7 +4,4 @@ import bouncing_ball_beyond as bb
 
 balls = bb.SpringDamper(frequency_ratio=[2.0, 10.0, 100.0], restitution=0.85)
 branches = bb.follow(bb.orbit(balls, amplitude=0.9), to=(0.1, 1.3))
-figure = bb.plot(*branches)
-words = "r = 0.85; ϖ = 2 (black, top), 100 (orange, middle), 10 (blue, lowest)"
-figure.axes[0].set_title(words, fontsize="small")
-figure.savefig("branch_for_three_stiffnesses.png")
+bb.plot(*branches).savefig("branch_for_three_stiffnesses.png")

@@ -33,7 +33,8 @@ for number, (_, panel, event) in enumerate(accepted, 1):
     names = ["kink: p = depth", "release: p + κp′ = 0"]
     text = names[event] if event >= 0 else ""
     left.axvline(end, color="grey", linewidth=0.8, linestyle=":")
-    left.annotate(text, (end, 0.069), rotation=90, ha="right", va="top", fontsize=8)
+    beside = {"textcoords": "offset points", "rotation": 90, "fontsize": 8}
+    left.annotate(text, (end, 0.07), (-3, 0), ha="right", va="top", **beside)
     sizes = np.abs(root_time.PANEL.coefficients @ v) / np.abs(v).max()
     right.semilogy(sizes, ".-", color=colour, label=f"panel {number}")
 right.axhline(root_time.RESOLVED, color="grey", linewidth=0.8, linestyle=":")

@@ -19,8 +19,6 @@ for n, colour in ((1, "#0072B2"), (2, "#C77C00"), (3, "#AA3A00")):
         label = f"{n}-T orbit: {name}"
         ratios, amplitudes = curve.z[:, :-3:-1].T
         axes.semilogx(ratios, amplitudes, line, color=colour, label=label)
-        last = ratios.argmax()
-        axes.text(1.03 * ratios[last], amplitudes[last], n, color=colour, va="center", fontsize=7)
 axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="amplitude Λ", title="r = 0.85")
 axes.legend(fontsize=7, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.15))
 figure.savefig("stability_over_stiffness.png")

@@ -46,12 +46,6 @@ MARK: dict[str, Any] = {
 HEIGHT = 2.8
 """Height of a figure in inches."""
 
-DECADES = 2, 8
-"""An axis is logarithmic if it covers more than 2 and fewer than 8 powers of ten.
-
-If it covers more powers of ten, the smallest values are zero within rounding.
-"""
-
 TITLE = 50
 """Maximum number of letters in a line of a title. Lines do not break at an equals sign."""
 EQUAL = "\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}"
@@ -101,12 +95,13 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         axes = figure.subplots() if ax is None else ax
         entries: dict[str, Any] = {}
         lines: dict[str, Any] = {}
-        for branch, colour in zip(branches, colours(len(branches)), strict=True):
+        title, differences = _texts(branches)
+        coloured = zip(branches, colours(len(branches)), differences, strict=True)
+        for branch, colour, difference in coloured:
             entries |= _draw(axes, branch, quantity, colour)
-            lines[_name(branch)] = sample(color=colour)
+            lines[difference] = sample(color=colour)
         entries = dict(sorted(entries.items(), key=_order)) | (lines if len(lines) > 1 else {})
-        axes.set(xlabel=_label(names[0]), ylabel=_label(names[1]), title=_title(branches))
-        _scale(axes)
+        axes.set(xlabel=_label(names[0]), ylabel=_label(names[1]), title=title)
         if ax is None:
             legend_below(figure, entries, columns=3)
             return figure
@@ -126,7 +121,7 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
     shown = branch.refined()
     orbits = shown.with_special()
     whole = replace(shown, z=np.array([each.z for each in orbits]))
-    x, y = _coordinates(whole, quantity)
+    x, y, period = _coordinates(whole, quantity)
     stable = np.ones(len(x), bool) if is_curve else whole.stable
     looks = 2 * whole.admissible + stable
     looks = looks[_ordinary(orbits, branch.special)]
@@ -137,7 +132,8 @@ def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dic
             "color": colour if admissible else pale(colour),
             "linestyle": KINDS["stable" if steady else "unstable"],
         }
-        axes.plot(x[part], y[part], **look)
+        for line in y[part].T:
+            axes.plot(*_cut(x[part], line, period), **look)
         kind = getattr(whole, "kind", "stable" if steady else "unstable")
         text = kind if admissible else f"{kind}, no ball follows"
         # Colours distinguish the kinds of curves. Several branches share a line style, so its
@@ -179,23 +175,31 @@ def _order(entry: tuple[str, Any]) -> tuple[bool, bool, bool]:
     return line.get_linestyle() == "None", "no ball" in text, text == "unstable"
 
 
-def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArray]:
-    """Return the abscissas, shape (points,), and the ordinates, shape (points, lines)."""
+def _coordinates(branch: FollowedBranch, quantity: str) -> tuple[NDArray, NDArray, float]:
+    """Return abscissas, shape (points,), ordinates, shape (points, lines), and their period.
+
+    The period of a phase over π is 2: each orbit is drawn at its phase in (-π, π], wherever its
+    branch begins. The period of other quantities is infinite.
+    """
     if isinstance(branch, SpecialCurve):
-        return branch.z[:, -2], branch.z[:, -1:]
+        return branch.z[:, -2], branch.z[:, -1:], np.inf
     if quantity == "max_height":
-        return branch.values, branch.equations.max_height(branch.z)[:, np.newaxis]
+        return branch.values, branch.equations.max_height(branch.z)[:, np.newaxis], np.inf
     y = np.array([np.atleast_1d(getattr(each, quantity)) for each in branch.orbits])
     is_angle = OF_IMPACTS[quantity][2] == "rad"
-    return branch.values, np.unwrap(y, axis=0) / np.pi if is_angle else y
+    return branch.values, y / np.pi if is_angle else y, 2.0 if is_angle else np.inf
 
 
-def _scale(axes: Axes) -> None:
-    """Make an axis logarithmic if its data are positive and cover many powers of ten."""
-    data = axes.dataLim
-    for name, (low, high) in (("x", data.intervalx), ("y", data.intervaly)):
-        if low > 0 and DECADES[0] < np.log10(high / low) < DECADES[1]:
-            axes.set(**{f"{name}scale": "log"})
+def _cut(x: NDArray, y: NDArray, period: float) -> tuple[NDArray, NDArray]:
+    """Insert NaN between points of a line where y jumps by its period.
+
+    Examples
+    --------
+    >>> _cut(np.array([0.0, 1.0, 2.0]), np.array([0.7, 0.9, -0.9]), 2.0)[1].tolist()
+    [0.7, 0.9, nan, -0.9]
+    """
+    jumps = np.flatnonzero(np.abs(np.diff(y)) > period / 2) + 1
+    return np.insert(x, jumps, np.nan), np.insert(y, jumps, np.nan)
 
 
 def _label(name: str) -> str:
@@ -210,23 +214,31 @@ def _name(branch: FollowedBranch) -> str:
     return f"{branch.impacts} impact{'s'[: branch.impacts - 1]} in {branch.periods} T"
 
 
-def _title(branches: list[FollowedBranch]) -> str:
-    """Title of a figure, with the parameters that are constant and equal on all branches."""
-    others = [branch.orbits[i].parameters for branch in branches for i in (0, -1)]
-    same = {
-        name: value
-        for name, value in others[0].items()
-        if all(each.get(name) == value for each in others)
-    }
-    # Leave out default values: phases 0, and size 1 of the first harmonic.
-    texts = [
+def _texts(branches: list[FollowedBranch]) -> tuple[str, list[str]]:
+    """Return the title of a figure, and for each branch its text in the legend.
+
+    The title has what all branches share: numbers of impacts and periods, and constant parameters.
+    The texts of branches have the rest.
+    """
+    constants = [[_name(branch), *_constants(branch)] for branch in branches]
+    same = [text for text in constants[0] if all(text in each for each in constants)]
+    others = [", ".join(text for text in each if text not in same) for each in constants]
+    differences = [text.replace(EQUAL, " = ") for text in others]
+    return fill(", ".join(same), TITLE).replace(EQUAL, " = "), differences
+
+
+def _constants(branch: FollowedBranch) -> list[str]:
+    """Texts of the parameters that are constant along a branch and not at a default value.
+
+    The phase of a harmonic is 0 by default, and the size of the first harmonic is 1.
+    """
+    first, last = (branch.orbits[i].parameters for i in (0, -1))
+    return [
         f"{_symbol(name)}{EQUAL}{value:.4g}"
-        for name, value in same.items()
-        if value != (1.0 if name == "harmonic_1" else 0.0 if name.startswith("phase_") else None)
+        for name, value in first.items()
+        if value == last[name]
+        and value != (1.0 if name == "harmonic_1" else 0.0 if name.startswith("phase_") else None)
     ]
-    counts = {_name(branch) for branch in branches}
-    whole = ", ".join([*(counts if len(counts) == 1 else []), *texts])
-    return fill(whole, TITLE).replace(EQUAL, " = ")
 
 
 def _symbol(name: str) -> str:

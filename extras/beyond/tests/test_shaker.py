@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bouncing_ball_beyond import shaker
-from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.shaker import on_shaker
@@ -41,22 +40,6 @@ def test_orbit_confirms_the_answer(answers):
     assert answer.max_height.by_law == pytest.approx(answer.max_height.exact, rel=5e-4)
 
 
-@pytest.mark.parametrize("contact", ["spring", "hertz"])
-def test_limits_are_special_orbits_along_the_frequency(contact, answers):
-    """At the same displacement, by continuation, which is another way to the same places."""
-    answer = answers[contact]
-    here = np.sqrt(answer.amplitude)
-    one = orbit(answer.ball, amplitude=answer.amplitude)
-    branch = follow(one, along="frequency", to=(0.5 * here, 1.2 * here))
-    for kind, frequency in (
-        ("saddle-node", answer.lowest_frequency),
-        ("period doubling", answer.highest_frequency),
-    ):
-        place = branch.first(kind).parameters["frequency"] / here
-        # The answer is found to 1e-6.
-        assert frequency / answer.frequency == pytest.approx(place, rel=1e-6)
-
-
 def test_longest_contact_has_the_tolerance_as_its_error():
     answer = on_shaker(**TABLE, **CONTACT, tolerance=0.02)
     there = on_shaker(**TABLE, contact_duration=answer.longest_contact)
@@ -87,13 +70,6 @@ def test_duration_of_a_contact_of_hertz():
     lasts = 2.94327507 * (1.25 * 0.004 / stiffness * speed**2) ** 0.4 / speed
     # A loss changes the speed and the duration in proportion to 1 - r.
     assert answer.contact_duration == pytest.approx(lasts, rel=1e-4)
-
-
-def test_radius_and_density_are_a_mass():
-    mass = 4 / 3 * np.pi * 5e-3**3 * 7800
-    by_mass = on_shaker(**TABLE, stiffness=1e7, mass=mass)
-    by_density = on_shaker(**TABLE, stiffness=1e7, radius=5e-3, density=7800.0)
-    assert by_mass.error == pytest.approx(by_density.error, rel=1e-12)
 
 
 def test_answers_in_sentences():

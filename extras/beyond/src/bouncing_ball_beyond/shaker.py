@@ -18,7 +18,6 @@ from bouncing_ball_beyond.error_law import (
     restitution_values,
 )
 from bouncing_ball_beyond.named_laws import tsuji
-from bouncing_ball_beyond.paths import Frequency
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
@@ -85,10 +84,6 @@ class ShakerAnswer:
     """Λ up to which the orbit is stable."""
     max_height: ByModel
     """Maximum height of the ball, in m, above the mean position of the table."""
-    lowest_frequency: float
-    """Frequency, in Hz, above which the ball bounces on this contact, at the same displacement."""
-    highest_frequency: float
-    """Frequency, in Hz, up to which the orbit on this contact is stable, at this displacement."""
     longest_contact: float
     """Longest contact, in s, with a height within the tolerance, at the same frequency."""
     table: Table = SINE
@@ -131,23 +126,15 @@ class ShakerAnswer:
         return ""
 
     def __repr__(self) -> str:
-        rows = [
-            ("", ("restitution", "contact", "error law"), "on this contact, at this displacement"),
-            (
-                "bounces from Λ",
-                [f"{value:.4g}" for value in self.saddle_node],
-                f"from {self.lowest_frequency:.4g} Hz",
-            ),
-            (
-                "stable up to Λ",
-                [f"{value:.4g}" for value in self.period_doubling],
-                f"up to {self.highest_frequency:.4g} Hz",
-            ),
-            ("maximum height/mm", [_in_mm(value) for value in self.max_height], ""),
-        ]
+        rows = {
+            "": ("restitution", "contact", "error law"),
+            "bounces from Λ": [f"{value:.4g}" for value in self.saddle_node],
+            "stable up to Λ": [f"{value:.4g}" for value in self.period_doubling],
+            "maximum height/mm": [_in_mm(value) for value in self.max_height],
+        }
         lines = [
-            f"{name:<18}{''.join(f'{value:>13}' for value in values)}   {limit}".rstrip()
-            for name, values, limit in rows
+            f"{name:<18}{''.join(f'{value:>13}' for value in values)}"
+            for name, values in rows.items()
         ]
         return "\n".join([*lines, "", *self._sentences()])
 
@@ -225,7 +212,6 @@ def on_shaker(
     acceleration: float | None = None,
     mass: float | None = None,
     radius: float | None = None,
-    density: float | None = None,
     contact_duration: float | None = None,
     stiffness: float | None = None,
     youngs_modulus: float | None = None,
@@ -251,8 +237,8 @@ def on_shaker(
         maximum acceleration of the table.
     mass : float, optional
         Mass of the ball in kg. Not needed with ``contact_duration``.
-    radius, density : float, optional
-        Radius of the ball in m, and density of the ball in kg/m³. They can replace the mass.
+    radius : float, optional
+        Radius of the ball in m. Only needed with ``youngs_modulus``.
     contact_duration, stiffness, youngs_modulus : float
         Give exactly one of the three.
 
@@ -312,7 +298,7 @@ def on_shaker(
             compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
         # Hertz: force 4/3 E* √R p^(3/2). Units are g/Ω² for lengths and 1/Ω for times.
         force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
-        force *= np.sqrt(fall) / rate**3 / _mass(mass, radius, density)
+        force *= np.sqrt(fall) / rate**3 / positive("mass", mass, "kg")
         # The duration and the speed are arbitrary, because the damping depends only on r.
         hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
 
@@ -322,7 +308,7 @@ def on_shaker(
     else:
         spring = SpringDamper(1.0, restitution=restitution)
         if contact == "stiffness":
-            square = positive("stiffness", stiffness, "N/m") / _mass(mass, radius, density)
+            square = positive("stiffness", stiffness, "N/m") / positive("mass", mass, "kg")
             ratio = np.sqrt(square) / rate
         else:
             contact_time = rate * positive("contact_duration", contact_duration, "s")
@@ -344,15 +330,6 @@ def _one_of(**quantities: float | None) -> str:
     if len(given) != 1:
         raise ValueError(f"exactly one of {', '.join(quantities)} must be given")
     return given[0]
-
-
-def _mass(mass: Any, radius: Any, density: Any) -> float:
-    if mass is not None:
-        return positive("mass", mass, "kg")
-    if radius is None or density is None:
-        raise ValueError("the mass is missing: give mass, or radius and density")
-    volume = 4 / 3 * np.pi * positive("radius", radius, "m") ** 3
-    return volume * positive("density", density, "kg/m³")
 
 
 def _compliance(modulus: float | None, ratio: float, body: str) -> float:
@@ -408,36 +385,15 @@ def _answer(
         )
         for name in names
     }
-    frequency = rate / (2 * np.pi)
     return ShakerAnswer(
         n=n,
         amplitude=amplitude,
         ball=ball,
-        frequency=frequency,
+        frequency=rate / (2 * np.pi),
         displacement=amplitude * _half_range(table) * fall / rate**2,
         contact_duration=duration / rate,
         tolerance=tolerance,
-        lowest_frequency=frequency * _times(ball, amplitude, n, "saddle_node", exact, table),
-        highest_frequency=frequency * _times(ball, amplitude, n, "period_doubling", exact, table),
         longest_contact=longest,
         table=table,
         **compared,
     )
-
-
-def _times(ball: Ball, amplitude: Values, n: Values, name: str, exact: Any, table: Table) -> float:
-    """Find the factor on the frequency at which a bifurcation takes place at the same displacement.
-
-    Returns NaN if the iteration does not converge.
-    """
-    path = Frequency()
-    times = np.sqrt(exact[name] / amplitude)
-    for _ in range(30):
-        shaken, there, _ = path.apply(times * np.sqrt(amplitude), ball, amplitude, table)
-        given = {"amplitude": there, "n": n, "quantities": [name], "table": table}
-        found = contact_values(shaken, **given)[name]
-        before = times
-        times = np.sqrt(found / amplitude)
-        if abs(times - before) < 1e-6 * times:
-            return float(times)
-    return np.nan

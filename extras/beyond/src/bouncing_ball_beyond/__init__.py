@@ -49,6 +49,7 @@ _MODULES = {
     "orbit": "periodic",
     "orbit_near": "periodic",
     "orbits": "periodic",
+    "permanent_contact": "permanent",
     "Table": "tables",
     "RestOrbit": "rests",
     "orbit_with_rest": "rests",

@@ -340,7 +340,7 @@ def note_orders(axes: Axes, orders: list[tuple[xr.DataArray, Look]]) -> None:
 POSITIONS = (0, 0.01, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 0.95, 0.99, 1)
 """Positions of Λ in the stable range that are named; p = sin² of the places on the axis."""
 
-LEVELS = (15, 20, 30, 40, 50, 60, 70, 80, 90)
+LEVELS = (15, 20, 30, 40, 50, 60, 80)
 STIFFER = (200, 1000)
 """Contours of the ϖ from which on the height is right, below that of the paper and above it."""
 
@@ -425,8 +425,8 @@ def draw_height(axes: Axes, family: xr.Dataset, paper: float) -> None:
         before = jumps[::-1].cumsum("position")[::-1] > 0
         lower = axes.contour(r, place, needed.where(~before), levels=LEVELS, **drawn)
         upper = axes.contour(r, place, needed.where(before), levels=STIFFER, **drawn)
-    for lines, levels in ((lower, (20, 30, 40, 50, 60, 80)), (upper, STIFFER)):
-        for text in axes.clabel(lines, fontsize=6.5, fmt="%g", levels=levels):
+    for lines in (lower, upper):
+        for text in axes.clabel(lines, fontsize=6.5, fmt="%g", inline_spacing=1):
             # The name hides the wide line as well.
             text.set(bbox=ON_LINE["bbox"], zorder=4)
 
@@ -515,7 +515,7 @@ def ext_phase(data: xr.Dataset) -> Figure:
     right = float(data.steepness.max())
     notes: Look = {"fontsize": 7, "ha": "right"}
     level.annotate("restitution model", (right, 1.002), va="bottom", **notes)
-    below = float(last.line_level) / line - 0.006
+    below = float(last.line_level) / line - 0.012
     level.annotate(r"error law, $(C-s)/C$", (right, below), va="top", **notes)
     share = 100 * float(data.shown_share[-1])
     level.set_title(f"open: at the touch; filled: later by $\\theta$; $D/(2\\pi)$ = {share:g} %")

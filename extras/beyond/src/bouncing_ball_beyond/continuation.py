@@ -1,12 +1,13 @@
 """Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from bouncing_ball_beyond.balls import Ball, brief, check_whole_numbers, whole_number
 from bouncing_ball_beyond.branches import FollowedBranch, followed, joined
@@ -25,7 +26,13 @@ contact with ζ = 1.3 has no limits. In 251 other balls only 2.5 had an effect.
 """
 
 
-def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int = 500) -> Any:
+def follow(
+    orbit: PeriodicOrbit | Sequence,
+    *,
+    along: str | None = None,
+    to: ArrayLike | None = None,
+    points: int = 500,
+) -> Any:
     """Follow a periodic orbit, or many orbits at once, along a parameter.
 
     The branch of an ordinary orbit goes through this orbit. The branch of a special orbit depends
@@ -78,7 +85,7 @@ def follow(orbit: Any, *, along: str | None = None, to: Any = None, points: int 
     return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
 
 
-def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
+def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int = 64) -> Any:
     """Follow a cascade of period doublings, each branch up to the next doubling.
 
     Parameters
@@ -113,9 +120,9 @@ def cascade(doubling: Any, *, to: Any, impacts: int = 64) -> Any:
     wanted = "a period doubling, such as branch.first('period doubling')"
     latest = _listed(doubling, "doubling", wanted)
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
-    if np.ndim(to) and len(to) != len(latest):
+    if np.ndim(to) and np.size(to) != len(latest):
         raise ValueError(
-            f"to: has {len(to)} values for {len(latest)} orbits: give one value, or one for each"
+            f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for each"
         )
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
@@ -272,7 +279,7 @@ class Limits(NamedTuple):
         return "Limits: {}; {}".format(*places)
 
 
-def limits(ball: Ball, *, n: Any = 1, table: Table = SINE) -> Any:
+def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
     """Find the saddle-node and the period doubling of the n-T orbits of a ball.
 
     n-T orbits have one impact in n periods of the table. One of them, next to the phase at which

@@ -109,7 +109,25 @@ class FreeImpact(NamedTuple):
 
 
 def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
-    """Compute the free impact of a ball at the speed v₀, the root of (1 + r(v)) v = 2nπ."""
+    """Compute the free impact of a ball at the speed v₀, the root of (1 + r(v)) v = 2nπ.
+
+    Parameters
+    ----------
+    ball : Ball
+        The ball.
+    n : array_like
+        Number of periods of the table from impact to impact.
+
+    Returns
+    -------
+    FreeImpact
+        Speed in units of g/Ω, times in units of 1/Ω.
+
+    Raises
+    ------
+    ValueError
+        If n is below 1, or if free impacts of the ball do not end.
+    """
     if np.any(np.asarray(n) < 1):
         raise ValueError(f"n = {n!r}: must be a whole number from 1")
     half = np.pi * np.asarray(n)
@@ -282,7 +300,23 @@ def law_remainders(
     scale S is computed from the moduli of the terms of the law, and
     η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ is the Λ of the
     doubling, and Y₀ is Y_D. The theorem gives the order of the limit in D. The factor 1 of Sη is
-    fitted to random orbits and tables (docs/error-law.md). Parameters are as in :func:`law_errors`.
+    fitted to random orbits and tables (docs/error-law.md).
+
+    Parameters
+    ----------
+    impact : Ball or FreeImpact
+        The ball, or its free impact.
+    amplitude : array_like
+        Λ.
+    n : int
+        Number of periods of the table from impact to impact, if a ball is given.
+    table : Table
+        Waveform of the table.
+
+    Returns
+    -------
+    dict of array
+        Upper limits of the relative errors by quantity.
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     amplitude = off_rounding(impact, amplitude, table)

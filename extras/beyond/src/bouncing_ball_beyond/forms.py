@@ -171,7 +171,21 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     """Compute the normal form of a saddle-node or a period doubling.
 
     On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
-    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling. Raises ValueError for other orbits.
+    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        Saddle-node or period doubling of a branch.
+
+    Returns
+    -------
+    NormalForm
+
+    Raises
+    ------
+    ValueError
+        If the orbit is of another kind.
 
     Examples
     --------
@@ -372,6 +386,15 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
     If the flight would be at the depth d below the table, an additional impact changes the velocity
     by S √d. S is (1 + r) √(2a), where r belongs to the speed 0. For contacts of finite duration S
     is 0 (docs/orbits.md).
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit
+        Grazing of a flight of a branch.
+
+    Returns
+    -------
+    GrazingForm
 
     Raises
     ------

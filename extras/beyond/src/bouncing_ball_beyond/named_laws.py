@@ -160,6 +160,28 @@ def linear(
     - "force": where f = 0;
     - "approach": where p = 0. The damper then acts only while p′ > 0, when the ball approaches.
 
+    Parameters
+    ----------
+    frequency_ratio : array_like, optional
+        ϖ, the natural frequency of the contact divided by Ω.
+    damping_ratio : array_like, optional
+        ζ.
+    release : {"displacement", "force", "approach"}
+        What ends a contact.
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
+
     Examples
     --------
     >>> ball = linear(20.0, 0.1, release="approach")
@@ -218,6 +240,26 @@ def hunt_crossley(
 
     Source: K. H. Hunt and F. R. E. Crossley, Journal of Applied Mechanics 42 (1975) 440-445, as
     quoted by Simbody (``HuntCrossleyContact.h``).
+
+    Parameters
+    ----------
+    stiffness : array_like, optional
+        K, the stiffness per mass, in units of Ω³/√g.
+    damping : array_like, optional
+        C, in units of Ω/g.
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping},
@@ -248,6 +290,26 @@ def tsuji(
 
     Sources: Y. Tsuji, T. Tanaka and T. Ishida, Powder Technology 71 (1992) 239-250, as quoted by
     LAMMPS; D. Antypov and J. A. Elliott, Europhysics Letters 94 (2011) 50004, as quoted by Yade.
+
+    Parameters
+    ----------
+    stiffness : array_like, optional
+        K, the stiffness per mass, in units of Ω³/√g.
+    damping : array_like, optional
+        C, a number.
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
 
     Examples
     --------
@@ -289,6 +351,26 @@ def kuwabara_kono(
     Physical Review E 53 (1996) 5382-5392, as quoted by LAMMPS. For the end of the contact:
     T. Schwager and T. Pöschel, Physical Review E 78 (2008) 051304, as quoted by the toolbox
     Approx-ViscoElastic-CoR.
+
+    Parameters
+    ----------
+    stiffness : array_like, optional
+        K, the stiffness per mass, in units of Ω³/√g.
+    damping : array_like, optional
+        C, in units of 1/Ω.
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping},
@@ -326,6 +408,28 @@ def adams_impact(
     part of d therefore lose little energy. If an impact is given, d is a tenth of (v²/K)^{2/5}.
 
     Sources: the manuals of SolidWorks Motion and Altair MotionSolve.
+
+    Parameters
+    ----------
+    stiffness : array_like, optional
+        K, the stiffness per mass, in units of Ω³/√g.
+    damping : array_like, optional
+        C, the damping per mass, in units of Ω.
+    depth : array_like, optional
+        d, in units of g/Ω².
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},
@@ -375,6 +479,28 @@ def simscape_contact(
     The forces of spring and damper increase over a transition region of the width d. The contact
     ends where the force vanishes: p + κp′ = 0 with κ = C/K. The manual gives no formula of the
     step, so a cubic is assumed. If an impact is given, d is a tenth of v/√K.
+
+    Parameters
+    ----------
+    stiffness : array_like, optional
+        K, the stiffness per mass, in units of Ω².
+    damping : array_like, optional
+        C, the damping per mass, in units of Ω.
+    depth : array_like, optional
+        d, in units of g/Ω².
+    restitution, duration, speed : array_like, optional
+        Restitution coefficient r in (0, 1], duration D in units of 1/Ω, and closing speed in units
+        of g/Ω of a free impact.
+
+    Returns
+    -------
+    ForceLaw
+
+    Raises
+    ------
+    ValueError
+        Unless either all parameters of the force or all three of the impact are given. If no law
+        of this kind has this r.
     """
     return _given(
         {"stiffness": stiffness, "damping": damping, "depth": depth},

@@ -125,6 +125,8 @@ def prepare(app, name, text):
             glob = ":glob:\n" if any("*" in page for page in pages) else ""
             listed = "\n".join(f"/{page}" for page in pages)
             text[0] += f"\n```{{toctree}}\n:hidden:\n:caption: {caption}\n{glob}\n{listed}\n```\n"
+    # A forge shows directives as text, so that they are in comments.
+    text[0] = re.sub(r"<!-- autodoc\n(.*?)-->", r"```{eval-rst}\n\1```", text[0], flags=re.S)
     # The scripts of the gallery in full, in place of links to them.
     text[0] = re.sub(
         r"^\[(\w+\.py)\]\((gallery/.*)\)$", r"```{literalinclude} \2\n```", text[0], flags=re.M

@@ -122,7 +122,8 @@ def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int =
     whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
     if np.ndim(to) and np.size(to) != len(latest):
         raise ValueError(
-            f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for each"
+            f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for"
+            " each"
         )
     to = np.broadcast_to(np.asarray(to, float), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]

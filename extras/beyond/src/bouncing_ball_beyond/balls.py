@@ -239,10 +239,16 @@ class Ball:
         raise NotImplementedError
 
     def first_impact(
-        self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        periods: Values = None,
+        table: Table = SINE,
     ) -> tuple:
-        """T of the first release, and the state of the impact at this release."""
-        T = self.first_release(tau, u, amplitude, gravity, table=table)
+        """T of the first release, as `first_release`, and the state of the impact there."""
+        T = self.first_release(tau, u, amplitude, gravity, periods, table)
         return T, self.contact(tau, u, T, amplitude, gravity, table)
 
     def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:

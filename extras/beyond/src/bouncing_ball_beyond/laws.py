@@ -346,9 +346,15 @@ class ForceLaw(Ball):
         return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)[0]
 
     def first_impact(
-        self, tau: Values, u: Values, amplitude: Values, gravity: Values = 1.0, table: Table = SINE
+        self,
+        tau: Values,
+        u: Values,
+        amplitude: Values,
+        gravity: Values = 1.0,
+        periods: Values = PERIODS,
+        table: Table = SINE,
     ) -> tuple[Values, Impact]:
-        return self._followed(tau, u, amplitude, gravity, table=table)
+        return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)
 
     def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
         """T, D, δ and δ′ as in :meth:`.Ball.leaves`. Raises ValueError if a ball is not stopped."""
@@ -408,11 +414,10 @@ class ForceLaw(Ball):
 
         The rows are the four quantities q of the signature, their derivatives u dq/du, and T. For a
         law without kinks each row is a polynomial in ln u. Each polynomial covers a range of a
-        factor `SIGNATURE_FACTOR` in u.
+        factor `SIGNATURE_FACTOR` in u. Other signatures are computed once for each speed.
         """
         if self.kinks:
-            speeds, place = np.unique(np.exp(np.log(u).round(13)), return_inverse=True)
-            return self._computed(speeds)[:, place.reshape(u.shape)]
+            return self._remembered(u)
         number = np.floor(np.log(u) / np.log(SIGNATURE_FACTOR))
         found = np.full((9, *u.shape), np.nan)
         for k in np.unique(number[np.isfinite(number)]):
@@ -421,11 +426,20 @@ class ForceLaw(Ball):
                 self._ranges[k] = self._range(k)
             coefficients = self._ranges[k]
             if coefficients is None:
-                found[:, at] = self._computed(u[at])
+                found[:, at] = self._remembered(u[at])
             else:
                 x = 2 * (np.log(u[at]) / np.log(SIGNATURE_FACTOR) - k) - 1
                 found[:, at] = chebyshev.chebval(x, coefficients)
         return found
+
+    def _remembered(self, u: NDArray) -> NDArray:
+        """Compute :meth:`known_signature` at the speeds that were not asked for before."""
+        logarithms, place = np.unique(np.log(u).round(13), return_inverse=True)
+        new = [x for x in logarithms.tolist() if x not in self._signatures]
+        if new:
+            self._signatures.update(zip(new, self._computed(np.exp(new)).T, strict=True))
+        columns = np.array([self._signatures[x] for x in logarithms.tolist()])
+        return columns.T[:, place.reshape(u.shape)]
 
     def _computed(self, u: Values) -> NDArray:
         """Compute :meth:`known_signature` from a free impact at each speed."""
@@ -495,6 +509,10 @@ class ForceLaw(Ball):
 
     @cached_property
     def _free_impacts(self) -> dict[float, list]:
+        return {}
+
+    @cached_property
+    def _signatures(self) -> dict[float, NDArray]:
         return {}
 
     @cached_property

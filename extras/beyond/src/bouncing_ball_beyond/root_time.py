@@ -547,7 +547,9 @@ def solve_panel(
         q = q0 + h * (integrals @ v)
         lever = motion.lever(q)
         t = t0 + h * (integrals @ lever)
-        a = load_of(t, motion.given)
+        if sweep == 0 or event or motion.root > 1:
+            # Otherwise the time is the root time, and does not change from sweep to sweep.
+            a = load_of(t, motion.given)
         force = lever * (a - motion.force(q * lever / motion.root, v, a, motion.given))
         if newton:
             missing = (force - push)[:, np.newaxis]

@@ -8,10 +8,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import maximum_filter, minimum_filter
 
 from bouncing_ball_beyond.balls import Ball, broadcast_named, check_ball
 from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.equations import OrbitEquations, PeriodicOrbit
+from bouncing_ball_beyond.equations import OrbitEquations, PeriodicOrbit, flight
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.tables import SINE, Table
 
@@ -136,6 +137,17 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
+def shown(parts: list, what: str) -> Any:
+    """Iterate over parts of a search. A terminal or notebook shows how many are done."""
+    # Importing rich takes 0.1 s.
+    from rich.console import Console
+    from rich.progress import track
+
+    console = Console(stderr=True)
+    silent = not (console.is_terminal or console.is_jupyter)
+    return track(parts, what, transient=True, console=console, disable=silent)
+
+
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
     z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
@@ -145,7 +157,7 @@ def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     z = z[(equations.ends(z).flight > 0).all(axis=1)]
     z = _distinct(equations, z)
     # Some starts lead to orbits many periods later, whose times have fewer digits. Iterate again.
-    return newton(equations, z).z if len(z) else z
+    return _distinct(equations, newton(equations, z).z) if len(z) else z
 
 
 @np.errstate(all="ignore")
@@ -155,24 +167,43 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     The guesses are impacts at many phases. After n periods the ball has the same closing speed
     again.
     """
+    ball = equations.ball
     table = equations.table
-    longest = 2.2 * np.pi * equations.periods + amplitude * table.bounds[1]
-    phases = np.linspace(0, 2 * np.pi, 96 * table.orders[-1], endpoint=False)
+    length = 2 * np.pi * equations.periods
+    longest = 1.1 * length + amplitude * table.bounds[1]
+    phases = np.linspace(0, 2 * np.pi, max(96, 32 * table.orders[-1]), endpoint=False)
     speeds = np.geomspace(1e-3, longest, 32)
+    # The contact of an orbit is shorter than its period.
+    within: dict[str, Any] = {"periods": equations.periods, "table": table}
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
-
-    def impacts(tau: NDArray, u: NDArray) -> NDArray:
-        # The contact of an orbit is shorter than its period.
-        within: dict[str, Any] = {"periods": equations.periods, "table": table}
-        T = equations.ball.first_release(tau, u, amplitude, **within)
-        columns = [tau, u, T][: equations.unknowns]
-        return np.stack([*columns, np.full(tau.size, amplitude)], axis=-1)
-
-    change = equations.legs(impacts(tau.ravel(), u.ravel()))[:, 0, -1].reshape(tau.shape)
-    at = np.nonzero(change[:, :-1] * change[:, 1:] < 0)
+    gap, rate = np.empty((2, *tau.shape))
+    for rows in shown(np.array_split(np.arange(phases.size), phases.size // 32), "orbits"):
+        _, impact = ball.first_impact(tau[rows], u[rows], amplitude, **within)
+        time = length - impact.duration
+        leaves = tau[rows] + impact.duration, impact.gap, impact.speed
+        gap[rows], rate[rows] = flight(time, *leaves, amplitude, table)
+    change = rate + u
+    missed = gap - ball.start(u)
+    crossed = (change[:, :-1] * change[:, 1:] < 0) & _nearly_zero(missed)[:, :-1]
+    at = np.nonzero(crossed)
     share = change[:, :-1][at] / (change[:, :-1] - change[:, 1:])[at]
+    tau, u = tau[:, :-1][at], u[:, :-1][at] + share * np.diff(u, axis=1)[at]
     # Durations of contacts may jump between samples. Compute them again instead of interpolating.
-    return impacts(tau[:, :-1][at], u[:, :-1][at] + share * np.diff(u, axis=1)[at])
+    T = ball.first_release(tau, u, amplitude, **within)
+    columns = [tau, u, T][: equations.unknowns]
+    return np.stack([*columns, np.full(tau.size, amplitude)], axis=-1)
+
+
+def _nearly_zero(values: NDArray) -> NDArray:
+    """Whether a function may vanish near each point of a grid that is periodic along its first axis.
+
+    It may if its values at a point and the eight points around it, less or more by their range, have
+    both signs. Two zeros between neighbouring points are then not missed.
+    """
+    none = np.isnan(values)
+    low = minimum_filter(np.where(none, np.inf, values), 3, mode=("wrap", "nearest"))
+    high = maximum_filter(np.where(none, -np.inf, values), 3, mode=("wrap", "nearest"))
+    return (2 * low <= high) & (2 * high >= low)
 
 
 def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:

@@ -28,7 +28,7 @@ from bouncing_ball_beyond.balls import (
     checked,
     slopes_at_release,
 )
-from bouncing_ball_beyond.judge import FIRST_LOAD, FIRST_SPEED, MARGIN, check_force, judge
+from bouncing_ball_beyond.judge import FIRST_LOAD, FIRST_SPEED, check_force, judge
 from bouncing_ball_beyond.one_ball import SLOWEST
 from bouncing_ball_beyond.root_time import (
     FEW_CONTACTS,
@@ -331,6 +331,7 @@ class ForceLaw(Ball):
         table: Table = SINE,
     ) -> Impact:
         """State of the contact at the root time T, with the release function."""
+        self._judge(u, amplitude, table)
         return self._followed(tau, u, amplitude, gravity, T, table=table)[1]
 
     def first_release(
@@ -343,7 +344,7 @@ class ForceLaw(Ball):
         table: Table = SINE,
     ) -> Values:
         """T of the first release; NaN if a contact lasts longer than ``periods`` periods."""
-        return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)[0]
+        return self.first_impact(tau, u, amplitude, gravity, periods, table)[0]
 
     def first_impact(
         self,
@@ -354,6 +355,7 @@ class ForceLaw(Ball):
         periods: Values = PERIODS,
         table: Table = SINE,
     ) -> tuple[Values, Impact]:
+        self._judge(u, amplitude, table)
         return self._followed(tau, u, amplitude, gravity, longest=periods, table=table)
 
     def leaves(self, tau: Values, u: Values, amplitude: Values, table: Table = SINE) -> tuple:
@@ -549,23 +551,12 @@ class ForceLaw(Ball):
         """
         p, energy = self._energies
         energy = np.maximum.accumulate(energy - load * p)
+        x, y = (np.log(np.maximum(each, TINY)).reshape(len(p), -1) for each in (energy, p))
         u = np.broadcast_to(u, np.broadcast_shapes(np.shape(u), p.shape[1:]))
-        if p.ndim == 1:
-            after = np.searchsorted(energy, u * u / 2)
-        else:
-            p, energy = (
-                x.reshape(len(p), *(1,) * (u.ndim - p.ndim + 1), *p.shape[1:]) for x in (p, energy)
-            )
-            after = (energy < u * u / 2).sum(axis=0)
-        known = (after < len(p)) & np.isfinite(u)
-        after = np.clip(after, 1, len(p) - 1)
-        (low, before), (high, beyond) = (
-            [np.log(np.maximum(_rows_at(table, after - back), TINY)) for table in (p, energy)]
-            for back in (1, 0)
-        )
-        with np.errstate(all="ignore"):
-            share = np.clip((np.log(u * u / 2) - before) / (beyond - before), 0.0, 1.0)
-        return np.where(known, np.exp(low + share * (high - low)), np.nan)[()]
+        with np.errstate(divide="ignore"):
+            wanted = np.log(u * u / 2).reshape(-1, x.shape[1])
+        found = (np.interp(*each, right=np.nan) for each in zip(wanted.T, x.T, y.T, strict=True))
+        return np.exp(np.stack([*found], axis=-1)).reshape(u.shape)[()]
 
     def check_stops(self, u: Values) -> None:
         """Raise ValueError if the force f(p, 0) stops no balls with the closing speeds u."""
@@ -707,33 +698,22 @@ class ForceLaw(Ball):
         if "start_speed" not in self.needs:
             rows.steps.pop("u", None)
         given["u"] = np.where(np.abs(given["u"]) < SLOWEST, SLOWEST, given["u"])
-        self._judge(given, table)
         return rows, motion, np.array([q, given["u"]]), by
 
-    def _judge(self, given: Mapping, table: Table) -> None:
-        """Judge the force for faster impacts and larger loads than before."""
-        u = np.abs(given["u"])
-        load = 1 + np.max(np.abs(given["amplitude"]) * np.max(table.bounds[2]), initial=0.0)
-        here = {
-            "speed": float(np.max(u, where=np.isfinite(u), initial=0.0)),
-            "load": float(load) if np.isfinite(load) else 0.0,
-        }
-        judged = self._origin._judged
-        faster = {name: MARGIN * x for name, x in here.items() if x > judged[name]}
-        if faster:
-            before = {**judged}
-            # The free impacts of the judge are in the new range.
-            judged.update(faster)
-            try:
-                judge(self._origin, **judged)
-            except ValueError:
-                judged.update(before)
-                raise
+    def _judge(self, u: Values, amplitude: Values, table: Table) -> None:
+        """Judge the force at the speeds and loads of a question, in steps of a factor of two."""
+        loads = 1 + np.abs(amplitude) * np.max(table.bounds[2])
+        shares = np.append(np.abs(u) / FIRST_SPEED, loads / FIRST_LOAD)
+        most = np.max(shares, initial=1.0, where=np.isfinite(shares))
+        factor = float(2 ** np.ceil(np.log2(most)))
+        if factor not in self._origin._judged:
+            judge(self._origin, factor * FIRST_SPEED, factor * FIRST_LOAD)
+            self._origin._judged.add(factor)
 
     @cached_property
-    def _judged(self) -> dict[str, float]:
-        """Largest speed and load for which the force was judged."""
-        return {"speed": FIRST_SPEED, "load": FIRST_LOAD}
+    def _judged(self) -> set[float]:
+        """Multiples of the first speed and load for which the force was judged."""
+        return {1.0}
 
     def _guessed(self, rows: Rows) -> Guess | None:
         """Return free impacts as a guess of contacts with a known end; None if the guess is bad."""
@@ -783,11 +763,3 @@ class ForceLaw(Ball):
         s, q, v, t = rows.joined(ends, slopes)
         given = {**self.values, **values, **table.parameters, "table": table}
         return s, Impact(t, -(q**self.root), -v, self._release(q, v, t, given))
-
-
-def _rows_at(table: NDArray, index: NDArray) -> NDArray:
-    """Entries of a table, shape (entries,) or (entries, *rows), at an index for each row."""
-    if table.ndim == 1:
-        return table[index]
-    table = np.broadcast_to(table, (len(table), *index.shape))
-    return np.take_along_axis(table, index[np.newaxis], axis=0)[0]

@@ -23,8 +23,8 @@
 8. Contacts of a given length (:func:`integrate_to`). A contact that resembles a free impact of its
    speed is one panel. The linear equations of the free impact then make each sweep nearly a Newton
    step.
-9. Linear solvers (:func:`by_newton`, :func:`are_solved_directly`). The size of the equations
-   determines the solver.
+9. Linear solvers. The equations of derivatives are solved directly, those of many whole contacts by
+   sweeps with the linear equations of free impacts.
 
 Arrays of contacts have the shape (rows,), values at nodes the shape (nodes, rows), and derivatives
 the shape (directions, rows).
@@ -120,9 +120,8 @@ CONTACTS_AT_ONCE = 1000
 At half and at twice: the same time within 25 %."""
 
 FEW_CONTACTS = 50
-"""Number of contacts up to which linear equations are solved directly instead of by sweeps. Up to
-this number, Newton's method also solves the panels if m = 1. At half and at twice: the same time
-within 25 %."""
+"""Number of contacts up to which Newton's method solves the panels if m = 1. At half and at twice:
+the same time within 25 %."""
 
 FEW_ENTRIES = 2 * 80 * 80
 """Number of matrix entries up to which linear equations of whole contacts are solved directly.
@@ -451,15 +450,15 @@ class LinearizedPanel(NamedTuple):
         """Solve directly for δF at the nodes, shape (nodes, directions, rows)."""
         return np.linalg.solve(self.matrix(), np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
 
-    def swept(self, known: NDArray, guess: Guess | None = None) -> NDArray:
-        """Solve for δF by sweeps. They converge as fast as the sweeps of the motion."""
-        push = guess.corrected(known) if guess else known
+    def swept(self, known: NDArray, guess: Guess) -> NDArray:
+        """Solve for δF by sweeps with the matrices of free impacts."""
+        push = guess.corrected(known)
         rate = self.integrated(push)
         change = np.zeros(rate.shape[1:])
         for _ in range(2 * SWEEPS):
             along = self.integrated(rate)
             felt = known + self.felt(along, rate, self.time(along))
-            push = push + guess.corrected(felt - push) if guess else felt
+            push = push + guess.corrected(felt - push)
             before = rate
             rate = self.integrated(push)
             earlier = change
@@ -595,8 +594,6 @@ def carried(
     nodes: tuple,
     by: NDArray,
     h: NDArray,
-    *,
-    newton: bool = False,
     guess: Guess | None = None,
 ) -> NDArray:
     """Compute the derivatives of (q, v, t) at the ends of panels.
@@ -617,10 +614,10 @@ def carried(
     # Directions that only move the end of a contact have δF = 0.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
-    if are_solved_directly(linear, newton, guess):
-        push[:, moves] = linear.solved(known[:, moves])
-    else:
+    if guess and linear.by_q.size * len(linear.by_q) > FEW_ENTRIES:
         push[:, moves] = linear.swept(known[:, moves], guess)
+    else:
+        push[:, moves] = linear.solved(known[:, moves])
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
     weights = motion.gauss.weights
@@ -802,30 +799,6 @@ def _turn(q: NDArray, v: NDArray, t: NDArray, given: Mapping) -> Values:
     return t - given["turn"]
 
 
-def by_newton(motion: ContactMotion, contacts: int, lies: bool) -> bool:
-    """Whether panels are solved by Newton's method instead of sweeps.
-
-    Newton's method is used in two cases:
-
-    1. The ball lies on the table. Panels then cover many oscillations that have died out.
-    2. m = 1 and there are at most `FEW_CONTACTS`. The equations are then nearly linear, and one
-       matrix per contact costs less than the sweeps.
-    """
-    return lies or (motion.root == 1 and contacts <= FEW_CONTACTS)
-
-
-def are_solved_directly(linear: LinearizedPanel, newton: bool, guess: Guess | None) -> bool:
-    """Whether the equations of derivatives are solved directly instead of by sweeps.
-
-    They are solved directly if there are at most `FEW_CONTACTS` panels, or if Newton's method
-    solved the panels. For whole contacts the limit is `FEW_ENTRIES`, because such matrices fit into
-    a processor's cache.
-    """
-    if guess:
-        return linear.by_q.size * len(linear.by_q) <= FEW_ENTRIES
-    return newton or linear.h.size <= FEW_CONTACTS
-
-
 @dataclass
 class _Contacts:
     """State of the integration of contacts. Most arrays have one value per contact."""
@@ -860,7 +833,9 @@ class _Contacts:
             length = remaining / pieces
             last = pieces == 1
         side = self.side[:, here]
-        newton = by_newton(motion, here.size, lies)
+        # Panels of a ball that lies on the table cover many oscillations that have died out. If
+        # m = 1, the equations are nearly linear, and one matrix per contact costs less than sweeps.
+        newton = lies or (motion.root == 1 and here.size <= FEW_CONTACTS)
         panel, which = _next_panel(motion, self.events, side, start, length, newton)
         self.side[:, here] = side
         greatest = np.abs(panel.nodes[1]).max(0)
@@ -887,7 +862,7 @@ class _Contacts:
         self.now[:, kept] = np.array([s + panel.length, *panel.end])[:, good]
         which = which[good]
         if self.by.any() or self.motion.steps.keys() - {"T"}:
-            self.differentiate(kept, which, panel.of(good), newton=newton)
+            self.differentiate(kept, which, panel.of(good))
         at_events = which >= 0
         if at_events.any():
             self.end_events(kept[at_events], which[at_events])
@@ -895,10 +870,10 @@ class _Contacts:
         s = self.now[0, here]
         self.lost[here] |= s + self.length[here] == s
 
-    def differentiate(self, here: NDArray, which: NDArray, panel: Panel, *, newton: bool) -> None:
+    def differentiate(self, here: NDArray, which: NDArray, panel: Panel) -> None:
         """Compute the derivatives at the ends of panels. An end at an event also moves."""
         given = self.motion.of(here), panel.nodes, self.by[1:, :, here], panel.length
-        self.by[1:, :, here] = carried(*given, newton=newton)
+        self.by[1:, :, here] = carried(*given)
         for k in np.unique(which[which >= 0]):
             at = here[which == k]
             motion = self.motion.of(at)
@@ -989,7 +964,7 @@ def integrate_to(
         if by.shape[1] and at.size:
             begin = np.array([*by, 0 * by[0]])[..., at]
             given = whole.of(at), panel.of(at).nodes, begin, until[at]
-            slopes[1:, :, at] = carried(*given, guess=guess.of(at))
+            slopes[1:, :, at] = carried(*given, guess.of(at))
     if todo.size:
         some = motion.of(todo), start[:, todo], by[..., todo], length[todo], period[todo]
         ends[:, todo], slopes[..., todo] = integrate_contacts(*some, until=until[todo])

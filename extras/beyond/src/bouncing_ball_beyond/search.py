@@ -195,10 +195,10 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
 
 
 def _nearly_zero(values: NDArray) -> NDArray:
-    """Whether a function may vanish near each point of a grid that is periodic along its first axis.
+    """Whether a function may vanish near points of a grid that is periodic along its first axis.
 
-    It may if its values at a point and the eight points around it, less or more by their range, have
-    both signs. Two zeros between neighbouring points are then not missed.
+    It may if its values at a point and the eight points around it have both signs, or are as small
+    as their range. Two zeros between neighbouring points are then not missed.
     """
     none = np.isnan(values)
     low = minimum_filter(np.where(none, np.inf, values), 3, mode=("wrap", "nearest"))

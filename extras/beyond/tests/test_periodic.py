@@ -10,7 +10,7 @@ from integrated import around, contact
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from bouncing_ball_beyond import root_time
+from bouncing_ball_beyond import root_time, search
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.chains import dense, solve_bordered
@@ -26,6 +26,7 @@ from bouncing_ball_beyond.periodic import (
     orbits,
 )
 from bouncing_ball_beyond.root_time import solve_panel
+from bouncing_ball_beyond.tables import Table
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
 ROUNDED = 1e-12
@@ -369,3 +370,27 @@ def test_a_contact_ends_where_its_root_time_repeats_it():
     times = law.contact(0.3, 2.0, share * end, 1.0).duration
     assert times[0] == pytest.approx(times[2], abs=1e-7) and times[1] > times[0]
     assert np.isnan(times[3:]).all()
+
+
+@pytest.mark.parametrize("beyond", [1e-6, 1e-8])
+def test_orbits_next_to_a_saddle_node_are_listed_once(beyond):
+    """Their phases are ±arccos(C/Λ), with C the Λ of the saddle-node, π/3 for r = 1/2."""
+    found = orbits(Rigid(0.5), amplitude=np.pi / 3 * (1 + beyond))
+    phase = np.arccos(1 / (1 + beyond))
+    # The phase of a double root loses half of its digits.
+    np.testing.assert_allclose([each.phase for each in found], [phase, -phase], atol=1e-8)
+
+
+def test_orbits_on_two_tones_return():
+    """All four, by an integrator."""
+    table = Table([(2, 0.25, 0.0), (3, 0.09, 0.4)])
+    found = orbits(hunt_crossley(5e3, 0.05), amplitude=2.2, table=table)
+    assert len(found) == 4
+    for each in found:
+        after, _ = around(each)
+        np.testing.assert_allclose(after, [each.times[0], each.speeds[0]], atol=1e-8)
+
+
+def test_a_search_is_silent_unless_a_person_looks(capfd):
+    assert list(search.shown([1, 2], "orbits")) == [1, 2]
+    assert capfd.readouterr() == ("", "")

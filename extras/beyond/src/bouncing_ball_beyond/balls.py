@@ -384,9 +384,10 @@ class Rigid(Ball):
 
     def __post_init__(self) -> None:
         if callable(self.restitution):
-            samples = np.array([0.5, 1.0, 2.0])
+            # Orbits with one impact in one period close at π to 2π.
+            samples = np.array([0.5, 1.0, 2.0, np.pi, 2 * np.pi])
             r = check_analytic("restitution: r(u)", self.restitution, samples)
-            checked("restitution at u = 0.5, 1 or 2", r, 0, 1, low_allowed=True)
+            checked("restitution at u = 0.5, 1, 2, π or 2π", r, 0, 1, low_allowed=True)
         else:
             r = checked("restitution", self.restitution, 0, 1, low_allowed=True)
             object.__setattr__(self, "restitution", r)

@@ -264,12 +264,6 @@ class OrbitEquations:
         legs, flights = self._legs(y, *self.at(values))
         return LinearizedLegs(legs[0].real, legs.imag.transpose(1, 2, 3, 0) / H, flights[0].real)
 
-    def legs(self, z: NDArray) -> NDArray:
-        """Residuals of the legs without derivatives, shape (rows, k, q)."""
-        x, ball, amplitude, table = self.split(z)
-        y = np.concatenate([x, self.following(x)[..., :2]], axis=-1)
-        return self._legs(y, ball, amplitude, table)[0]
-
     def _legs(
         self, y: NDArray, ball: Ball, amplitude: Any, table: Table
     ) -> tuple[NDArray, NDArray]:

@@ -509,17 +509,9 @@ class ForceLaw(Ball):
                 found.append((push, np.linalg.inv(matrix)))
         return found
 
-    @cached_property
-    def _free_impacts(self) -> dict[float, list]:
-        return {}
-
-    @cached_property
-    def _signatures(self) -> dict[float, NDArray]:
-        return {}
-
-    @cached_property
-    def _ranges(self) -> dict[float, NDArray | None]:
-        return {}
+    _free_impacts = cached_property(lambda self: dict[float, list]())
+    _ranges = cached_property(lambda self: dict[float, NDArray | None]())
+    _signatures = cached_property(lambda self: dict[float, NDArray]())
 
     @np.errstate(invalid="ignore")
     def computed_signature(self, u: Values) -> Signature:
@@ -543,6 +535,7 @@ class ForceLaw(Ball):
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
+    @np.errstate(divide="ignore")
     def depth(self, u: Values, load: Values = 0.0) -> Values:
         """Depth P at which the force f(p, 0) stops a ball with the speed u under a constant load.
 
@@ -553,8 +546,7 @@ class ForceLaw(Ball):
         energy = np.maximum.accumulate(energy - load * p)
         x, y = (np.log(np.maximum(each, TINY)).reshape(len(p), -1) for each in (energy, p))
         u = np.broadcast_to(u, np.broadcast_shapes(np.shape(u), p.shape[1:]))
-        with np.errstate(divide="ignore"):
-            wanted = np.log(u * u / 2).reshape(-1, x.shape[1])
+        wanted = np.log(u * u / 2).reshape(-1, x.shape[1])
         found = (np.interp(*each, right=np.nan) for each in zip(wanted.T, x.T, y.T, strict=True))
         return np.exp(np.stack([*found], axis=-1)).reshape(u.shape)[()]
 

@@ -23,8 +23,6 @@
 8. Contacts of a given length (:func:`integrate_to`). A contact that resembles a free impact of its
    speed is one panel. The linear equations of the free impact then make each sweep nearly a Newton
    step.
-9. Linear solvers. The equations of derivatives are solved directly, those of many whole contacts by
-   sweeps with the linear equations of free impacts.
 
 Arrays of contacts have the shape (rows,), values at nodes the shape (nodes, rows), and derivatives
 the shape (directions, rows).
@@ -123,11 +121,6 @@ FEW_CONTACTS = 50
 """Number of contacts up to which Newton's method solves the panels if m = 1. At half and at twice:
 the same time within 25 %."""
 
-FEW_ENTRIES = 2 * 80 * 80
-"""Number of matrix entries up to which linear equations of whole contacts are solved directly.
-Such matrices fit into a processor's cache. Larger equations are solved by sweeps.
-At half and at twice: the same time within 25 %."""
-
 TINY = 1e-300
 """Smallest divisor. It only prevents divisions by zero."""
 
@@ -189,15 +182,8 @@ class Guess(NamedTuple):
     which: NDArray
     inverses: Sequence[NDArray]
 
-    def of(self, rows: NDArray) -> "Guess":
-        """Select rows."""
-        return self._replace(push=self.push[:, rows], which=self.which[rows])
-
     def corrected(self, missing: NDArray) -> NDArray:
         """Estimate the correction of F from the residual ``missing``, shape (nodes, ..., rows)."""
-        if len(self.inverses) == 1:
-            flat = self.inverses[0] @ missing.reshape(len(missing), -1)
-            return flat.reshape(missing.shape)
         found = np.empty_like(missing)
         for k, inverse in enumerate(self.inverses):
             at = self.which == k
@@ -426,14 +412,6 @@ class LinearizedPanel(NamedTuple):
         flat = self.gauss.integrals @ values.reshape(len(values), -1)
         return self.h * flat.reshape(values.shape)
 
-    def time(self, q: NDArray) -> NDArray:
-        """Compute δt at the nodes from δq."""
-        return self.integrated(self.bend * q)
-
-    def felt(self, q: NDArray, v: NDArray, t: NDArray) -> NDArray:
-        """Return F_q δq + F_v δv + F_t δt at the nodes."""
-        return self.by_q * q + self.by_v * v + self.by_t * t
-
     def matrix(self) -> NDArray:
         """Matrix of the linear system for δF of each panel, shape (rows, nodes, nodes).
 
@@ -449,24 +427,6 @@ class LinearizedPanel(NamedTuple):
     def solved(self, known: NDArray) -> NDArray:
         """Solve directly for δF at the nodes, shape (nodes, directions, rows)."""
         return np.linalg.solve(self.matrix(), np.moveaxis(known, 2, 0)).transpose(1, 2, 0)
-
-    def swept(self, known: NDArray, guess: Guess) -> NDArray:
-        """Solve for δF by sweeps with the matrices of free impacts."""
-        push = guess.corrected(known)
-        rate = self.integrated(push)
-        change = np.zeros(rate.shape[1:])
-        for _ in range(2 * SWEEPS):
-            along = self.integrated(rate)
-            felt = known + self.felt(along, rate, self.time(along))
-            push = push + guess.corrected(felt - push)
-            before = rate
-            rate = self.integrated(push)
-            earlier = change
-            change = np.abs(rate - before).max(0)
-            to_come = change * np.fmin(change / earlier, 1.0)
-            if not np.any(to_come > CONVERGED * np.abs(rate).max(0)):
-                return push
-        return self.solved(known)
 
 
 def linearize(motion: ContactMotion, nodes: tuple, h: NDArray) -> LinearizedPanel:
@@ -594,7 +554,6 @@ def carried(
     nodes: tuple,
     by: NDArray,
     h: NDArray,
-    guess: Guess | None = None,
 ) -> NDArray:
     """Compute the derivatives of (q, v, t) at the ends of panels.
 
@@ -604,7 +563,8 @@ def carried(
     q0, v0, t0 = by
     alone = q0 + h * motion.gauss.nodes[:, np.newaxis, np.newaxis] * v0
     # A step of τ acts like a step of t. Steps of other given values act through the force.
-    known = linear.felt(alone, v0, t0 + motion.steps.get("tau", 0.0) + linear.time(alone))
+    later = t0 + motion.steps.get("tau", 0.0) + linear.integrated(linear.bend * alone)
+    known = linear.by_q * alone + linear.by_v * v0 + linear.by_t * later
     if motion.steps.keys() - {"tau", "T"}:
         q, v, t = (x[:, np.newaxis] for x in nodes)
         given = motion.stepped() | {"tau": motion.given["tau"]}
@@ -614,10 +574,7 @@ def carried(
     # Directions that only move the end of a contact have δF = 0.
     moves = known.any(axis=(0, 2))
     push = np.zeros_like(known)
-    if guess and linear.by_q.size * len(linear.by_q) > FEW_ENTRIES:
-        push[:, moves] = linear.swept(known[:, moves], guess)
-    else:
-        push[:, moves] = linear.solved(known[:, moves])
+    push[:, moves] = linear.solved(known[:, moves])
     rate = v0 + linear.integrated(push)
     pace = linear.bend * (q0 + linear.integrated(rate))
     weights = motion.gauss.weights
@@ -961,10 +918,10 @@ def integrate_to(
         ends = np.array([until, *panel.end])
         at = np.flatnonzero(good)
         todo = np.flatnonzero(~good)
-        if by.shape[1] and at.size:
-            begin = np.array([*by, 0 * by[0]])[..., at]
-            given = whole.of(at), panel.of(at).nodes, begin, until[at]
-            slopes[1:, :, at] = carried(*given, guess.of(at))
+        for here in np.array_split(at, at.size // CONTACTS_AT_ONCE + 1) if by.shape[1] else ():
+            begin = np.array([*by, 0 * by[0]])[..., here]
+            given = whole.of(here), panel.of(here).nodes, begin, until[here]
+            slopes[1:, :, here] = carried(*given)
     if todo.size:
         some = motion.of(todo), start[:, todo], by[..., todo], length[todo], period[todo]
         ends[:, todo], slopes[..., todo] = integrate_contacts(*some, until=until[todo])

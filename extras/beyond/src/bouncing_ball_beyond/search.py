@@ -144,8 +144,8 @@ def shown(parts: list, what: str) -> Any:
     from rich.progress import track
 
     console = Console(stderr=True)
-    silent = not (console.is_terminal or console.is_jupyter)
-    return track(parts, what, transient=True, console=console, disable=silent)
+    seen = console.is_terminal or console.is_jupyter
+    return track(parts, what, transient=True, console=console, disable=not seen)
 
 
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
@@ -183,11 +183,11 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
         leaves = tau[rows] + impact.duration, impact.gap, impact.speed
         gap[rows], rate[rows] = flight(time, *leaves, amplitude, table)
     change = rate + u
-    missed = gap - ball.start(u)
-    crossed = (change[:, :-1] * change[:, 1:] < 0) & _nearly_zero(missed)[:, :-1]
-    at = np.nonzero(crossed)
+    crossed = change[:, :-1] * change[:, 1:] < 0
+    at = np.nonzero(crossed & _nearly_zero(gap - ball.start(u))[:, :-1])
     share = change[:, :-1][at] / (change[:, :-1] - change[:, 1:])[at]
-    tau, u = tau[:, :-1][at], u[:, :-1][at] + share * np.diff(u, axis=1)[at]
+    tau = tau[:, :-1][at]
+    u = u[:, :-1][at] + share * np.diff(u, axis=1)[at]
     # Durations of contacts may jump between samples. Compute them again instead of interpolating.
     T = ball.first_release(tau, u, amplitude, **within)
     columns = [tau, u, T][: equations.unknowns]

@@ -25,6 +25,21 @@ OF_TSUJI = bb.orbit(TSUJI, amplitude=0.8)
 SKEWED = bb.Table([(1, 1, 0), (2, 0.3, 1)])
 RESTING = bb.orbit_with_rest(bb.Rigid(0.3), amplitude=1.1, table=SKEWED)
 DAMPED = bb.kuwabara_kono(restitution=0.2, duration=0.16, speed=3.8)
+FOUR = bb.Table([(1, 1, 0), (2, 0.3, 0.7), (3, 0.15, -1.1), (4, 0.08, 2)])
+TONES = bb.Table([(12, 1 / 144, 0), (17, 0.5 / 289, 0.4)])
+HERTZ = bb.hunt_crossley(1000.0, 0.3)
+KINKED = bb.simscape_contact(400.0, 4.0, 0.02)
+
+
+def smooth_sphere(p, v, k, c):
+    """Contact of OpenSim, with steep steps by tanh."""
+    hertz = k * (p * p + 1e-5) ** 0.75 * (1 + np.tanh(300 * p)) / 2
+    return hertz * (1 + 1.5 * c * v) * (1 + np.tanh(50 * (v + 2 / (3 * c)))) / 2
+
+
+STEEP = bb.ForceLaw(smooth_sphere, {"k": 1e4, "c": 0.1})
+OF_STEEP = bb.orbit(STEEP, amplitude=0.9)
+TWO_OWN = bb.ForceLaw(lambda p, v, k, c: k * p * (1 + c * v), {"k": [400.0, 500.0], "c": 0.1})
 OWN = bb.ForceLaw(lambda p, v, k, c: k * p + c * p * v, {"k": 400.0, "c": 8.0})
 
 CALLS = {
@@ -38,8 +53,19 @@ CALLS = {
     "all `orbits` with 3 impacts in 3 periods, r = 0.5": lambda: bb.orbits(
         bb.Rigid(0.5), impacts=3, periods=3, amplitude=1.6
     ),
+    "an n-T orbit of a steep law, four harmonics": lambda: bb.orbit(
+        STEEP, amplitude=2.5, table=FOUR
+    ),
+    "no n-T orbit of a steep law, four harmonics": lambda: missing(
+        STEEP.at(c=0.3), amplitude=0.7, table=FOUR
+    ),
+    "no n-T orbit, Hunt and Crossley's law": lambda: missing(HERTZ, amplitude=0.2),
+    "all `orbits` with one impact, two tones, Hunt and Crossley's law": lambda: bb.orbits(
+        bb.hunt_crossley(1e6, 0.8), amplitude=1.2, table=TONES
+    ),
     "a branch with its special orbits": lambda: bb.follow(START, to=1.3),
     "a branch, Tsuji's law": lambda: bb.follow(OF_TSUJI, to=1.3),
+    "a branch to both sides, a steep law": lambda: bb.follow(OF_STEEP, to=(0.05, 1.5)),
     "a branch up to the end of a rest, r = 0.3, two harmonics": lambda: bb.follow(RESTING, to=1.6),
     "200 branches side by side": lambda: bb.follow(MANY, to=1.3),
     "a `cascade` to 64 impacts": lambda: bb.cascade(DOUBLING, to=1.41, impacts=64),
@@ -66,10 +92,25 @@ CALLS = {
     "`error_thresholds` of six quantities, Tsuji's law": lambda: bb.error_thresholds(
         TSUJI, amplitude=1.0
     ),
+    "`error_thresholds` of six quantities, a law with a kink": lambda: bb.error_thresholds(
+        KINKED, amplitude=1.0
+    ),
+    "`motion_of` two chaotic balls, a law of one's own, 2,000 impacts": lambda: bb.motion_of(
+        TWO_OWN, amplitude=1.5
+    ),
     "`tsuji` with a given r and duration": lambda: bb.tsuji(
         restitution=0.7, duration=0.1, speed=3.0
     ),
 }
+
+
+def missing(*ball, **given) -> None:
+    """Search for an orbit that does not exist."""
+    try:
+        bb.orbit(*ball, **given)
+    except bb.OrbitNotFound:
+        return
+    raise AssertionError("there is an orbit")
 
 
 def seconds(call) -> float:
@@ -103,10 +144,19 @@ contacts have no closed form, so they are integrated numerically.
 {chr(10).join(rows)}
 
 The integration of contact laws uses arrays. This is efficient for many balls, but slow for a single
-ball. Nearly all of the 3 ms of one contact are calls of numpy on arrays of 20 numbers. An orbit
-that is not near the orbit of instantaneous impacts is searched from thousands of impacts, which
-takes seconds. The first motion after the installation takes a few seconds longer, because numba
-compiles the functions and stores them.
+ball. Nearly all of the 3 ms of one contact are calls of numpy on arrays of 20 numbers.
+
+An orbit that is not near the orbit of instantaneous impacts is searched from thousands of impacts:
+32 speeds at 96 phases, or at 32 phases for each wave of the highest harmonic. These contacts take
+nine tenths of the time, and a quarter of it is the waveform of the table. A terminal or a notebook
+shows how many of them are done. The search for an orbit that does not exist also finds the
+saddle-node, for its message.
+
+The signature of a law with a kink is integrated for each speed, and kept. The thresholds of such a
+law ask for the same speed at all ϖ.
+
+The first motion after the installation takes a few seconds longer, because numba compiles the
+functions and stores them.
 """,
         encoding="utf-8",
     )

@@ -48,7 +48,8 @@ SETTINGS: Look = {
     "axes.spines.top": False,
     "axes.spines.right": False,
     "legend.frameon": False,
-    "legend.handlelength": 2.4,
+    # In units of the font size: 18 points.
+    "legend.handlelength": 2.25,
     "legend.columnspacing": 1.2,
     "legend.handletextpad": 0.6,
     "lines.linewidth": 1.2,
@@ -66,11 +67,18 @@ SETTINGS: Look = {
 # Neighbours also differ in grey. Each colour has a contrast of at least 3:1 with white.
 COLOURS = ("#000000", "#0072b2", "#c77c00", "#8a2f62", "#3f96cc")
 TABLE = "#8c8c8c"
-DASHES = ("-", (0, (7, 2)), (0, (7, 1.5, 1.2, 1.5)), (0, (2, 1.2)), (0, (7, 1.2, 1.2, 1.2) * 2))
+# In points. Each pattern begins and ends with a whole dash on the 18 points of a legend's line.
+DASHES = (
+    "-",
+    (0, (5, 1.5)),
+    (0, (7, 1.5, 1, 1.5)),
+    (0, (2, 1.2)),
+    (0, (6, 1.2, 1.2, 1.2, 1.2, 1.2)),
+)
 GUIDE: Look = {"color": "#777777", "linewidth": 0.8, "linestyle": (0, (1, 1.6)), "zorder": 1}
 KINDS: Mapping[str, Any] = {
     "stable": "-",
-    "unstable": (0, (4, 2)),
+    "unstable": (0, (4.5, 2.25)),
     "inadmissible": (0, (1, 2)),
 }
 """Line style of each kind of orbit."""

@@ -15,7 +15,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from bouncing_ball import paper
@@ -55,7 +54,7 @@ from bouncing_ball.drawing import (
 CONTACT = COLOURS[1]
 """Colour of the spring-damper model where it is compared with the restitution model."""
 
-LIMIT: Look = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4, 2))}
+LIMIT: Look = {"color": "black", "linewidth": 1.0, "linestyle": (0, (4.5, 2.25))}
 """Line at the value of the restitution model, the limit of the spring-damper model."""
 
 PRINTED: Look = {"marker": "D", "fillstyle": "none", "linestyle": "none", "color": "black"}
@@ -598,10 +597,12 @@ def validity_map(data: xr.Dataset) -> Figure:
             axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
         row[0].set_ylabel(fill(paper.QUANTITIES[quantity], 14))
     for axes, n in zip(grid[0], data.n.values, strict=True):
-        axes.set(title=label(n=n), xlim=data.restitution[[0, -1]], ylim=(0, 1))
+        axes.set(xlim=data.restitution[[0, -1]], ylim=(0, 1))
+        axes.set_title(label(n=n), pad=14)
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
-        axes.xaxis.set_major_locator(MaxNLocator(5))
+        ticks = np.linspace(*data.restitution.values[[0, -1]], 19)[[1, 9, 17]]
+        axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
@@ -612,7 +613,7 @@ def validity_map(data: xr.Dataset) -> Figure:
     )
     advised = rf"$\varpi={latex_number(given['advised'])}$"
     entries: dict[str, Patch | Line2D] = {
-        f"{advised} is not enough: on this share of the orbits": Patch(facecolor=CONTACT),
+        f"{advised} is not enough: on the share above the panel": Patch(facecolor=CONTACT),
         f"the contact of {advised} has doubled the period": Patch(**DOUBLED),
         "curves of the paper": sample(**CURVES),
     }
@@ -657,9 +658,7 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], **CROSS)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
-    # On a fill of the same colour the number needs a ground of its own, behind the curves' circles.
-    share |= {"bbox": {"facecolor": "white", "edgecolor": "none", "pad": 1.0}, "zorder": 1.9}
-    axes.text(0.44, 0.4, share_text(float(data.failing_mean)), **share)
+    axes.text(0.5, 1.04, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
 
 

@@ -601,7 +601,8 @@ def validity_map(data: xr.Dataset) -> Figure:
         axes.set_title(label(n=n), pad=14)
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
-        ticks = np.linspace(*data.restitution.values[[0, -1]], 19)[[1, 9, 17]]
+        r = data.restitution.values
+        ticks = np.linspace(r[0], r[-1], 19)[[1, 9, 17]]
         axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")

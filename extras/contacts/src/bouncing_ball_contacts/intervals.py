@@ -40,8 +40,9 @@ i, their mean is::
 so means of different groups are independent, and their variances are equal for equal nⱼ. The fit
 above is made to the means, whose scatter s contains bⱼ: impacts of one group count as one impact
 (S. G. Donald, K. Lang, Review of Economics and Statistics 89 (2007) 221; J. M. Wooldridge, American
-Economic Review 93 (2003) 133). For a constant r and no prior of s that is Student's t with one
-degree of freedom less than groups. At least three groups are needed (`group_means`).
+Economic Review 93 (2003) 133). The prior of their scatter does not fall below 0.5, because what a
+group shares has no usual size. For a constant r that is nearly Student's t with one degree of
+freedom less than groups. At least three groups are needed (`group_means`).
 
 The speed of an impact that follows another one is larger for a larger r, so bⱼ would make a slope
 of the means ȳⱼ over x̄ⱼ, which hides it. Such means are taken at one speed: only the prior of c then
@@ -75,10 +76,11 @@ KINDS = {
     "coefficients": ("", 1.1e-2, (0.0, 1.0)),
 }
 # The priors: the width of the logarithm of errors, the middle of scatter and the width of its
-# logarithm, and the width of c.
+# logarithm, and the width of c. What a group shares has no usual size: its middle is the largest
+# scatter that is tried, so that no size is less probable than a smaller one.
 _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
-_SCATTER_OF_GROUPS = 0.04
+_SCATTER_OF_GROUPS = 0.5
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.

@@ -116,7 +116,8 @@ def origins(source: str, datasets: Collection[str]) -> list[Origin]:
             each = together(f"{part['each']} in {text}", used)
             known |= dict.fromkeys(WORD.findall(part["each"]), each)
         elif part["macro"]:
-            macro, outside = part["macro"], len(found)
+            macro = part["macro"]
+            outside = len(found)
             known |= dict.fromkeys(WORD.findall(part["arguments"]), Origin("", {}, []))
         else:
             known[macro] = together("", {each.expression: each for each in found[outside:]})

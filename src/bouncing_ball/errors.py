@@ -83,7 +83,7 @@ def relative_error(value: Numbers, reference: Numbers) -> NDArray:
     return np.abs(np.asarray(value) - reference) / np.abs(reference)
 
 
-def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
+def threshold(ratios: NDArray, error: Error, tolerance: Numbers) -> Threshold:
     """Find the frequency ratios above which errors stay within a tolerance.
 
     The search starts from the last ratio of the scan whose error exceeds the tolerance. The
@@ -96,39 +96,40 @@ def threshold(ratios: NDArray, error: Error, tolerance: float) -> Threshold:
         Frequency ratios of the scan, in ascending order.
     error : Error
         Errors at these ratios, of one or several curves.
-    tolerance : float
-        Maximum relative error.
+    tolerance : float or ndarray, shape (tolerances,)
+        Maximum relative error. Of several, each curve has a threshold for each tolerance, along
+        the last axis of the results.
 
     >>> grid = np.geomspace(1, 1000, 7)
     >>> error = Error(1 / grid, lambda ratio, below, curve: 1 / ratio)
-    >>> found = threshold(grid, error, 0.02)
-    >>> round(float(found.ratio), 9), str(found.status)
-    (50.0, 'found')
+    >>> found = threshold(grid, error, [0.02, 2.0])
+    >>> found.ratio.round(9).tolist(), found.status.tolist()
+    ([50.0, nan], ['found', 'within'])
     """
-    values = error.values.reshape(-1, ratios.size)
-    outside = ~(values <= tolerance)
-    last = ratios.size - 1 - np.argmax(outside[:, ::-1], axis=1)
-    curves = np.arange(len(values))
-    is_within = ~outside.any(axis=1)
+    values = error.values.reshape(-1, 1, ratios.size)
+    allowed = np.atleast_1d(tolerance)
+    outside = ~(values <= allowed[:, np.newaxis])
+    last = ratios.size - 1 - np.argmax(outside[..., ::-1], axis=-1)
+    is_within = ~outside.any(axis=-1)
     is_last = last == ratios.size - 1
-    is_orbit = np.isfinite(values[curves, last])
+    is_orbit = np.isfinite(np.take_along_axis(values, last[..., np.newaxis], axis=-1)[..., 0])
     is_crossed = ~is_within & ~is_last & is_orbit
-    curve = curves[is_crossed]
+    curve, column = np.nonzero(is_crossed)
     below = last[is_crossed]
     logarithms = np.log(ratios)
-    ratio = np.full(len(values), np.nan)
+    ratio = np.full(last.shape, np.nan)
     if curve.size:
         found = find_root(
-            lambda log, below, curve: error.between(np.exp(log), below, curve) - tolerance,
+            lambda log, below, curve, most: error.between(np.exp(log), below, curve) - most,
             (logarithms[below], logarithms[below + 1]),
-            args=(below, curve),
+            args=(below, curve, allowed[column]),
             tolerances={"xatol": 1e-14, "xrtol": 0.0},
         )
-        ratio[curve] = np.where(found.success, np.exp(found.x), np.nan)
+        ratio[is_crossed] = np.where(found.success, np.exp(found.x), np.nan)
     cases = [is_within, ~is_orbit & is_last, ~is_orbit, np.isfinite(ratio)]
     status = np.select(cases, ["within", "no orbit", "first orbit", "found"], "exceeded")
-    shape = error.values.shape[:-1]
-    # Of a single curve, the results are numbers.
+    shape = error.values.shape[:-1] + np.shape(tolerance)
+    # Of a single curve and tolerance, the results are numbers.
     return Threshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
 
 

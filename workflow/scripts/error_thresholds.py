@@ -49,7 +49,7 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
         release,
     )
     tolerances = parameters["tolerances"]
-    found = [[threshold(ratios, each, value) for value in tolerances] for each in known.values()]
+    found = [threshold(ratios, each, tolerances) for each in known.values()]
     shape = ("quantity", "tolerance")
     return xr.Dataset(
         {
@@ -61,8 +61,8 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
                 ("quantity", "frequency_ratio"),
                 [np.broadcast_to(each.admissible, ratios.shape) for each in known.values()],
             ),
-            "error_threshold": (shape, [[each.ratio for each in row] for row in found]),
-            "threshold_status": (shape, [[each.status for each in row] for row in found]),
+            "error_threshold": (shape, [each.ratio for each in found]),
+            "threshold_status": (shape, [each.status for each in found]),
         },
         {"quantity": list(known), "frequency_ratio": ratios, "tolerance": tolerances},
     )

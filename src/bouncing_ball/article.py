@@ -94,8 +94,9 @@ def written(name: str, datasets: Datasets) -> str:
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
-        summary=tables.markdown(tables.summary(datasets["claims"])),
-        tables={key: tables.markdown(rows(datasets[key])) for key, rows in tables.TABLES.items()},
+        summary=tables.summary,
+        tables=tables.TABLES,
+        markdown=tables.markdown,
     )
 
 

@@ -21,7 +21,7 @@ PART = re.compile(
 )
 """A part of a template that prints an expression, or that defines a name."""
 
-WORD = re.compile(r'"[^"]*"|(?<![\w.])(?<!\| )(?:given\.|tables\.)?(\w+)\b(?!=[^=])')
+WORD = re.compile(r'"[^"]*"|(?<![\w.])(?<!\| )(?:given\.)?(\w+)\b(?!=[^=])')
 """A name in an expression, or a text in quotation marks, which has no group. Attributes, filters
 and keywords do not match."""
 
@@ -34,7 +34,6 @@ BEHIND = {
     "failing": ("validity_map",),
     "judged": ("claims",),
     "claim": ("claims",),
-    "summary": ("claims",),
     "other_contacts": ("hypotheses",),
     "others_with_82": ("hypotheses",),
     "stiff_errors": ("fig05", "fig06", "fig10"),

@@ -18,7 +18,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
-from tests.conftest import Named
+from tests.reference import Named
 
 from bouncing_ball import compare, datasets, provenance, variables
 from bouncing_ball.drawing import save_picture
@@ -61,8 +61,8 @@ def make(name, data, folder, form="{:.3g}"):
     save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
 
 
-@pytest.fixture(autouse=True)
-def git_of_its_own(monkeypatch):
+@pytest.fixture(autouse=True, scope="module")
+def git_of_its_own():
     """Git without the variables of a hook, and without the configuration of a user or a machine.
 
     A hook exports the index and the repository of its commit. Tests that used them would commit
@@ -70,29 +70,43 @@ def git_of_its_own(monkeypatch):
     """
     asked = ["git", "rev-parse", "--local-env-vars"]
     names = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.split()
-    for name in [*names, "GIT_DEFAULT_HASH", "GIT_TEMPLATE_DIR"]:
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
-    monkeypatch.setenv("GIT_CONFIG_NOSYSTEM", "1")
+    with pytest.MonkeyPatch.context() as patch:
+        for name in [*names, "GIT_DEFAULT_HASH", "GIT_TEMPLATE_DIR"]:
+            patch.delenv(name, raising=False)
+        patch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
+        patch.setenv("GIT_CONFIG_NOSYSTEM", "1")
+        yield
 
 
-@pytest.fixture
-def project(tmp_path, monkeypatch):
-    """A checkout whose reference is accepted and committed, with results that agree."""
-    top = tmp_path / "checkout"
+def project_in(top, patch):
     for module in (provenance, compare):
-        monkeypatch.setattr(module, "CHECKOUT", top)
+        patch.setattr(module, "CHECKOUT", top)
+    return compare.Project(top, ("paper.md", "supplement.md"), make, ("src", "config"))
+
+
+@pytest.fixture(scope="module")
+def accepted(git_of_its_own, tmp_path_factory):
+    """A checkout whose reference is accepted and committed, with results that agree."""
+    top = tmp_path_factory.mktemp("accepted") / "checkout"
     for file in FILES:
         (top / file).parent.mkdir(parents=True, exist_ok=True)
         (top / file).write_text(f"{json.dumps(CONFIG)}\n", "utf-8")
-    made = compare.Project(top, ("paper.md", "supplement.md"), make, ("src", "config"))
-    run(made)
-    git(top, "init", "-qb", "main")
-    (top / ".gitignore").write_text("results\n", "utf-8")
-    commit(top)
-    assert len(compare.accept(made, top / "results")) == 8
-    commit(top)
-    return made
+    with pytest.MonkeyPatch.context() as patch:
+        project = project_in(top, patch)
+        run(project)
+        git(top, "init", "-qb", "main")
+        (top / ".gitignore").write_text("results\n", "utf-8")
+        commit(top)
+        assert len(compare.accept(project, top / "results")) == 8
+        commit(top)
+    return top
+
+
+@pytest.fixture
+def project(accepted, tmp_path, monkeypatch):
+    """A copy for one test."""
+    top = shutil.copytree(accepted, tmp_path / "checkout")
+    return project_in(top, monkeypatch)
 
 
 def git(top, *arguments):
@@ -149,23 +163,21 @@ def lines(project, **given):
     return report(project, **given).lines()
 
 
-@pytest.mark.parametrize("linked", [False, True])
-def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp_path, linked):
-    """In a checkout git exports GIT_INDEX_FILE to its hooks, in a linked worktree GIT_DIR, too."""
-    top = tmp_path / "of a user"
-    top.mkdir()
-    git(top, "init", "-qb", "main")
+def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp_path):
+    """Git exports GIT_INDEX_FILE to its hooks, and in a linked worktree also GIT_DIR."""
+    first = tmp_path / "of a user"
+    first.mkdir()
+    git(first, "init", "-qb", "main")
     for name in ("first", "second"):
-        (top / name).write_text("a line\n", "utf-8")
-    commit(top)
-    hook = top / ".git/hooks/pre-commit"
+        (first / name).write_text("a line\n", "utf-8")
+    commit(first)
+    hook = first / ".git/hooks/pre-commit"
     test = f"'{sys.executable}' -m pytest -q --noconftest '{__file__}' -k test_equal_results"
     # Once: tests that commit into this repository would start its hook again.
     hook.write_text(f'#!/bin/sh\n[ "$HOOK" ] || HOOK=1 exec {test}\n', "utf-8")
     hook.chmod(0o755)
-    if linked:
-        git(top, "worktree", "add", "-qb", "branch", str(tmp_path / "linked"))
-        top = tmp_path / "linked"
+    top = tmp_path / "linked"
+    git(first, "worktree", "add", "-qb", "branch", str(top))
     (top / "first").write_text("another line\n", "utf-8")
     git(top, "commit", "-qam", "another commit")
     told = ["git", "-C", str(top), "log", "--name-only", "--format=%s", "-2"]

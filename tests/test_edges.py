@@ -10,13 +10,11 @@ import copy
 import inspect
 import json
 import re
-import warnings
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 import yaml
-from matplotlib.text import Text
 from tests import independent
 from tests.reference import CONFIG, ENTRIES, ROOT, reference, stage
 
@@ -29,7 +27,7 @@ from bouncing_ball.figures import Empty
 from bouncing_ball.verdicts import VERDICTS, answer
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
-STAGES = [name for name, each in CONFIG.items() if isinstance(each, dict)]
+STAGES = [name for name in CONFIG if (ROOT / f"workflow/scripts/{name}.py").exists()]
 COARSE = {"samples": 9, "points": 21, "places": 5, "impacts": 256}
 """Sizes of grids; their upper bounds are not tried, because they take minutes."""
 
@@ -50,7 +48,7 @@ def resolved(schema: dict) -> dict:
     return (resolved(SCHEMA["$defs"][name]) | schema) if name else schema
 
 
-def others(schema: dict, value, key: str = "") -> Iterator:
+def others(schema: dict, value) -> Iterator:
     """Other values of a key, at the edges of its schema."""
     schema = resolved(schema)
     if isinstance(value, dict) and "min" in value:
@@ -60,39 +58,65 @@ def others(schema: dict, value, key: str = "") -> Iterator:
                 yield value | {end: bound}
         yield value | {"min": value["max"], "max": value["min"]}
         yield value | {"min": value["max"]}
-        yield value | {"samples": 2}
     elif isinstance(value, list):
-        yield value[:1]
-        yield value[::-1]
         items = resolved(schema["items"])
         if "type" in items and items["type"] != "object":
             for bound in others(items, value[0]):
                 yield [bound]
     elif isinstance(value, int | float) and not isinstance(value, bool):
-        whole = schema["type"] == "integer"
         for name, step in (("minimum", 0), ("exclusiveMinimum", 1e-3)):
             if name in schema:
                 yield schema[name] + step
-        if key not in COARSE:
-            for name, step in (("maximum", 0), ("exclusiveMaximum", 1e-3)):
-                if name in schema:
-                    yield schema[name] - step
-            if not whole:
-                yield value / 7
+        for name, step in (("maximum", 0), ("exclusiveMaximum", 1e-3)):
+            if name in schema:
+                yield schema[name] - step
+
+
+def smallest(schema: dict, value):
+    """The smallest grid that a schema allows."""
+    return value | {"samples": 2} if isinstance(value, dict) else resolved(schema)["minimum"]
+
+
+def edges_of(schemas: dict, entry: dict) -> Iterator[dict]:
+    """Changed parameters of an entry: its lists, its grids, and each other key by itself.
+
+    With another key, a list of numbers has a single one, because a row is computed like the others.
+    """
+    lists = {key: entry[key] for key in schemas if isinstance(entry[key], list)}
+    yield {key: each[:1] for key, each in lists.items()}
+    yield {key: each[::-1] for key, each in lists.items()}
+    single = {key: each[:1] for key, each in lists.items() if not isinstance(each[0], str | dict)}
+    sizes = {*COARSE} & schemas.keys()
+    ranges = {key for key in schemas if isinstance(entry[key], dict) and "samples" in entry[key]}
+    yield {key: smallest(schemas[key], entry[key]) for key in sorted(sizes | ranges)}
+    for key in [each for each in schemas if each not in sizes]:
+        for value in others(schemas[key], entry[key]):
+            yield single | {key: value}
+
+
+def computed_entries() -> list[tuple[str, str]]:
+    """Section and name of the first entry of each function of the stages."""
+    first = {}
+    for section in STAGES:
+        for name, function in stage(section).STAGE.items():
+            first.setdefault(function, (section, name))
+    return list(first.values())
 
 
 def edges() -> Iterator[tuple[str, str, dict]]:
     """Stage, name and the changed parameters of each case."""
-    for section in STAGES:
-        for name, entry in CONFIGURATION[section].items():
-            # A new figure may have any parameters.
-            # Nor need a new stage say what it contains.
-            known = SCHEMA["properties"][section].get("properties", {}).get(name, {})
-            properties = resolved(known) if name != "title" else {}
-            for key, schema in properties.get("properties", {}).items():
-                for value in others(schema, entry[key], key) if key in entry else ():
-                    if value != entry[key]:
-                        yield section, name, {key: value}
+    for section, name in computed_entries():
+        entry = CONFIGURATION[section][name]
+        # A new figure may have any parameters.
+        # Nor need a new stage say what it contains.
+        known = SCHEMA["properties"][section].get("properties", {}).get(name, {})
+        properties = resolved(known).get("properties", {})
+        schemas = {key: schema for key, schema in properties.items() if key in entry}
+        tried = [entry]
+        for changes in edges_of(schemas, entry):
+            if entry | changes not in tried:
+                tried.append(entry | changes)
+                yield section, name, changes
 
 
 CASES = [
@@ -120,7 +144,11 @@ CASES = [
     ("permanent_contact", "fig16", {"restitution": 0.94, "tolerance": 0.5}),
     ("permanent_contact", "fig16", {"tolerance": 0.7301}),
     ("apparent_restitution", "fig10", {"restitution": 0.1, "amplitude": [5.0, 6.0]}),
-    ("continuation", "fig08", {"restitution": 0.05, "amplitude_max": 100.0, "points": 61}),
+    (
+        "continuation",
+        "fig08",
+        {"restitution": 0.05, "amplitude_max": 100.0, "points": 61, "frequency_ratio": [1e4]},
+    ),
     ("continuation", "table1", {"frequency_ratio": [50.0, 30.0]}),
     ("continuation", "table1", {"n": [1], "restitution": 0.65, "frequency_ratio": [10.0]}),
     ("continuation", "table1", {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}),
@@ -147,14 +175,28 @@ CASES = [
     ),
     ("error_thresholds", "fig14", {"n": 5, "amplitude": 3.5}),
     ("validity", "validity_map", {"restitution": {"min": 0.95, "max": 0.05, "samples": 31}}),
-    ("validity", "validity_map", {"advised": 3.0}),
-    ("validity", "validity_map", {"advised": 5.0}),
-    ("validity", "validity_map", {"tolerance": 0.005}),
-    ("validity", "validity_map", {"restitution": {"min": 0.85, "max": 0.95, "samples": 9}}),
-    ("validity", "validity_map", {"restitution": {"min": 0.05, "max": 0.35, "samples": 9}}),
-    ("validity", "validity_map", {"n": [2]}),
-    ("validity", "validity_map", {"frequency_ratio": {"min": 316.0, "max": 1760.0, "samples": 9}}),
-    ("validity", "validity_map", {"curves": [{"n": 2, "restitution": 0.36, "amplitude": 9.0}]}),
+    ("validity", "validity_map", {"n": [1, 2], "advised": 5.0}),
+    ("validity", "validity_map", {"n": [2], "tolerance": 0.005}),
+    (
+        "validity",
+        "validity_map",
+        {"n": [1], "restitution": {"min": 0.85, "max": 0.95, "samples": 9}},
+    ),
+    (
+        "validity",
+        "validity_map",
+        {"n": [1], "restitution": {"min": 0.05, "max": 0.35, "samples": 9}},
+    ),
+    (
+        "validity",
+        "validity_map",
+        {"n": [1], "frequency_ratio": {"min": 316.0, "max": 1760.0, "samples": 9}},
+    ),
+    (
+        "validity",
+        "validity_map",
+        {"n": [2], "curves": [{"n": 2, "restitution": 0.36, "amplitude": 9.0}]},
+    ),
     ("time_histories", "fig07", {"restitution": 0.1, "amplitude": 2.6, "frequency_ratio": 0.5}),
     ("time_histories", "fig12", {"restitution": 0.999, "n": 5, "amplitude": 0.02}),
     ("time_histories", "fig12", {"frequency_ratio": [0.3, 20.0]}),
@@ -180,8 +222,7 @@ def made(section: str, name: str, config: dict):
     given = {key: config[key] for key in ("release", "largest_step") if key in known}
     about = ("title", "caption", "table")
     given |= {key: each for key, each in config[section][name].items() if key not in about}
-    with warnings.catch_warnings(action="error"):
-        data = computed(function, given)
+    data = computed(function, given)
     saved = {key: reference()[name].attrs[key] for key in ("title", "code")}
     return data.assign_attrs(saved)
 
@@ -190,9 +231,12 @@ EVERY = [*CLAIMS, *table1_ends()]
 
 
 def words_of(figure) -> str:
-    """All texts of a figure."""
-    parts = [*figure.axes, *figure.legends]
-    return " ".join(text.get_text() for part in parts for text in part.findobj(Text))
+    """Titles, names of axes, notes and legends of a figure."""
+    legends = [*figure.legends, *filter(None, (axes.get_legend() for axes in figure.axes))]
+    texts = [text for legend in legends for text in legend.get_texts()]
+    for axes in figure.axes:
+        texts += [axes.title, axes.xaxis.label, axes.yaxis.label, *axes.texts]
+    return " ".join(text.get_text() for text in texts)
 
 
 def assert_picture_is_true(name: str, data, of_paper: bool) -> None:
@@ -201,7 +245,6 @@ def assert_picture_is_true(name: str, data, of_paper: bool) -> None:
     An axis with numbers has two at least, and a line of the legend is drawn.
     """
     figure = figures.draw(name, data)
-    figure.draw_without_rendering()
     for axes in figure.axes:
         points = [np.isfinite(np.asarray(line.get_ydata(), float)).any() for line in axes.lines]
         assert any(points) or axes.texts or axes.patches, name
@@ -273,7 +316,6 @@ def assert_texts_are_true(changed: dict) -> None:
                 unasked.add(found["reason"])
     if unasked or paper.differences(datasets):
         return
-    datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(article, "fixed", finite)
         patch.setitem(article.environment(article.TEMPLATES).filters, "fixed", finite)
@@ -311,14 +353,13 @@ def test_a_configuration_at_an_edge_gives_true_results_or_one_line(section, name
 def test_a_setting_of_all_stages_gives_true_pages(key, value):
     config = CONFIGURATION | {key: value}
     found = {}
-    for section in STAGES:
-        for name in CONFIGURATION[section].keys() & reference().keys():
-            if key in inspect.signature(stage(section).STAGE[name]).parameters:
-                found[name] = made(section, name, config)
-                if name in figures.PLOTS:
-                    assert_picture_is_true(name, found[name], key != "release")
-                assert_numbers_are_true(name, found[name])
-    assert len(found) >= 3
+    for section, name in computed_entries():
+        if name in reference() and key in inspect.signature(stage(section).STAGE[name]).parameters:
+            found[name] = made(section, name, config)
+            if name in figures.PLOTS:
+                assert_picture_is_true(name, found[name], key != "release")
+            assert_numbers_are_true(name, found[name])
+    assert len(found) >= 2
     assert_texts_are_true(found)
     datasets = reference() | found
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)

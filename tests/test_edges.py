@@ -11,6 +11,7 @@ import inspect
 import json
 import re
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 import pytest
@@ -295,6 +296,12 @@ def finite(value, digits, shift=0, fixed=article.fixed) -> str:
     return fixed(value, digits, shift)
 
 
+@cache
+def named_in(text: str) -> set[str]:
+    """The datasets that a text names."""
+    return {name for each in article.origins_of(text, reference()) for name in each.datasets}
+
+
 def assert_texts_are_true(changed: dict) -> None:
     """A claim is judged if its datasets have the paper's parameters, and the article of the paper
     is written, with all its numbers, if all have. The other datasets are those of the reference.
@@ -320,7 +327,8 @@ def assert_texts_are_true(changed: dict) -> None:
         patch.setattr(article, "fixed", finite)
         patch.setitem(article.environment(article.TEMPLATES).filters, "fixed", finite)
         for name in ("paper", "supplement"):
-            assert "another run" not in article.written(name, datasets)
+            if changed.keys() & named_in(name):
+                assert "another run" not in article.written(name, datasets)
 
 
 def assert_edge(section: str, name: str, changes: dict) -> None:

@@ -649,7 +649,10 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     A cross marks an orbit for which no sufficient ϖ is known.
     """
     if (data.doubled_share > 0).any():
-        axes.fill_between(data.restitution, 1 - data.doubled_share, 1, **DOUBLED)
+        first = 1 - data.doubled_share
+        axes.fill_between(data.restitution, first, 1, **DOUBLED)
+        # Over a dark region its border remains visible.
+        axes.plot(data.restitution, first, color=DOUBLED["edgecolor"], linewidth=0.8)
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
     if (excess > 0).any():

@@ -210,7 +210,8 @@ def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArra
     guess = stiff_guess(stiff, x, impact_height)
     path = [guess]
     for node in nodes:
-        path.append(_reached(_at_ratio(family, node), guess, condition))
+        # A node only predicts the next orbits. After a step of 1e-6, its error is about 1e-12.
+        path.append(_reached(_at_ratio(family, node), guess, condition, tolerance=1e-6))
         guess = path[-1] if len(path) == 2 else 2 * path[-1] - path[-2]
     orbits = np.stack(path[1:])
     # Index of the last node before each ratio. Extrapolate from this node and its predecessor.
@@ -221,7 +222,9 @@ def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArra
     return _reached(_at_ratio(family, ratios), np.moveaxis(guess, 0, -1), condition)
 
 
-def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
+def _reached(
+    family: Family, guess: NDArray, condition: Condition, tolerance: float = 1e-11
+) -> NDArray:
     """Orbits that a walk has predicted, corrected; NaN if they no longer exist.
 
     An orbit no longer exists if one of the following is true:
@@ -231,7 +234,7 @@ def _reached(family: Family, guess: NDArray, condition: Condition) -> NDArray:
        more.
     3. The solution does not have the signs of an orbit (`Family.possible`).
     """
-    y = correct(family, guess, condition)
+    y = correct(family, guess, condition, tolerance=tolerance)
     with np.errstate(invalid="ignore"):
         near = (np.abs(y - guess)[[1, 3]] < 0.5).all(axis=0)
         return np.where(near & family.possible(y), y, np.nan)

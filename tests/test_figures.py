@@ -501,6 +501,18 @@ def test_a_curve_whose_first_part_is_missing_has_the_style_of_its_legend():
     assert all(np.isfinite(line.get_ydata()).all() for line in named)
 
 
+def test_the_inadmissible_part_of_a_curve_is_in_the_legend():
+    (data,) = data_of("fig05")
+    part = data.assign(admissible=data.admissible & (data.frequency_ratio > 5))
+    figure = laid_out("fig05", part)
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert entries.count("inadmissible") == 1 and entries[1] == "inadmissible"
+    (data,) = data_of("fig13")
+    assert "inadmissible" not in words(laid_out("fig13", data))
+    part = data.assign(admissible=data.admissible & (data.frequency_ratio > 5))
+    assert "inadmissible" in words(laid_out("fig13", part))
+
+
 def test_many_branches():
     (data,) = data_of("fig08")
     more = [data.assign_coords(frequency_ratio=data.frequency_ratio + k) for k in range(3)]

@@ -261,15 +261,22 @@ def pieces(kinds: np.ndarray) -> list[slice]:
 def curve(
     axes: Axes, x: xr.DataArray, y: xr.DataArray, admissible: xr.DataArray, **look: Any
 ) -> None:
-    """Draw a line with dotted inadmissible parts. The first admissible part has the label, or the
-    first of all if none is admissible.
+    """Draw a line with dotted inadmissible parts.
+
+    The first admissible part has the label, or the first of all if none is admissible. Of the
+    others, the first dotted one is labelled as inadmissible.
     """
     inadmissible = look | {"linestyle": KINDS["inadmissible"], "linewidth": 0.9}
-    parts = pieces(admissible.values)
-    named = next((part for part in parts if admissible.values[part.start]), parts[0])
+    kinds = admissible.values
+    # In the legend, the inadmissible part comes after the admissible one.
+    parts = sorted(pieces(kinds), key=lambda part: not kinds[part.start])
+    dotted = ~kinds & np.isfinite(y.values)
+    others = [part for part in parts[1:] if dotted[part].any() and not kinds[part.start]]
     for part in parts:
-        chosen = look if admissible.values[part.start] else inadmissible
-        label_of_part = chosen.get("label") if part == named else None
+        chosen = look if kinds[part.start] else inadmissible
+        label_of_part = look.get("label") if part == parts[0] else None
+        if part in others[:1]:
+            label_of_part = "inadmissible"
         axes.plot(x.values[part], y.values[part], **(chosen | {"label": label_of_part}))
 
 

@@ -23,6 +23,7 @@ from bouncing_ball.drawing import (
     COLOURS,
     DASHES,
     GUIDE,
+    KINDS,
     NARROW,
     POINTS,
     TABLE,
@@ -242,6 +243,8 @@ def fig13(data: xr.Dataset) -> Figure:
         square: Look = {"marker": "s", "linestyle": "none"}
         pairs = zip(names, shades, strict=True)
         entries |= {name: sample(color=colour, **square) for name, colour in pairs}
+    if (data.phase.notnull() & ~data.admissible).any():
+        entries["inadmissible"] = sample(linestyle=KINDS["inadmissible"])
     legend_below(figure, entries, columns=1)
     figure.draw_without_rendering()
     name_ratios(axes, data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values)))

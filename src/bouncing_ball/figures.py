@@ -6,7 +6,7 @@ module `drawing` explains line styles, widths and marks.
 """
 
 from collections.abc import Callable, Mapping
-from itertools import cycle
+from itertools import count, cycle
 from textwrap import fill
 
 import numpy as np
@@ -342,7 +342,9 @@ def fig07(data: xr.Dataset) -> Figure:
         axes.axvline(instant, **GUIDE)
         axes.plot(instant, height, "o", color="black", markersize=3.5)
         above: Look = {"xycoords": axes.get_xaxis_transform(), "textcoords": "offset points"}
-        axes.annotate(name, (instant, 1.0), (0, 3), ha=side, va="bottom", **above)
+        # The first two names are beside each other if the contact is short.
+        aside = {"right": -2, "center": 0, "left": 2}[side]
+        axes.annotate(name, (instant, 1.0), (aside, 3), ha=side, va="bottom", **above)
         draw_velocity(axes, (instant, height), velocity, 0.12 * end, symbol)
     axes.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"), pad=16)
     axes.set(xlabel=TIME, ylabel="height $z$, $w$", xlim=(-0.18 * end, 1.12 * end))
@@ -604,9 +606,8 @@ def validity_map(data: xr.Dataset) -> Figure:
         axes.set_title(label(n=n), pad=14)
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
-        r = data.restitution.values
-        ticks = np.linspace(r[0], r[-1], 19)[[1, 9, 17]]
-        axes.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
+        ticks = round_ticks(*data.restitution.values[[0, -1]])
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
@@ -631,6 +632,21 @@ def validity_map(data: xr.Dataset) -> Figure:
         entries[rf"no $\varpi$ up to ${largest}$ is known to be enough"] = sample(**CROSS)
     legend_below(figure, entries, columns=1)
     return figure
+
+
+def round_ticks(low: float, high: float) -> NDArray:
+    """Return three ticks near the ends and the middle of a range, with as few digits as possible.
+
+    >>> round_ticks(0.05, 0.95).tolist(), round_ticks(0.6, 0.62).tolist()
+    ([0.1, 0.5, 0.9], [0.6, 0.61, 0.62])
+    """
+    near = low + (high - low) * np.array([1, 9, 17]) / 18
+    rounded = (near.round(digits) for digits in count(1))
+    return next(
+        ticks
+        for ticks in rounded
+        if np.unique(ticks).size == near.size and low <= ticks[0] and ticks[-1] <= high
+    )
 
 
 def stretched(position: NDArray) -> NDArray:

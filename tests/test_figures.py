@@ -455,6 +455,17 @@ def test_velocities_of_the_cycle_are_tangents():
     assert velocities == pytest.approx([float(velocity) for velocity in expected])
 
 
+def test_contacts_begin_and_end_on_the_ball():
+    """With the force release it leaves below the level of the table."""
+    (data,) = data_of("fig07")
+    lower = data.assign(ball=data.ball - 0.5)
+    (axes,) = laid_out("fig07", lower).axes
+    dots = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert len(dots) == 3
+    for instant, height in dots:
+        assert height == pytest.approx(np.interp(instant, data.time / (2 * np.pi), lower.ball))
+
+
 def test_a_legend_that_is_too_wide_has_fewer_columns():
     with drawing.style():
         figure, _ = drawing.panels(2.0)

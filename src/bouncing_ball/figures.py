@@ -331,7 +331,8 @@ def fig07(data: xr.Dataset) -> Figure:
     release = float(data.contact_duration) / PERIOD
     axes.axvspan(0.0, release, color="0.9", linewidth=0, label="contact")
     landing = float(data.ball[0])
-    release_height = float(np.interp(release, time, data.table))
+    # With the force release, the ball leaves below the level of the table.
+    release_height = float(np.interp(release, time, data.ball))
     before = float(data.impact_velocity) * PERIOD
     after = float(data.bounce_velocity) * PERIOD
     for instant, height, velocity, name, side, symbol in (

@@ -181,8 +181,16 @@ def others(name: str, given, needed) -> Iterator[str]:
 
 
 def words(value: Any) -> str:
-    """Print a parameter, without brackets, which would be those of a citation."""
-    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    """Print a parameter, without square brackets, which would be those of a citation.
+
+    >>> words([{"n": 1, "amplitude": 0.8}])
+    '(amplitude 0.8, n 1)'
+    """
+    if isinstance(value, list):
+        return ", ".join(map(words, value))
+    if isinstance(value, Mapping):
+        return f"({', '.join(f'{key} {each}' for key, each in sorted(value.items()))})"
+    return str(value)
 
 
 def differences(datasets: Datasets) -> list[str]:

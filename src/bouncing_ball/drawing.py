@@ -296,7 +296,7 @@ def spring_damper_branch(data: xr.Dataset) -> xr.Dataset:
 
 
 def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Dataset:
-    """Branch of the restitution model. The phase φ increases along it.
+    """Branch of the restitution model. The impact height Λ sin φ increases along it.
 
     The impact is instantaneous, so the release phase equals the phase φ. `bifurcations` contains Λ
     and φ of the saddle-node, of the period doubling, and optionally of the grazing orbit. The
@@ -308,17 +308,22 @@ def restitution_branch(curve: xr.Dataset, bifurcations: xr.Dataset) -> xr.Datase
         "grazing": "grazing",
     }
     known = {kind: name for kind, name in kinds.items() if f"{name}_phase" in bifurcations}
-    phases = [float(bifurcations[f"{name}_phase"]) for name in known.values()]
-    amplitudes = [float(bifurcations[f"{name}_amplitude"]) for name in known.values()]
+    amplitudes = np.array([bifurcations[f"{name}_amplitude"].item() for name in known.values()])
+    phases = np.array([bifurcations[f"{name}_phase"].item() for name in known.values()])
+    # Bifurcations beyond the range of Λ are not shown.
+    largest = curve.amplitude.max().item()
+    amplitudes[~(amplitudes <= largest)] = np.nan
+    phases[np.isnan(amplitudes)] = np.nan
     # All orbits satisfy Λ cos φ = Λ_SN (Eqs. 6, 7). Eq. 8 gives Λ² = 1 + Λ_SN².
     saddle_node = bifurcations.saddle_node_amplitude
+    holmes = np.hypot(1, saddle_node)
     return curve.assign(
         release_phase=curve.phase,
-        along=curve.phase,
-        holmes_amplitude=np.hypot(1, saddle_node),
-        holmes_phase=np.arctan2(1, saddle_node),
+        along=curve.amplitude * np.sin(curve.phase),
+        holmes_amplitude=holmes,
+        holmes_phase=np.arctan2(1, saddle_node).where(holmes <= largest),
         special_kind=("special", list(known)),
-        special_along=("special", phases),
+        special_along=("special", amplitudes * np.sin(phases)),
         special_amplitude=("special", amplitudes),
         special_phase=("special", phases),
         special_release_phase=("special", phases),

@@ -1,4 +1,4 @@
-"""What several tests share: the configuration, the datasets of the reference, and the stages."""
+"""What several tests read: the configuration, the datasets of the reference, and the stages."""
 
 import importlib.util
 import json
@@ -27,17 +27,6 @@ ENTRIES = {
     if name != "title" and name in ACCEPTED
 }
 """The registered figures, tables and datasets by name, without those that are new."""
-
-
-class Named(list):
-    """The files of a job as Snakemake gives them to its script: a list with names."""
-
-    def __init__(self, **files: str):
-        super().__init__(files.values())
-        self.__dict__.update(files)
-
-    def __getitem__(self, name):
-        return self.__dict__[name]
 
 
 @cache

@@ -18,7 +18,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 from PIL import Image
-from tests.reference import Named
+from tests.jobs import Named
 
 from bouncing_ball import compare, datasets, provenance, variables
 from bouncing_ball.drawing import save_picture

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import xarray as xr
-from tests.reference import Named
+from tests.jobs import Named
 
 from bouncing_ball import datasets, provenance
 from bouncing_ball.variables import Variable

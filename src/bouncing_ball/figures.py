@@ -6,7 +6,7 @@ module `drawing` explains line styles, widths and marks.
 """
 
 from collections.abc import Callable, Mapping
-from itertools import count, cycle
+from itertools import cycle
 from textwrap import fill
 
 import numpy as np
@@ -608,7 +608,7 @@ def validity_map(data: xr.Dataset) -> Figure:
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
         ticks = round_ticks(*data.restitution.values[[0, -1]])
-        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_xticks(ticks, [f"{tick:.15g}" for tick in ticks])
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
@@ -642,12 +642,11 @@ def round_ticks(low: float, high: float) -> NDArray:
     ([0.1, 0.5, 0.9], [0.6, 0.61, 0.62])
     """
     near = low + (high - low) * np.array([1, 9, 17]) / 18
-    rounded = (near.round(digits) for digits in count(1))
-    return next(
-        ticks
-        for ticks in rounded
-        if np.unique(ticks).size == near.size and low <= ticks[0] and ticks[-1] <= high
-    )
+    for digits in range(1, 16):
+        ticks = near.round(digits)
+        if np.unique(ticks).size == near.size and low <= ticks[0] and ticks[-1] <= high:
+            return ticks
+    return near
 
 
 def stretched(position: NDArray) -> NDArray:

@@ -43,7 +43,16 @@ from bouncing_ball.paper import (
     TABLE_1,
     printed_table,
 )
-from bouncing_ball.verdicts import Claim, above, answer, argued, at_least, at_most
+from bouncing_ball.verdicts import (
+    Claim,
+    above,
+    answer,
+    argued,
+    at_least,
+    at_most,
+    beyond_limit,
+    within_limit,
+)
 
 LINE = 0.01
 """Width of a line divided by the length of the axis, about 0.5 mm of 5 cm. Smaller differences are
@@ -90,8 +99,8 @@ def claim(
 def stiff_limit(thresholds):
     stiffest = thresholds["relative_error"].isel(frequency_ratio=-1)
     return [
-        at_most("every quantity at ϖ = 10⁴, with the period doubling of Eq. 5", stiffest, LIMIT),
-        at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
+        within_limit("every quantity at ϖ = 10⁴, with the period doubling of Eq. 5", stiffest),
+        within_limit("the period doubling of Eq. 8", error_of_eq_8(thresholds)),
     ]
 
 
@@ -168,7 +177,7 @@ def high_flights(*sweeps):
     return [
         at_least("flights ten times as high as the excitation, Figs. 5, 6 and 10", lowest, 10.0),
         at_least("flights higher than the excitation on these orbits", lowest, 1.0),
-        at_most("so high that Eq. 8 is right within 1 %", neglect, LIMIT),
+        within_limit("so high that Eq. 8 is right within 1 %", neglect),
     ]
 
 
@@ -262,7 +271,7 @@ def existence_changes(table1):
     node = compliant["computed"].sel(bound="saddle-node")
     rigid = table1["restitution_range"].sel(impact_map="exact", bound="saddle-node")
     moved = abs(node.values / rigid.values - 1)
-    return [at_least("the smallest relative change of a saddle-node at ϖ = 2", moved, LIMIT)]
+    return [beyond_limit("the smallest relative change of a saddle-node at ϖ = 2", moved)]
 
 
 # The restitution model
@@ -387,8 +396,8 @@ def static_table():
     return [
         at_most("a contact with weight (Eq. 10), at ϖ = 100", error(100, 1), ROUNDING),
         at_most("a contact without weight", error(10, 0), ROUNDING),
-        at_most("a contact with weight at ϖ = 100, within 1 %", error(100, 1), LIMIT),
-        at_most("a contact with weight at ϖ = 10, within 1 %", error(10, 1), LIMIT),
+        within_limit("a contact with weight at ϖ = 100, within 1 %", error(100, 1)),
+        within_limit("a contact with weight at ϖ = 10, within 1 %", error(10, 1)),
     ]
 
 
@@ -406,8 +415,8 @@ def moving_table(fig05, fig06):
     moved = abs(curves["apparent_restitution"] / at_rest - 1)
     name = "the largest relative difference of the apparent restitution from"
     return [
-        at_least(f"{name} r", largest([largest(each) for each in both]), LIMIT),
-        at_least(f"{name} that on a table at rest, at ϖ = 10", largest(moved), LIMIT),
+        beyond_limit(f"{name} r", largest([largest(each) for each in both])),
+        beyond_limit(f"{name} that on a table at rest, at ϖ = 10", largest(moved)),
     ]
 
 
@@ -504,8 +513,8 @@ def negligible_above_100(*sweeps):
     off = [abs(part["apparent_restitution"] - part["restitution"]) for part in stiff]
     shares = [each / each["restitution"] for each in off]
     return [
-        at_most("the difference", [largest(each) for each in off], LIMIT),
-        at_most("the difference as a share of r", [largest(each) for each in shares], LIMIT),
+        within_limit("the difference", [largest(each) for each in off]),
+        within_limit("the difference as a share of r", [largest(each) for each in shares]),
     ]
 
 
@@ -701,7 +710,7 @@ def departs_below_100(fig10):
     stiffer = error.sel(frequency_ratio=slice(STIFF * (1 + ROUNDING), None))
     return [
         above("a start with the departure at ϖ = 100", smallest(at_100) - stiffer),
-        at_least("a start with 1 %", at_100, LIMIT),
+        beyond_limit("a start with 1 %", at_100),
     ]
 
 
@@ -719,9 +728,9 @@ def amplitude_does_not_matter(fig10):
     at_2 = at_ratio(apart, 2.0)
     stiffer = apart.sel(frequency_ratio=slice(2.0, None))
     return [
-        at_most("an axis from ϖ = 2 on", [at_2, *stiffer], LIMIT),
-        at_most(
-            f"an axis that begins at ϖ = 1 (the velocities agree above {meeting:.4f})", apart, LIMIT
+        within_limit("an axis from ϖ = 2 on", [at_2, *stiffer]),
+        within_limit(
+            f"an axis that begins at ϖ = 1 (the velocities agree above {meeting:.4f})", apart
         ),
     ]
 
@@ -827,7 +836,7 @@ def phases_converge(fig13):
     ends = [each.isel(frequency_ratio=-1) for each in off]
     falls = [-steps(each) for each in off]
     return [
-        at_most("the largest distance at the stiffest contact, in periods", ends, LIMIT),
+        within_limit("the largest distance at the stiffest contact, in periods", ends),
         above("the smallest fall of the distance to the next contact", falls),
     ]
 
@@ -872,9 +881,9 @@ def representative(fig15):
     slight = float(abs(rows / rows.sel(frequency_ratio=rows["frequency_ratio"].max()) - 1).max())
     return [
         at_most("both ends, as the moves of Table 1 that are called slight", [node, eq_5], slight),
-        at_most("the upper end and Eq. 8, within 1 %", abs(upper / printed - 1), LIMIT),
-        at_most("the upper end and Eq. 5, within 1 %", eq_5, LIMIT),
-        at_most("the lower end, within 1 %", node, LIMIT),
+        within_limit("the upper end and Eq. 8, within 1 %", abs(upper / printed - 1)),
+        within_limit("the upper end and Eq. 5, within 1 %", eq_5),
+        within_limit("the lower end, within 1 %", node),
     ]
 
 
@@ -899,7 +908,7 @@ def different_below_6_only(fig16):
     printed = float(PRINTED["permanent contact threshold"])
     error = fig16["relative_error"]
     stiffer = error.sel(frequency_ratio=slice(printed, None))
-    return [at_most("no difference from ϖ = 6 on", [at_ratio(error, printed), *stiffer], LIMIT)]
+    return [within_limit("no difference from ϖ = 6 on", [at_ratio(error, printed), *stiffer])]
 
 
 @claim(
@@ -933,17 +942,15 @@ def safe_above_100(validity_map, fig16, fig05, fig06, fig10, thresholds):
     contact = fig16["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     ends = thresholds["relative_error"].sel(frequency_ratio=STIFF_CONTACTS)
     return [
-        at_most(
-            "the maximum height on the orbits of the map", orbits.sel(quantity="summit"), LIMIT
-        ),
-        at_most("the bouncing-off velocity", orbits.sel(quantity="bounce_velocity"), LIMIT),
-        at_most("the apparent restitution", orbits.sel(quantity="apparent_restitution"), LIMIT),
-        at_most("the phase in periods", orbits.sel(quantity="phase_in_periods"), LIMIT),
-        at_most("the period doubling of Eq. 8", error_of_eq_8(thresholds), LIMIT),
-        at_most("the maximum height on Figs. 5, 6, 10", curves.sel(measure="max_height"), LIMIT),
-        at_most("permanent contact", contact, LIMIT),
-        at_most("the saddle-node", ends.sel(quantity="saddle_node"), LIMIT),
-        at_most("the period doubling of Eq. 5", ends.sel(quantity="period_doubling"), LIMIT),
+        within_limit("the maximum height on the orbits of the map", orbits.sel(quantity="summit")),
+        within_limit("the bouncing-off velocity", orbits.sel(quantity="bounce_velocity")),
+        within_limit("the apparent restitution", orbits.sel(quantity="apparent_restitution")),
+        within_limit("the phase in periods", orbits.sel(quantity="phase_in_periods")),
+        within_limit("the period doubling of Eq. 8", error_of_eq_8(thresholds)),
+        within_limit("the maximum height on Figs. 5, 6, 10", curves.sel(measure="max_height")),
+        within_limit("permanent contact", contact),
+        within_limit("the saddle-node", ends.sel(quantity="saddle_node")),
+        within_limit("the period doubling of Eq. 5", ends.sel(quantity="period_doubling")),
     ]
 
 

@@ -101,8 +101,6 @@ class Reading(NamedTuple):
 def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is larger than a bound."""
     found = largest(values)
-    if bound == LIMIT:
-        return Reading(name, found <= bound, found, f"at most {100 * LIMIT:g} %", True)
     words = {0: "none allowed", ROUNDING: "0 within rounding"}
     required = words.get(bound, f"at most {three_digits(bound)}")
     return Reading(name, found <= bound, found, required)
@@ -111,9 +109,19 @@ def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
 def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     """Require that no number is smaller than a bound."""
     found = smallest(values)
-    if bound == LIMIT:
-        return Reading(name, found >= bound, found, f"at least {100 * LIMIT:g} %", True)
     return Reading(name, found >= bound, found, f"at least {three_digits(bound)}")
+
+
+def within_limit(name: str, values: ArrayLike) -> Reading:
+    """Require that no share is larger than the error that the paper allows."""
+    found = largest(values)
+    return Reading(name, found <= LIMIT, found, f"at most {100 * LIMIT:g} %", True)
+
+
+def beyond_limit(name: str, values: ArrayLike) -> Reading:
+    """Require that no share is smaller than the error that the paper allows."""
+    found = smallest(values)
+    return Reading(name, found >= LIMIT, found, f"at least {100 * LIMIT:g} %", True)
 
 
 def above(name: str, values: ArrayLike) -> Reading:

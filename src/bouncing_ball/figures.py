@@ -142,15 +142,19 @@ def fig03(data: xr.Dataset) -> Figure:
     """
     figure, axes = panels(3.6)
     names = []
+    absent = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
         family = data.sel(n=n)
         branch = restitution_branch(family, family.sel(impact_map="exact"))
-        draw_branch(axes, branch, "phase", colour, width=1.2)
-        mark_special(axes, branch, "phase", colour)
-        if branch.amplitude.notnull().any():
+        if has_orbits(branch):
+            draw_branch(axes, branch, "phase", colour, width=1.2)
+            mark_special(axes, branch, "phase", colour)
             names.append((label(n=n), right_end(branch, "phase"), colour))
+        else:
+            absent.append(label(n=n))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
-    axes.set(xlim=(0, parameters(data)["amplitude_max"]), title=title(data, "restitution"))
+    axes.set_xlim(0, parameters(data)["amplitude_max"])
+    axes.set_title(title(data, "restitution") + no_branch(absent))
     branch_legend(figure, both_phases=False)
     figure.draw_without_rendering()
     name_at_right(axes, names)
@@ -482,8 +486,8 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     least = min(starts, default=0.0)
     # If all branches start far to the right, the space left of them would be empty.
     left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
-    note = f"\nno branch for {', '.join(absent)}" if absent else ""
-    column[0].set(xlim=(left, amplitude_max), title=title(data, "n", "restitution") + note)
+    column[0].set_xlim(left, amplitude_max)
+    column[0].set_title(title(data, "n", "restitution") + no_branch(absent))
     column[-1].set_xlabel(r"amplitude $\Lambda$")
     column[len(column) // 2].set_ylabel(r"phase of the table over $\pi$")
     branch_legend(figure, both_phases=True)
@@ -491,6 +495,11 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     for axes, panel in zip(column, present, strict=True):
         name_at_right(axes, branch_names(panel, 0.01 * np.ptp(axes.get_ylim())))
     return figure
+
+
+def no_branch(absent: list[str]) -> str:
+    """Return the line of a title that names branches without orbits."""
+    return f"\nno branch for {', '.join(absent)}" if absent else ""
 
 
 def has_orbits(branch: xr.Dataset) -> bool:

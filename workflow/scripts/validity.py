@@ -118,7 +118,8 @@ def failures(
     which gives the damping, and of the square root of the place, which gives the phase. Cubic
     splines interpolate them. The results of a quantity and an n are NaN if one of its errors is.
     """
-    fine_r, fine_place = finer(r, FINER[0]), finer(place ** (1 / 2), FINER[1]) ** 2
+    fine_r = finer(r, FINER[0])
+    fine_place = finer(place ** (1 / 2), FINER[1]) ** 2
     share = np.full(errors.shape[:3], np.nan)
     mean = np.full(errors.shape[:2], np.nan)
     up_to = np.full(errors.shape[:2], np.nan)

@@ -364,6 +364,20 @@ def test_another_largest_step_is_still_the_run_of_the_paper(name, largest_step):
     assert paper.differences({**reference(), name: data}) == []
 
 
+def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_number():
+    for section, name in computed_entries():
+        known = inspect.signature(stage(section).STAGE[name]).parameters
+        if "release" in known and "restitution" in CONFIGURATION[section].get(name, {}):
+            config = changed(section, name, {"restitution": 0.1}) | {"release": "force"}
+            if name in ("table1", "lowest_doubling"):
+                data = made(section, name, config)
+                of_contact = data.get("computed", data.get("period_doubling_amplitude"))
+                assert of_contact.isnull().all()
+            elif name != "validity_map":
+                with pytest.raises(NoOrbit, match=r"r must be above e⁻² = 0\.1353"):
+                    made(section, name, config)
+
+
 def test_another_release_gives_true_pages():
     found = {}
     for section, name in computed_entries():

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from bouncing_ball import restitution
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import Numbers
-from bouncing_ball.spring_damper import Contact, damping_ratio, free_duration
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, free_duration
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
 """Fourth equation of an orbit: a function of the family and of orbits y, shape (4, ...). It returns
@@ -273,8 +273,9 @@ def stable_orbits(
     Raises
     ------
     NoOrbit
-        If all amplitudes are below the saddle-node of stiff contacts (Eq. 7, with the restitution
-        coefficient of a free impact). The search does not find orbits that exist on compliant
+        If no contact has one of the restitution coefficients (`damping_ratio`), or all amplitudes
+        are below the saddle-node of stiff contacts (Eq. 7, with the restitution coefficient of a
+        free impact). The search does not find orbits that exist on compliant
         contacts only.
 
     >>> stable_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
@@ -289,6 +290,8 @@ def stable_orbits(
 def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
     """Orbits as in `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
     r = family.contact.restitution
+    if np.isnan(r).all():
+        raise NoOrbit(f"no contact has this restitution: {NO_CONTACT}")
     x = np.broadcast_to(restitution.saddle_node(family.n, r), amplitude.shape)
     if np.all(amplitude < x):
         raise NoOrbit(

@@ -29,7 +29,7 @@ from bouncing_ball.continuation import (
 )
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import Numbers
-from bouncing_ball.spring_damper import Contact, damping_ratio, permanent_contact
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
 
 
 class Error(NamedTuple):
@@ -261,7 +261,7 @@ def errors(
     """
     contact = Contact(ratios, damping_ratio(r, release), release)
     if np.isnan(contact.damping_ratio):
-        raise NoOrbit(f"r = {r:g}: with the force release, r must be above e⁻² = 0.1353, up to 1")
+        raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
         ends = restitution.saddle_node(n, r), restitution.period_doubling(n, r)

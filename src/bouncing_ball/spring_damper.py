@@ -56,6 +56,10 @@ def free_restitution(zeta: Numbers, release: str = "displacement") -> NDArray:
     return np.exp(-free_angle(zeta, release) * zeta / np.sqrt(1 - zeta**2))
 
 
+NO_CONTACT = "with the force release, r must be above e⁻² = 0.1353, up to 1"
+"""The reason for which `damping_ratio` is NaN."""
+
+
 def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
     """Damping ratio ζ for which a free impact has the restitution r.
 

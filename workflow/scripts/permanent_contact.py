@@ -6,13 +6,22 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
+from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import permanent_contact_error, threshold
 
 
+def damping(r: float, release: str) -> float:
+    """The damping ratio of the contact with a restitution coefficient."""
+    zeta = float(spring_damper.damping_ratio(r, release))
+    if np.isnan(zeta):
+        raise NoOrbit(f"r = {r:g}: {spring_damper.NO_CONTACT}")
+    return zeta
+
+
 def fig11(parameters: dict, release: str) -> xr.Dataset:
     """Λ_SD with its lowest value (Eqs. 33 and 36), and Λ_CR (Eq. 9)."""
-    zeta = float(spring_damper.damping_ratio(parameters["restitution"], release))
+    zeta = damping(parameters["restitution"], release)
     ratios = grid(parameters["frequency_ratio"])
     lowest_ratio, lowest = spring_damper.lowest_permanent_contact(zeta, release)
     thresholds = spring_damper.permanent_contact(ratios, zeta, release)
@@ -30,7 +39,7 @@ def fig11(parameters: dict, release: str) -> xr.Dataset:
 
 def fig16(parameters: dict, release: str) -> xr.Dataset:
     """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
-    zeta = float(spring_damper.damping_ratio(parameters["restitution"], release))
+    zeta = damping(parameters["restitution"], release)
     ratios = grid(parameters["frequency_ratio"])
     error = permanent_contact_error(ratios, zeta, release)
     # The lowest threshold is the only extremum of the error: with it no crossing is missed.

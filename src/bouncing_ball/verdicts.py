@@ -248,7 +248,7 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
 def listed(readings: list[Reading]) -> list[str]:
     """Print readings, those that hold first, each with its number and the bound.
 
-    >>> listed([at_most("Eq. 8", 0.0297, 0.01), at_most("Eq. 5", 0.000132, 0.01)])
+    >>> listed([within_limit("Eq. 8", 0.0297), within_limit("Eq. 5", 0.000132)])
     ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
     """
     texts = []

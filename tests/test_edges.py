@@ -30,7 +30,7 @@ from bouncing_ball.verdicts import VERDICTS, answer
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
 STAGES = [name for name in CONFIG if (ROOT / f"workflow/scripts/{name}.py").exists()]
 COARSE = {"samples": 9, "points": 21, "places": 5, "impacts": 256}
-"""Sizes of grids; their upper bounds are not tried, because they take minutes."""
+"""Sizes of grids. Their upper bounds are not tried, because they take minutes."""
 
 
 def coarse(value):
@@ -40,7 +40,7 @@ def coarse(value):
     return [coarse(each) for each in value] if isinstance(value, list) else value
 
 
-CONFIGURATION = coarse(CONFIG)
+CONFIGURATION = coarse(CONFIG) | {"largest_step": 0.5}
 
 
 def resolved(schema: dict) -> dict:
@@ -179,16 +179,11 @@ CASES = [
     ),
     ("error_thresholds", "fig14", {"n": 5, "amplitude": 3.5}),
     ("validity", "validity_map", {"restitution": {"min": 0.95, "max": 0.05, "samples": 31}}),
-    ("validity", "validity_map", {"n": [1, 2], "advised": 5.0}),
+    ("validity", "validity_map", {"n": [1], "advised": 5.0}),
     (
         "validity",
         "validity_map",
         {"n": [1], "restitution": {"min": 0.85, "max": 0.95, "samples": 9}},
-    ),
-    (
-        "validity",
-        "validity_map",
-        {"n": [1], "restitution": {"min": 0.05, "max": 0.35, "samples": 9}},
     ),
     (
         "validity",
@@ -356,12 +351,11 @@ def test_a_configuration_at_an_edge_gives_true_results_or_one_line(section, name
     assert_texts_are_true({name: data})
 
 
-@pytest.mark.parametrize(("name", "largest_step"), [("fig08", 0.5), ("fig15", 0.02)])
-def test_another_largest_step_is_still_the_run_of_the_paper(name, largest_step):
-    data = made("continuation", name, CONFIGURATION | {"largest_step": largest_step})
-    assert_picture_is_true(name, data, True)
-    assert_texts_are_true({name: data})
-    assert paper.differences({**reference(), name: data}) == []
+def test_the_smallest_of_the_largest_steps_is_still_the_run_of_the_paper():
+    data = made("continuation", "fig15", CONFIGURATION | {"largest_step": 0.02})
+    assert_picture_is_true("fig15", data, True)
+    assert_texts_are_true({"fig15": data})
+    assert paper.differences({**reference(), "fig15": data}) == []
 
 
 def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_number():

@@ -771,14 +771,14 @@ def test_the_curves_of_the_paper_are_in_the_panels_of_their_n():
 
 
 def test_the_legend_of_the_map_has_the_advised_frequency_ratio_of_the_dataset():
-    (data,) = data_of("validity_map")
+    data = reference("validity_map").isel(n=[0], quantity=[0])
     figure = laid_out("validity_map", with_parameters(data, advised=50))
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [r"$\varpi=50$" in entry for entry in entries] == [True, True, False]
 
 
 def test_the_legend_of_the_map_has_its_curves_and_calls_only_those_of_the_paper_so():
-    (data,) = data_of("validity_map")
+    data = reference("validity_map").isel(n=[0], quantity=[0])
     one = {"n": 1, "restitution": 0.5, "amplitude": 1.2}
     for curves, place, expected in (
         (paper.unique(paper.CURVES), data.curve_place, ["curves of the paper"]),

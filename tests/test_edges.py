@@ -54,9 +54,9 @@ def others(schema: dict, value) -> Iterator:
     schema = resolved(schema)
     if isinstance(value, dict) and "min" in value:
         inner = schema["properties"]
-        for end in ("min", "max"):
-            for bound in others(inner[end], value[end]):
-                yield value | {end: bound}
+        low, *_ = others(inner["min"], value["min"])
+        *_, high = others(inner["max"], value["max"])
+        yield value | {"min": low, "max": high}
         yield value | {"min": value["max"], "max": value["min"]}
         yield value | {"min": value["max"]}
     elif is_numbers(value):

@@ -29,7 +29,7 @@ from bouncing_ball.verdicts import VERDICTS, answer
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
 STAGES = [name for name in CONFIG if (ROOT / f"workflow/scripts/{name}.py").exists()]
-COARSE = {"samples": 9, "points": 21, "places": 5, "impacts": 256}
+COARSE = {"samples": 7, "points": 15, "places": 4, "impacts": 256}
 """Sizes of grids. Their upper bounds are not tried, because they take minutes."""
 
 
@@ -155,7 +155,6 @@ CASES = [
     ),
     ("continuation", "table1", {"frequency_ratio": [50.0, 30.0]}),
     ("continuation", "table1", {"n": [1], "restitution": 0.65, "frequency_ratio": [10.0]}),
-    ("continuation", "table1", {"frequency_ratio": [1e4, 50.0, 10.0, 2.0]}),
     (
         "continuation",
         "table1",
@@ -183,12 +182,11 @@ CASES = [
     (
         "validity",
         "validity_map",
-        {"n": [1], "restitution": {"min": 0.85, "max": 0.95, "samples": 9}},
-    ),
-    (
-        "validity",
-        "validity_map",
-        {"n": [1], "frequency_ratio": {"min": 316.0, "max": 1760.0, "samples": 9}},
+        {
+            "n": [1],
+            "restitution": {"min": 0.85, "max": 0.95, "samples": 9},
+            "frequency_ratio": {"min": 316.0, "max": 1760.0, "samples": 9},
+        },
     ),
     (
         "validity",

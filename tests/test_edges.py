@@ -356,6 +356,16 @@ def test_the_smallest_of_the_largest_steps_is_still_the_run_of_the_paper():
     assert paper.differences({**reference(), "fig15": data}) == []
 
 
+def test_the_branches_of_r_of_1_are_flat_and_bifurcations_beyond_the_axis_are_not_named():
+    """Their phase is -π/2 or π/2 at all amplitudes, so it does not order the orbits."""
+    config = changed("restitution_model", "fig03", {"restitution": 1, "amplitude_max": 0.4})
+    figure = figures.draw("fig03", made("restitution_model", "fig03", config))
+    heights = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
+    assert {*heights[np.isfinite(heights)]} == {-0.5, 0.0, 0.5}
+    entries = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert entries == ["unstable", "saddle-node"]
+
+
 def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_number():
     for section, name in computed_entries():
         known = inspect.signature(stage(section).STAGE[name]).parameters

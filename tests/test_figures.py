@@ -1,6 +1,5 @@
 """The figures: what is drawn is what the datasets have, and it can be read."""
 
-import json
 import subprocess
 import sys
 from functools import cache
@@ -16,10 +15,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
 from PIL import Image
-from tests.reference import stage
 
 from bouncing_ball import datasets, drawing, figures, paper, restitution
-from bouncing_ball.datasets import parameters
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
@@ -478,17 +475,6 @@ def test_a_legend_that_is_too_wide_has_fewer_columns():
 
 
 # Other parameters
-
-
-def test_the_branches_of_r_of_1_are_flat_and_bifurcations_beyond_the_axis_are_not_named():
-    """Their phase is -π/2 or π/2 at all amplitudes, so it does not order the orbits."""
-    given = parameters(reference("fig03")) | {"restitution": 1, "amplitude_max": 0.4}
-    branches = stage("restitution_model").fig03(given)
-    figure = laid_out("fig03", branches.assign_attrs(parameters=json.dumps(given)))
-    heights = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
-    assert {*heights[np.isfinite(heights)]} == {-0.5, 0.0, 0.5}
-    entries = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert entries == ["unstable", "saddle-node"]
 
 
 def test_a_branch_without_orbits_is_named_above():

@@ -9,7 +9,7 @@ RUN := $(VENV)/bin/python -m
 SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
 PIP := $(RUN) pip install --quiet --disable-pip-version-check --require-hashes
 BUILT := --only-binary :all: --no-binary connection-pool --no-build-isolation
-UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate $(UPGRADE)
+UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
 
@@ -76,7 +76,7 @@ test-processors: develop
 # The newest versions that pyproject.toml allows, instead of those of the lock file.
 newest:
 	$(PYTHON) -m venv --clear .venv-newest
-	.venv-newest/bin/python -m pip install --quiet --editable '.[test]'
+	.venv-newest/bin/python -m pip install --quiet --editable '.[pipeline,test]'
 	touch .venv-newest/.installed .venv-newest/.developing
 	$(MAKE) --keep-going replication test VENV=.venv-newest
 
@@ -84,16 +84,16 @@ newest:
 LOWEST := numpy scipy xarray netCDF4 matplotlib
 lowest:
 	$(PYTHON) -m venv --clear .venv-lowest
-	.venv-lowest/bin/python -m pip install --quiet --editable . \
+	.venv-lowest/bin/python -m pip install --quiet --editable '.[pipeline]' \
 	  $(foreach name,$(LOWEST),"$(shell sed -n 's/^ *"\($(name)\)>=\([0-9.]*\).*/\1==\2/p' pyproject.toml)")
 	touch .venv-lowest/.installed
 	$(MAKE) replication VENV=.venv-lowest
 
 # For maintainers, with uv; `make lock UPGRADE=--upgrade` takes the newest versions.
 lock:
-	$(UV) pyproject.toml --extra slurm --output-file requirements.lock
-	$(UV) pyproject.toml --extra test --extra lint --extra slurm --constraint requirements.lock --output-file requirements-develop.lock
-	printf 'flit_core\nsetuptools\nwheel\n' | $(UV) - --constraint requirements.lock --output-file requirements-build.lock
+	$(UV) pyproject.toml --extra pipeline --extra slurm --output-file requirements.lock
+	$(UV) pyproject.toml --extra pipeline --extra test --extra lint --extra slurm --constraint requirements.lock --output-file requirements-develop.lock
+	printf 'setuptools\nwheel\n' | $(UV) - --constraint requirements.lock --output-file requirements-build.lock
 
 clean:
 	rm -rf results .snakemake

@@ -19,7 +19,7 @@ min_version("9.5")
 # The folder of this file. A run may have another folder (--directory), which gets its results.
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
-from bouncing_ball.configuration import mistakes, with_whole_numbers
+from paper_replication.configuration import mistakes, with_whole_numbers
 
 # Scripts import the package of this checkout, whatever else is installed.
 os.environ.update(PYTHONPATH=str(TOP / "src"))
@@ -78,8 +78,8 @@ for stage in STAGES:
     for name in names(stage):
         needed = {
             f"workflow/scripts/{stage}.py": name in DATASETS,
-            "src/bouncing_ball/figures.py": name in FIGURES,
-            "src/bouncing_ball/tables.py": name in TABLES,
+            "src/carbonelli2011/figures.py": name in FIGURES,
+            "src/carbonelli2011/tables.py": name in TABLES,
         }
         for file in [file for file, is_needed in needed.items() if is_needed]:
             if f'"{name}":' not in (TOP / file).read_text("utf-8"):
@@ -96,15 +96,17 @@ def checkout(*paths):
 
 
 def modules(*names):
-    """Modules of the package, as paths from the folder of the run."""
-    return checkout(*(f"src/bouncing_ball/{name}.py" for name in names))
+    """Modules of the packages, as paths from the folder of the run."""
+    return checkout(*(path for name in names for path in sorted(TOP.glob(f"src/*/{name}.py"))))
 
 
-MODELS = modules("restitution", "spring_damper", "orbits", "continuation", "errors", "datasets")
+MODELS = checkout(*sorted(TOP.glob("src/bouncing_ball/[!_]*.py"))) + modules("datasets")
 PAPER = modules("paper")
-DRAWING = modules("figures", "drawing", "paper", "datasets")
-JUDGING = MODELS + modules("claims", "measures", "verdicts", "tables", "paper")
-WRITING = JUDGING + modules("article", "origins", "pages", "drawing")
+DRAWING = modules("figures", "curves", "paper", "drawing", "texts", "datasets")
+JUDGING = (
+    MODELS + PAPER + modules("claims", "measures", "tables", "verdicts", "judgements", "texts")
+)
+WRITING = JUDGING + modules("article", "index", "pages", "origins", "templates")
 VARIED = [
     "restitution_model",
     "apparent_restitution",
@@ -263,7 +265,10 @@ rule time_histories:
 rule printed_numbers:
     """Printed numbers under hypotheses on what the authors computed"""
     input:
-        code=checkout("workflow/scripts/printed_numbers.py") + MODELS + PAPER + modules("measures"),
+        code=checkout("workflow/scripts/printed_numbers.py")
+        + MODELS
+        + PAPER
+        + modules("measures", "verdicts"),
     output:
         **datasets("printed_numbers"),
         record="results/records/printed_numbers.json",

@@ -10,7 +10,7 @@ from types import ModuleType
 import xarray as xr
 import yaml
 
-from bouncing_ball.datasets import read
+from paper_replication.datasets import read
 
 ROOT = Path(__file__).resolve().parents[1]
 TOP = Path(os.environ.get("CANDIDATE", ROOT)).resolve()

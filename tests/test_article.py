@@ -12,9 +12,11 @@ import xarray as xr
 from tests import independent
 from tests.reference import ENTRIES, printed_rows, reference, table_with_another_row
 
-from bouncing_ball import article, claims, measures, origins, pages, spring_damper, tables
-from bouncing_ball.datasets import parameters
-from bouncing_ball.paper import LIMIT, STIFF, printed_table
+from bouncing_ball import spring_damper
+from carbonelli2011 import article, claims, index, measures
+from carbonelli2011.paper import LIMIT, STIFF, printed_table
+from paper_replication import judgements, origins, texts
+from paper_replication.datasets import parameters
 
 ROOT = Path(__file__).resolve().parents[1]
 TEXTS = ("paper", "supplement", "figures")
@@ -44,7 +46,7 @@ def text_of_reference(name: str) -> str:
 def text_of(name: str, data: dict[str, xr.Dataset]) -> str:
     """The article, its supplement, or the list of figures."""
     if name == "figures":
-        return pages.filled_in("md", data, ENTRIES)
+        return index.filled_in("md", data, ENTRIES)
     return origins.bare(article.written(name, data))
 
 
@@ -73,12 +75,12 @@ def known(data: dict[str, xr.Dataset]) -> set[str]:
     numbers = set(printed.values.flat) | set(data["claims"].printed_text.values)
     rows = printed.astype(float).sortby("frequency_ratio", ascending=False)
     moves = abs(rows / rows[0] - 1).max(["n", "bound"])
-    numbers |= {article.percent(move, 1).removesuffix(" %") for move in moves.values}
+    numbers |= {texts.percent(move, 1).removesuffix(" %") for move in moves.values}
     parameters = "".join(each.attrs["parameters"] for each in data.values())
     numbers |= set(re.findall(r"\d+\.\d+", parameters))
     # The study of other choices has texts.
-    texts = [*data["choices"].instead.values, *data["choices"].changes.values]
-    numbers |= set(re.findall(r"\d+\.\d+", " ".join(texts)))
+    words = [*data["choices"].instead.values, *data["choices"].changes.values]
+    numbers |= set(re.findall(r"\d+\.\d+", " ".join(words)))
     # The reading of the printed damping is off by nothing.
     numbers |= {"0.00"}
     # What the claims require: half a printed unit, and the move of Table 1 that is called slight.
@@ -466,7 +468,7 @@ def test_what_the_article_says_of_table_1(data):
     assert (moderate < stiff).all() and (compliant > stiff).all()
     nodes = computed.sel(bound="saddle-node").sortby("frequency_ratio")
     assert (nodes.diff("frequency_ratio") > 0).all()
-    numbers = tables.claims_of(data["claims"], "printed number")
+    numbers = judgements.claims_of(data["claims"], "printed number")
     ends = [claim for claim in numbers if claim["item"] == "Table 1"]
     missed = {end["claim"]: end for end in ends if end["verdict"] != "reproduced"}
     assert len(missed) == 14
@@ -487,7 +489,7 @@ def test_what_the_article_says_of_figures_6_10_and_16(data):
     dips = (fig06.restitution - fig06.apparent_restitution.min("frequency_ratio")).values
     assert dips[0] > claims.line_width(fig06.apparent_restitution) > 100 * abs(dips[-1])
     compliant = fig06.apparent_restitution.isel(frequency_ratio=0)
-    assert [article.fixed(value, 2) for value in compliant] == ["0.81"] * 3
+    assert [texts.fixed(value, 2) for value in compliant] == ["0.81"] * 3
     departure = 1 - fig10.bounce_velocity / fig10.restitution_bounce_velocity
     assert (departure > 0).all()
     ratio = fig10.frequency_ratio.values
@@ -503,21 +505,21 @@ def test_what_the_article_says_of_figures_6_10_and_16(data):
 def test_numbers_are_rounded_correctly():
     values = np.random.default_rng(5).uniform(-2, 2, 200)
     for value in values:
-        off = Decimal(article.fixed(value, 3).replace("−", "-")) - Decimal(value)
+        off = Decimal(texts.fixed(value, 3).replace("−", "-")) - Decimal(value)
         assert abs(off) <= Decimal("0.0005")
         exact = 100 * Decimal(value)
-        nearest = article.percent(value, 2).removesuffix(" %").replace("−", "-")
+        nearest = texts.percent(value, 2).removesuffix(" %").replace("−", "-")
         assert abs(Decimal(nearest) - exact) <= Decimal("0.005")
 
 
 def test_only_powers_of_ten_are_written_as_such():
-    numbers = [article.short(value) for value in (1e4, 2e4, 1e3, 0.25, -0.5, 0.0)]
+    numbers = [texts.short(value) for value in (1e4, 2e4, 1e3, 0.25, -0.5, 0.0)]
     assert numbers == ["10⁴", "20000", "1000", "0.25", "−0.5", "0"]
 
 
 def test_shares_that_are_decimal_numbers_stay():
-    assert article.percent(0.01, 2) == "1.00 %"
-    assert article.fixed(-1e-14, 2) == "0.00"
-    assert article.percent(0.01) == "1 %"
-    assert article.percent(0.355, 0) == "36 %"
-    assert article.percent(0.005) == "0.5 %"
+    assert texts.percent(0.01, 2) == "1.00 %"
+    assert texts.fixed(-1e-14, 2) == "0.00"
+    assert texts.percent(0.01) == "1 %"
+    assert texts.percent(0.355, 0) == "36 %"
+    assert texts.percent(0.005) == "0.5 %"

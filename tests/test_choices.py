@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from tests.reference import ROOT, reference
 
-from bouncing_ball import claims, tables
-from bouncing_ball.claims import CLAIMS
+from carbonelli2011 import claims, tables
+from carbonelli2011.claims import CLAIMS
 
 
 @pytest.fixture(scope="module")

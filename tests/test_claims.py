@@ -17,12 +17,14 @@ from tests import independent
 from tests.reference import ENTRIES, table_with_another_row
 from tests.reference import reference as every_dataset
 
-from bouncing_ball import claims, errors, measures, paper, restitution, tables
-from bouncing_ball.datasets import parameters
-from bouncing_ball.paper import printed_table
+from bouncing_ball import errors, restitution
 from bouncing_ball.spring_damper import damping_ratio, permanent_contact
-from bouncing_ball.verdicts import VERDICTS as ALL_VERDICTS
-from bouncing_ball.verdicts import answer
+from carbonelli2011 import claims, measures, paper
+from carbonelli2011.paper import printed_table
+from paper_replication import judgements, texts
+from paper_replication.datasets import other_parameters, parameters
+from paper_replication.verdicts import VERDICTS as ALL_VERDICTS
+from paper_replication.verdicts import answer
 
 ROOT = Path(__file__).parents[1]
 PRINTED = printed_table()
@@ -490,7 +492,7 @@ def test_one_number_that_is_missing_is_enough(reference, name, variable, claim):
 
 def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
     without = xr.Dataset(attrs={"parameters": "{}"})
-    said = paper.other_parameters("fig14", without, {"frequency_ratio": {"min": 1.0}})
+    said = other_parameters("fig14", without, {"frequency_ratio": {"min": 1.0}})
     assert said == "fig14.frequency_ratio is None instead of (min 1.0)"
 
 
@@ -498,11 +500,11 @@ def test_a_range_that_a_dataset_does_not_record_is_not_the_needed_one():
 def test_claims_under_other_parameters_are_not_asked(reference, name):
     data = reference[name]
     given = parameters(data)
-    assert not paper.other_parameters(name, data, paper.PARAMETERS[name])
+    assert not other_parameters(name, data, paper.PARAMETERS[name])
     for key, needed in paper.PARAMETERS[name].items():
         other = {"min": 0.7, "max": 70.0} if isinstance(needed, dict) else [0.7]
         changed = data.assign_attrs(parameters=json.dumps(given | {key: other}))
-        said = paper.other_parameters(name, changed, paper.PARAMETERS[name])
+        said = other_parameters(name, changed, paper.PARAMETERS[name])
         assert said.startswith(f"{name}.{key}")
     for claim in users(name):
         found = answer(claim, reference | {name: changed})
@@ -558,7 +560,7 @@ def test_equations_37_and_38_are_shares_of_the_restitution_model():
 
 
 def test_the_verdicts_on_the_printed_numbers(judged):
-    found = tables.counts(judged)["printed number"]
+    found = judgements.counts(judged)["printed number"]
     assert {verdict: number for verdict, number in found.items() if number} == {
         "reproduced": 8,
         "not reproduced": 15,
@@ -658,7 +660,7 @@ def test_claims_are_decided_by_datasets_that_the_workflow_makes():
 def test_counts_are_those_of_the_dataset_without_the_restored_formulas(judged):
     pairs = zip(judged["group"].values.tolist(), judged["verdict"].values.tolist(), strict=True)
     expected = Counter(pairs)
-    found = tables.counts(judged)
+    found = judgements.counts(judged)
     assert set(found) == {"printed number", "statement"}
     for group, by_verdict in found.items():
         assert set(by_verdict) == set(ALL_VERDICTS)
@@ -682,15 +684,15 @@ def test_restored_formulas_cover_the_equations_and_name_members():
 
 
 def test_the_page_and_the_csv_have_every_claim(judged):
-    page = tables.claims_markdown(judged)
-    rows = list(csv.reader(io.StringIO(tables.comma_separated(tables.all_claims(judged)))))
+    page = judgements.claims_markdown(judged, claims.INTRODUCTION)
+    rows = list(csv.reader(io.StringIO(texts.comma_separated(judgements.all_claims(judged)))))
     assert len(rows) == 1 + judged.sizes["claim"]
     assert {len(row) for row in rows} == {len(rows[0])}
     lines = [line for line in page.splitlines() if line.startswith("|")]
     for name in judged["claim"].values:
         assert any(line.startswith(f"| {name} |") for line in lines)
-    for group, columns in tables.SECTIONS.items():
-        header, *body = tables.chosen(columns, tables.claims_of(judged, group))
+    for group, columns in judgements.SECTIONS.items():
+        header, *body = judgements.chosen(columns, judgements.claims_of(judged, group))
         assert len(body) == int((judged["group"] == group).sum())
         assert header == [*columns]
     # A cell must not end a cell.

@@ -20,8 +20,9 @@ from matplotlib.figure import Figure
 from PIL import Image
 from tests.jobs import Named
 
-from bouncing_ball import compare, datasets, provenance, variables
-from bouncing_ball.drawing import save_picture
+from carbonelli2011 import variables
+from paper_replication import compare, datasets, provenance
+from paper_replication.drawing import save_picture
 
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
@@ -81,7 +82,9 @@ def git_of_its_own():
 def project_in(top, patch):
     for module in (provenance, compare):
         patch.setattr(module, "CHECKOUT", top)
-    return compare.Project(top, ("paper.md", "supplement.md"), make, ("src", "config"))
+    return compare.Project(
+        top, ("paper.md", "supplement.md"), make, ("src", "config"), variables.described
+    )
 
 
 @pytest.fixture(scope="module")
@@ -135,8 +138,15 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
     judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
     code = [project.top / "src/model.py"]
     given = {"n": 1, "release": "force"} | given
-    datasets.save(data, folder / "figures/fig14.nc", entries["fig14"]["title"], given, code)
-    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code)
+    datasets.save(
+        data,
+        folder / "figures/fig14.nc",
+        entries["fig14"]["title"],
+        given,
+        code,
+        variables.described,
+    )
+    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code, variables.described)
     project.make("fig14", data, folder / "figures")
     project.make("fig01", None, folder / "figures")
     for name in project.texts:
@@ -542,7 +552,7 @@ def test_pictures_of_another_matplotlib_are_counted_and_not_compared(project, mo
 
 def test_pictures_of_rounded_numbers_must_be_those_that_the_code_draws(project):
     digits = partial(make, form="{!r}")
-    other = compare.Project(project.top, project.texts, digits, project.code)
+    other = replace(project, make=digits)
     run(other)
     compare.accept(other, project.top / "results")
     commit(project.top)

@@ -44,7 +44,7 @@ def test_a_new_figure_needs_a_title_and_functions_and_may_have_any_parameters(fr
     text = "permanent_contact: {fig99: {title: A new one, caption: With a caption, anything: 1}}"
     (fresh.path / "mine.yaml").write_text(text, "utf-8")
     command = ["-n", "--cores", "1", "--configfile", "mine.yaml", "--", "fig99"]
-    for file in ("workflow/scripts/permanent_contact.py", "src/bouncing_ball/figures.py"):
+    for file in ("workflow/scripts/permanent_contact.py", "src/carbonelli2011/figures.py"):
         line = f"configuration: permanent_contact.fig99: {file} needs a function for it"
         assert fresh.run(*command)[0] == line
         fresh.edit(file, '"fig11": fig11', '"fig11": fig11, "fig99": fig11')

@@ -10,8 +10,9 @@ import pytest
 import xarray as xr
 from tests.jobs import Named
 
-from bouncing_ball import datasets, provenance
-from bouncing_ball.variables import Variable
+from carbonelli2011.variables import described
+from paper_replication import datasets, provenance
+from paper_replication.datasets import Variable
 
 # What `git hash-object` says of "pass" and a line end.
 PASS = "2ae28399f5fda2dfb1b04405f4a3b4895f5fac1e"
@@ -29,7 +30,9 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkey
     monkeypatch.setattr(provenance, "CHECKOUT", tmp_path)
     code = tmp_path / "code.py"
     code.write_bytes(b"pass\r\n")
-    datasets.save(small, path, "Figure 2", {"n": np.int64(1), "range": {"max": 2.0}}, [code])
+    datasets.save(
+        small, path, "Figure 2", {"n": np.int64(1), "range": {"max": 2.0}}, [code], described
+    )
     saved = datasets.read(path)
     xr.testing.assert_equal(saved, small)
     assert saved.phase.attrs == {
@@ -51,13 +54,15 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkey
 
 def test_a_path_may_be_a_text_as_snakemake_gives_it(small, tmp_path):
     path = tmp_path / "fig02.nc"
-    datasets.save(small, str(path), "Figure 2", {}, [])
+    datasets.save(small, str(path), "Figure 2", {}, [], described)
     xr.testing.assert_equal(datasets.read(path), small)
 
 
 def test_a_variable_without_description_is_refused(small, tmp_path):
     with pytest.raises(ValueError, match=r"^fig02.nc: describe height, speed in variables.py$"):
-        datasets.save(small.assign(height=1.0, speed=2.0), tmp_path / "fig02.nc", "", {}, [])
+        datasets.save(
+            small.assign(height=1.0, speed=2.0), tmp_path / "fig02.nc", "", {}, [], described
+        )
 
 
 def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
@@ -69,16 +74,16 @@ def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="disk full"):
-        datasets.save(small, path, "", {}, [])
+        datasets.save(small, path, "", {}, [], described)
     assert path.read_text() == "old"
 
 
 def test_a_description_belongs_to_its_dataset(small, tmp_path):
     """A variable of one dataset has none in another; another package gives its own."""
     named = small.assign(impacts=3)
-    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [])
+    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [], described)
     with pytest.raises(ValueError, match="describe impacts in"):
-        datasets.save(named, tmp_path / "fig02.nc", "", {}, [])
+        datasets.save(named, tmp_path / "fig02.nc", "", {}, [], described)
     own = {"n": Variable("order"), "phase": Variable("angle"), "stable": Variable("whether")}
     datasets.save(
         small, tmp_path / "mine.nc", "", {}, [], lambda name: own if name == "mine" else {}
@@ -103,7 +108,7 @@ def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settin
         output=Named(**files, record=str(tmp_path / "records/stage.json")),
         params=SimpleNamespace(entries=entries, settings=settings),
     )
-    datasets.save_stage({"fig02": orbits, "fig03": branches}, snakemake)
+    datasets.save_stage({"fig02": orbits, "fig03": branches}, snakemake, described)
     for n, name in enumerate(entries):
         data = datasets.read(tmp_path / f"{name}.nc")
         assert data.sizes["n"] == n

@@ -19,13 +19,14 @@ import yaml
 from tests import independent
 from tests.reference import CONFIG, ENTRIES, ROOT, reference, stage
 
-from bouncing_ball import article, figures, pages, paper, tables
-from bouncing_ball.claims import CLAIMS, judge, table1_ends
-from bouncing_ball.configuration import mistakes
 from bouncing_ball.continuation import NoOrbit
-from bouncing_ball.datasets import computed
-from bouncing_ball.figures import Empty
-from bouncing_ball.verdicts import VERDICTS, answer
+from carbonelli2011 import article, figures, index, paper, tables
+from carbonelli2011.claims import CLAIMS, judge, table1_ends
+from carbonelli2011.figures import Empty
+from paper_replication import templates, texts
+from paper_replication.configuration import mistakes
+from paper_replication.datasets import computed, other_parameters
+from paper_replication.verdicts import VERDICTS, answer
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
 STAGES = [name for name in CONFIG if (ROOT / f"workflow/scripts/{name}.py").exists()]
@@ -288,8 +289,8 @@ def assert_numbers_are_true(name: str, data) -> None:
             assert {row[4] + row[6] for row in tables.table1(data)[1:]} == {""}
 
 
-def finite(value, digits, shift=0, fixed=article.fixed) -> str:
-    """`article.fixed` for a number that is there."""
+def finite(value, digits, shift=0, fixed=texts.fixed) -> str:
+    """`texts.fixed` for a number that is there."""
     assert np.isfinite(value)
     return fixed(value, digits, shift)
 
@@ -308,7 +309,7 @@ def assert_texts_are_true(changed: dict) -> None:
     others = {
         name
         for name, data in changed.items()
-        if paper.other_parameters(name, data, paper.PARAMETERS.get(name, {}))
+        if other_parameters(name, data, paper.PARAMETERS.get(name, {}))
     }
     unasked = set()
     for claim in EVERY:
@@ -322,8 +323,8 @@ def assert_texts_are_true(changed: dict) -> None:
     if unasked or paper.differences(datasets):
         return
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(article, "fixed", finite)
-        filters = article.environment(article.TEMPLATES, True).filters
+        patch.setattr(texts, "fixed", finite)
+        filters = templates.environment(templates.TEMPLATES, True).filters
         patch.setitem(filters, "fixed", finite)
         for name in ("paper", "supplement"):
             if changed.keys() & named_in(name):
@@ -340,7 +341,7 @@ def test_a_configuration_at_an_edge_gives_true_results_or_one_line(section, name
     try:
         data = made(section, name, config)
         if name in figures.PLOTS:
-            other = paper.other_parameters(name, data, paper.PARAMETERS.get(name, {}))
+            other = other_parameters(name, data, paper.PARAMETERS.get(name, {}))
             assert_picture_is_true(name, data, not other)
     except (NoOrbit, Empty) as error:
         assert re.search(r"give|must|need|above", str(error)) and "\n" not in str(error)
@@ -394,6 +395,6 @@ def test_another_release_gives_true_pages():
     assert_texts_are_true(found)
     datasets = reference() | found
     datasets["claims"] = judge(datasets).assign_attrs(reference()["claims"].attrs)
-    page = re.sub(r"(?s)<style>.*?</style>", "", pages.filled_in("html", datasets, ENTRIES))
+    page = re.sub(r"(?s)<style>.*?</style>", "", index.filled_in("html", datasets, ENTRIES))
     assert not re.search(r"\bnan\b|\binf\b|\bNone\b(?! of)|\w+Error\b", page)
     assert article.written("paper", datasets).startswith("# Article of another run")

@@ -16,7 +16,9 @@ from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
 from PIL import Image
 
-from bouncing_ball import datasets, drawing, figures, paper, restitution
+from bouncing_ball import restitution
+from carbonelli2011 import curves, figures, paper
+from paper_replication import datasets, drawing
 
 REFERENCE = Path(__file__).parents[1] / "figures"
 NAMES = sorted(figures.FIGURES)
@@ -162,7 +164,7 @@ def test_each_contact_of_figure_8_has_a_panel_at_one_scale_of_the_phase():
     assert len(axes) == data.sizes["frequency_ratio"]
     for panel, ratio in zip(axes, data.frequency_ratio, strict=True):
         names = {text.get_text() for text in panel.texts}
-        assert names == {drawing.label(frequency_ratio=ratio)}
+        assert names == {curves.label(frequency_ratio=ratio)}
         branch = data.sel(frequency_ratio=ratio)
         drawn = {tuple(point) for line in panel.lines for point in line.get_xydata()}
         for phase in PHASES:
@@ -202,13 +204,13 @@ def branches(name, data):
     if name == "fig03":
         families = [data.sel(n=n) for n in data.n]
         exact = [family.sel(impact_map="exact") for family in families]
-        return [drawing.restitution_branch(*each) for each in zip(families, exact, strict=True)]
+        return [curves.restitution_branch(*each) for each in zip(families, exact, strict=True)]
     contacts = [data.sel(frequency_ratio=ratio) for ratio in data.frequency_ratio]
-    found = [drawing.spring_damper_branch(contact) for contact in contacts]
+    found = [curves.spring_damper_branch(contact) for contact in contacts]
     if name == "fig15":
         variables = ("amplitude", "phase", "stable", "admissible")
         rigid = xr.Dataset({each: data[f"restitution_{each}"] for each in variables})
-        found.append(drawing.restitution_branch(rigid, data))
+        found.append(curves.restitution_branch(rigid, data))
     return found
 
 
@@ -234,7 +236,7 @@ def test_line_styles_are_the_stability(name):
                 # A line begins or ends where the kind changes, so that the part beyond decides.
                 beyond = [
                     line
-                    for kind in drawing.KINDS
+                    for kind in curves.KINDS
                     for line in lines_of(figure, kind)
                     if (at(line, x, y) < len(line.get_xdata()) - 1).any()
                 ]
@@ -260,10 +262,10 @@ def test_marks_are_at_the_special_points(name):
             ):
                 marks = lines_of(figure, kind)
                 assert any(at(line, x, y).size for line in marks)
-                assert {line.get_marker() for line in marks} == {drawing.MARKS[kind]["marker"]}
+                assert {line.get_marker() for line in marks} == {curves.MARKS[kind]["marker"]}
                 # The line of the branch passes through it too.
-                curves = [line for each in drawing.KINDS for line in lines_of(figure, each)]
-                assert any(at(line, x, y).size for line in curves)
+                drawn = [line for each in curves.KINDS for line in lines_of(figure, each)]
+                assert any(at(line, x, y).size for line in drawn)
                 count += 1
     assert count >= 4
 
@@ -271,7 +273,7 @@ def test_marks_are_at_the_special_points(name):
 @pytest.mark.parametrize("name", ["fig03", "fig15"])
 def test_the_period_doublings_of_eq_8_are_marked(name):
     """They are orbits of Eq. 6, at the Λ of Eq. 8."""
-    given = drawing.parameters(reference(name))
+    given = datasets.parameters(reference(name))
     n = np.unique(given["n"])
     r = given["restitution"]
     marks = lines_of(of_reference(name), "period doubling, Eq. 8")
@@ -284,12 +286,12 @@ def test_the_period_doublings_of_eq_8_are_marked(name):
 
 def test_a_short_stable_range_is_seen_between_its_marks():
     axes = of_reference("fig08").axes[-1]
-    branch = drawing.spring_damper_branch(reference("fig08").sel(frequency_ratio=2.0))
+    branch = curves.spring_damper_branch(reference("fig08").sel(frequency_ratio=2.0))
     special = branch.isel(special=np.flatnonzero(branch.special_kind != ""))
     special = special.sortby("special_along")
     places = np.stack([special.special_amplitude, special.special_release_phase / np.pi], axis=1)
     points = axes.transData.transform(places) * drawing.POINTS / axes.figure.dpi
-    size = max(drawing.MARKS[kind]["markersize"] for kind in special.special_kind.values)
+    size = max(curves.MARKS[kind]["markersize"] for kind in special.special_kind.values)
     # What is seen of the line is at least as long as a mark.
     assert np.linalg.norm(np.diff(points, axis=0), axis=1).min() > 2 * size
 
@@ -325,8 +327,8 @@ def test_phases_of_a_stiff_contact_have_one_label_and_those_of_a_compliant_one_t
 def test_both_phases_differ_in_width_and_lightness():
     figure = of_reference("fig08")
     looks = {(line.get_linewidth(), line.get_color()) for line in lines_of(figure, "stable")}
-    wide = [grey(colour) for width, colour in looks if width == drawing.WIDE]
-    narrow = [grey(colour) for width, colour in looks if width == drawing.NARROW]
+    wide = [grey(colour) for width, colour in looks if width == curves.WIDE]
+    narrow = [grey(colour) for width, colour in looks if width == curves.NARROW]
     assert len(wide) == len(narrow) == 3
     assert all(light - dark > 0.2 for light, dark in zip(sorted(wide), sorted(narrow), strict=True))
 
@@ -673,7 +675,7 @@ def test_a_picture_appears_whole_or_not_at_all(tmp_path):
 
 def test_drawing_imports_neither_pyplot_nor_scipy():
     code = (
-        "import sys, bouncing_ball.figures\n"
+        "import sys, carbonelli2011.figures\n"
         "print([name for name in ('matplotlib.pyplot', 'scipy') if name in sys.modules])"
     )
     answer = subprocess.run(
@@ -766,12 +768,12 @@ def test_the_legend_of_the_map_has_the_advised_frequency_ratio_of_the_dataset():
 def test_the_legend_of_the_map_has_its_curves_and_calls_only_those_of_the_paper_so():
     data = reference("validity_map").isel(n=[0], quantity=[0])
     one = {"n": 1, "restitution": 0.5, "amplitude": 1.2}
-    for curves, place, expected in (
+    for marked, place, expected in (
         (paper.unique(paper.CURVES), data.curve_place, ["curves of the paper"]),
         ([one], data.curve_place, ["other curves"]),
         ([one], data.curve_place + 2, []),
     ):
-        other = with_parameters(data.assign(curve_place=place), curves=curves)
+        other = with_parameters(data.assign(curve_place=place), curves=marked)
         figure = figures.draw("validity_map", other)
         entries = [text.get_text() for text in figure.legends[0].get_texts()]
         assert [each for each in entries if "curves" in each] == expected

@@ -8,8 +8,10 @@ import pytest
 import xarray as xr
 from tests.reference import ENTRIES, FIGURES, TOP, reference
 
-from bouncing_ball import article, origins, pages, tables
-from bouncing_ball.claims import judge
+from carbonelli2011 import article, index, tables
+from carbonelli2011.claims import judge
+from paper_replication import judgements, origins
+from paper_replication import pages as text_pages
 
 CAPTIONS = {name: entry["caption"] for name, entry in ENTRIES.items() if "caption" in entry}
 
@@ -58,11 +60,11 @@ def texts(data) -> dict[str, str]:
     marked = {name: article.written(name, data) for name in ("paper", "supplement")}
     origin = {name: article.origins_of(name, data) for name in marked}
     found = {
-        f"{name}.html": pages.page_of(text, name, CAPTIONS, origin[name])
+        f"{name}.html": text_pages.page_of(text, name, CAPTIONS, origin[name])
         for name, text in marked.items()
     }
-    found["numbers.html"] = pages.numbers(marked, origin, data)
-    return found | {"index.html": pages.filled_in("html", data, ENTRIES)}
+    found["numbers.html"] = text_pages.numbers(marked, origin, data)
+    return found | {"index.html": index.filled_in("html", data, ENTRIES)}
 
 
 @pytest.fixture(scope="module")
@@ -73,12 +75,14 @@ def read(texts) -> dict[str, Page]:
 @pytest.fixture(scope="module")
 def listed(data) -> str:
     """The list of figures."""
-    return pages.filled_in("md", data, ENTRIES)
+    return index.filled_in("md", data, ENTRIES)
 
 
 def judged(data) -> list[dict]:
     """The claims that are counted."""
-    return [each for group in tables.GROUPS for each in tables.claims_of(data["claims"], group)]
+    return [
+        each for group in judgements.GROUPS for each in judgements.claims_of(data["claims"], group)
+    ]
 
 
 # All pages
@@ -155,12 +159,12 @@ def test_the_exceptions_are_those_of_the_map(data):
     other["failing_mean"].loc["summit"] = [0.2, 0.0004, 0.0]
     other["doubled_mean"][:] = 0.25
     other["below_mean"][:] = [0.0, 0.2, 1.3]
-    assert pages.exceptions(other)[1:3] == [
+    assert index.exceptions(other)[1:3] == [
         ["maximum height in flight", "0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
         ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
     ]
-    assert pages.exceptions(other)[-2][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
-    assert pages.exceptions(other)[-1][2:] == [
+    assert index.exceptions(other)[-2][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
+    assert index.exceptions(other)[-1][2:] == [
         "every r from 0.05 to 0.95, below the saddle-node",
         *("none", "20.0 %", "130.0 %"),
     ]
@@ -179,7 +183,7 @@ def test_the_exceptions_are_those_of_the_map(data):
 def test_a_share_at_one_side_of_the_range_is_said_where_it_is_positive(shares, where):
     over = {"n": [1, 2], "restitution": [0.1, 0.9]}
     share = xr.DataArray(shares, over, ("n", "restitution"))
-    assert pages.positive(share, "next to it") == where
+    assert index.positive(share, "next to it") == where
 
 
 def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
@@ -187,7 +191,7 @@ def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
     claims = data["claims"]
     new = claims.isel(claim=[0]).assign_coords(claim=["new"]).assign(beside=("claim", ["fig17"]))
     every = data | {"fig17": data["fig14"], "claims": xr.concat([claims, new], "claim")}
-    text = pages.filled_in("html", every, ENTRIES | {"fig17": entry})
+    text = index.filled_in("html", every, ENTRIES | {"fig17": entry})
     found = Page(text[text.index('<section id="fig17"') : text.index("</main>")])
     assert "Figure 17: <another>" in found.texts
     assert found.places["alt"][0] == "Another & more."
@@ -200,10 +204,10 @@ def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     unasked = int((changed["claims"].verdict == "not asked").sum())
     reason = "other parameters: fig14.n is 2 instead of 1"
-    page = Page(pages.filled_in("html", changed, ENTRIES))
+    page = Page(index.filled_in("html", changed, ENTRIES))
     assert f"This run cannot judge it: {reason}" in page.texts
     assert f"This run cannot judge {unasked} of these claims" in page.texts
-    listed = pages.filled_in("md", changed, ENTRIES)
+    listed = index.filled_in("md", changed, ENTRIES)
     assert f"*not asked*: this run cannot judge it, {reason} |" in listed
     assert any("above 82; this run has other parameters." in text for text in page.texts)
     assert not any("his run" in text for text in read["index.html"].texts)
@@ -215,7 +219,7 @@ def test_the_answer_is_not_given_for_other_orbits(data, read):
     other = data["validity_map"].attrs["parameters"].replace('"advised": 100.0', '"advised": 9.0')
     changed = data | {"validity_map": data["validity_map"].assign_attrs(parameters=other)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
-    page = Page(pages.filled_in("html", changed, ENTRIES))
+    page = Page(index.filled_in("html", changed, ENTRIES))
     assert "This run has other parameters than the paper" in page.texts
     assert not any("is stiff enough" in text for text in page.texts)
 
@@ -229,7 +233,7 @@ def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
     other = data["fig03"].attrs["parameters"].replace("[1, 2, 3, 4, 5]", "[7]")
     changed["fig03"] = data["fig03"].assign_attrs(parameters=other)
     for name in ("paper", "supplement"):
-        page = Page(pages.page_of(article.written(name, changed), name, CAPTIONS))
+        page = Page(text_pages.page_of(article.written(name, changed), name, CAPTIONS))
         assert "fig03: n is 7 instead of 1, 2, 3, 4, 5" in page.texts
         assert "fig14: n is 2 instead of 1" in page.texts
         assert {"index.html", "index.html#claims"} <= {*page.places["href"]}

@@ -14,10 +14,12 @@ from scipy.optimize import brentq, minimize_scalar
 from tests import independent
 from tests.reference import CONFIG, ROOT, printed_rows, reference, stage, table_with_another_row
 
-from bouncing_ball import article, claims, errors, orbits, pages
-from bouncing_ball.paper import QUANTITIES
+from bouncing_ball import errors, orbits
 from bouncing_ball.spring_damper import RELEASES
-from bouncing_ball.verdicts import against_print
+from carbonelli2011 import claims, index
+from carbonelli2011.paper import QUANTITIES
+from paper_replication import texts
+from paper_replication.verdicts import against_print
 
 ORBITS = 1e-9
 """Orbits are solved to 1e-11, and the closed form amplifies this on stiff contacts."""
@@ -708,7 +710,7 @@ def test_the_shares_of_the_validity_map_are_those_of_its_errors():
 def printed_shares(data):
     """What pages and panels print of a validity map, and a share that is printed at r = 0.05."""
     first = data.failing_share.sel(quantity="apparent_restitution")[:, 0].values
-    return [pages.exceptions(data), [article.percent(share, 0) for share in first]]
+    return [index.exceptions(data), [texts.percent(share, 0) for share in first]]
 
 
 def test_each_printed_digit_of_the_validity_map_is_that_of_grids_with_half_of_the_points():

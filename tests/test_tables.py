@@ -9,8 +9,9 @@ import pytest
 import xarray as xr
 from tests.reference import printed_rows, reference, table_with_another_row
 
-from bouncing_ball import tables
-from bouncing_ball.verdicts import against_print
+from carbonelli2011 import tables
+from paper_replication import judgements, texts
+from paper_replication.verdicts import against_print
 
 BOUNDS = ["saddle-node", "period doubling"]
 PARAMETERS = {
@@ -169,11 +170,11 @@ def test_the_choices_are_listed_with_the_verdicts_that_they_change():
 
 def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():
     comparison = against_print(1.0383, "1.032")
-    assert tables.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"
-    assert tables.distance_text(np.nan, np.nan) == ""
+    assert judgements.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"
+    assert judgements.distance_text(np.nan, np.nan) == ""
 
 
 def test_markdown_and_csv_have_the_same_cells():
     rows = [["a, b", "c"], ["1", "2"]]
-    assert tables.markdown(rows) == "| a, b | c |\n| --- | --- |\n| 1 | 2 |\n"
-    assert list(csv.reader(io.StringIO(tables.comma_separated(rows)))) == rows
+    assert texts.markdown(rows) == "| a, b | c |\n| --- | --- |\n| 1 | 2 |\n"
+    assert list(csv.reader(io.StringIO(texts.comma_separated(rows)))) == rows

@@ -9,8 +9,9 @@ import yaml
 from tests.reference import ROOT, reference
 
 import bouncing_ball
-from bouncing_ball import article, claims, figures, tables
-from bouncing_ball.drawing import style
+from carbonelli2011 import claims, figures
+from paper_replication import judgements, texts
+from paper_replication.drawing import style
 
 PAGES = ["README.md", "CONTRIBUTING.md", "paper.md", "supplement.md", "figures/README.md"]
 PAGES += [f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))]
@@ -31,25 +32,25 @@ def words(page: str) -> str:
 def numbers_of_readme() -> set[str]:
     """The decimal numbers that the datasets give to the README, as it prints them."""
     data = reference()
-    judged = tables.claims_of(data["claims"], "printed number")
+    judged = judgements.claims_of(data["claims"], "printed number")
     ends = [claim for claim in judged if claim["item"] == "Table 1"]
     found = data["validity_map"]
     failing = found.failing_up_to.values
     # A quantity that fails at every r has no end.
     failing = failing[failing < found.restitution.max().item()]
     return {
-        article.fixed(data["fig14"].error_threshold, 2),
-        article.fixed(data["fig16"].error_threshold, 2),
-        article.fixed(max(abs(end["deviation_units"]) for end in ends), 2),
+        texts.fixed(data["fig14"].error_threshold, 2),
+        texts.fixed(data["fig16"].error_threshold, 2),
+        texts.fixed(max(abs(end["deviation_units"]) for end in ends), 2),
         *(
-            article.fixed(100 * error, 2)
+            texts.fixed(100 * error, 2)
             for error in found.stiff_error.max(["n", "restitution", "place"])
         ),
-        *(article.fixed(100 * share, 1) for share in found.doubled_mean),
-        *(article.fixed(100 * share, 1) for share in found.below_mean),
-        *(article.fixed(r, 2) for r in failing),
+        *(texts.fixed(100 * share, 1) for share in found.doubled_mean),
+        *(texts.fixed(100 * share, 1) for share in found.below_mean),
+        *(texts.fixed(r, 2) for r in failing),
         *(
-            figures.share_text(mean).strip("< %")
+            texts.share_text(mean).strip("< %")
             for mean in found.failing_mean.values.ravel()
             if mean > 0
         ),
@@ -72,11 +73,11 @@ def test_decimal_numbers_of_readme_are_those_of_the_datasets():
 def test_counts_of_readme_are_those_of_the_datasets():
     """Each stands before its verdict."""
     data = reference()
-    judged = tables.claims_of(data["claims"], "printed number")
+    judged = judgements.claims_of(data["claims"], "printed number")
     ends = [claim for claim in judged if claim["item"] == "Table 1"]
     reproduced = [end for end in ends if end["verdict"] == "reproduced"]
     near = [end for end in ends if 0.5 < abs(end["deviation_units"]) <= 1]
-    statements = tables.counts(data["claims"])["statement"]
+    statements = judgements.counts(data["claims"])["statement"]
     counts = [
         (len(ends), "ends"),
         (len(reproduced), "reproduced"),
@@ -93,7 +94,7 @@ def test_counts_of_readme_are_those_of_the_datasets():
     ]
     assert missing == []
     needed = data["validity_map"].enough_from.sel(quantity="summit")
-    assert f"ϖ = {article.fixed(needed.max(), 0)}" in readme
+    assert f"ϖ = {texts.fixed(needed.max(), 0)}" in readme
     assert f"a grid of {needed.size} n-T orbits" in readme
 
 
@@ -111,7 +112,7 @@ def test_the_journal_accepts_the_metadata():
 def test_the_authors_are_the_same_everywhere():
     names = [author["name"] for author in yaml.safe_load(text("metadata.yaml"))["authors"]]
     assert [each["name"] for each in yaml.safe_load(text("CITATION.cff"))["authors"]] == names
-    assert f"\n\n{article.listed(names)}.\n" in text("paper.md")
+    assert f"\n\n{texts.listed(names)}.\n" in text("paper.md")
 
 
 @pytest.mark.parametrize("folder", ["", "extras/beyond/", "extras/contacts/"])

@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from bouncing_ball import verdicts
+from paper_replication import verdicts
 
 # Printed numbers
 

@@ -25,7 +25,10 @@ ENTRIES = {
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}
-NO_NUMBER = {"bouncing_ball/variables.py", "bouncing_ball/provenance.py"}
+NO_NUMBER = {
+    "carbonelli2011/variables.py",
+    "paper_replication/provenance.py",
+}
 """Modules that decide no number: they are in no list of code."""
 
 
@@ -123,16 +126,16 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
         # A whole number may be written as a float.
         ("config/config.yaml", "impacts: 1024", "impacts: 1.024e+3", set()),
         # Which limit a claim has decides which choices change its verdict.
-        ("src/bouncing_ball/claims.py", "LINE = 0.01", "LINE = 0.02", {*TABLES, *TEXTS}),
+        ("src/carbonelli2011/claims.py", "LINE = 0.01", "LINE = 0.02", {*TABLES, *TEXTS}),
         (
             "config/config.yaml",
             "step: 0.2",
             "step: 0.1",
             {"continuation", "fig08", "fig09", "fig15", "table1", *TEXTS},
         ),
-        ("src/bouncing_ball/figures.py", "import", "import  ", FIGURES),
-        ("src/bouncing_ball/variables.py", "import", "import  ", set()),
-        ("src/bouncing_ball/compare.py", "import", "import  ", set()),
+        ("src/carbonelli2011/figures.py", "import", "import  ", FIGURES),
+        ("src/carbonelli2011/variables.py", "import", "import  ", set()),
+        ("src/paper_replication/compare.py", "import", "import  ", set()),
         ("workflow/templates/paper.md.j2", "the", "a", {"article"}),
     ],
 )

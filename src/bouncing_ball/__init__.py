@@ -1,9 +1,9 @@
 """Two models of a ball that bounces on a vibrating table, and their differences.
 
 In the restitution model an impact is an instant. In the spring-damper model an impact is a contact
-of finite duration. The package replicates A. Carbonelli, J. Perret-Liaudet, E. Rigaud and M.-S.
+of finite duration. The models are those of A. Carbonelli, J. Perret-Liaudet, E. Rigaud and M.-S.
 Feki, *Investigation of restitution coefficient and spring-damper models for the bouncing ball
-problem*, DETC2011-47870 (2011).
+problem*, DETC2011-47870 (2011); the package `carbonelli2011` replicates the paper with them.
 
 Read the modules in this order:
 
@@ -17,16 +17,6 @@ Read the modules in this order:
     search for these orbits, and continuation of families of orbits
 `errors`
     relative errors of the restitution model, and the stiffness that keeps them within a tolerance
-`datasets`, `variables`
-    netCDF files, and the meaning, the units and the tolerance of their variables
-`drawing`, `figures`
-    figures of the article
-`paper`, `measures`, `verdicts`, `claims`
-    printed numbers of the paper, numbers that follow from datasets, and the verdict on each claim
-`tables`, `article`, `pages`
-    tables, texts and pages that report the results
-`configuration`, `provenance`, `compare`
-    judgement of a configuration, origin of a result, and comparison with the reference
 
 Equations of the paper and the functions that implement them:
 

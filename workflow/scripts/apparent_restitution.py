@@ -10,9 +10,10 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import grid, save_stage
 
 QUANTITIES = (
     "phase",
@@ -101,4 +102,4 @@ STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -3,9 +3,10 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball import article, pages
-from bouncing_ball.datasets import read, save_record
-from bouncing_ball.origins import bare
+from carbonelli2011 import article, index
+from paper_replication import pages
+from paper_replication.datasets import read, save_record
+from paper_replication.origins import bare
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
@@ -14,8 +15,8 @@ captions = {name: entry["caption"] for name, entry in entries.items() if "captio
 marked = {name: article.written(name, datasets) for name in ("paper", "supplement")}
 origins = {name: article.origins_of(name, datasets) for name in marked}
 texts = {name: bare(text) for name, text in marked.items()} | {
-    "figures": pages.filled_in("md", datasets, entries),
-    "index": pages.filled_in("html", datasets, entries),
+    "figures": index.filled_in("md", datasets, entries),
+    "index": index.filled_in("html", datasets, entries),
     "numbers": pages.numbers(marked, origins, datasets),
 }
 for name, text in marked.items():

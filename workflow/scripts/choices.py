@@ -21,10 +21,11 @@ import restitution_model
 import time_histories
 import xarray as xr
 
-from bouncing_ball import claims
-from bouncing_ball.datasets import Datasets, computed, parameters, read, save, save_record
-from bouncing_ball.paper import TABLE_1, differences, printed_table
-from bouncing_ball.verdicts import Claim, answer
+from carbonelli2011 import claims
+from carbonelli2011.paper import TABLE_1, differences, printed_table
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import Datasets, computed, parameters, read, save, save_record
+from paper_replication.verdicts import Claim, answer
 
 ALONG_RATIO = {
     "fig05": apparent_restitution.cases,
@@ -187,5 +188,5 @@ if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
     found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
     title = "Verdicts that depend on what cannot be read in the paper"
-    save(found, snakemake.output.nc, title, {}, snakemake.input.code)
+    save(found, snakemake.output.nc, title, {}, snakemake.input.code, described, REFERENCE)
     save_record(snakemake)

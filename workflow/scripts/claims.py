@@ -3,16 +3,20 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.claims import judge
-from bouncing_ball.datasets import read, save, save_record
-from bouncing_ball.tables import all_claims, claims_markdown, comma_separated
+from carbonelli2011.claims import INTRODUCTION, judge
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import read, save, save_record
+from paper_replication.judgements import all_claims, claims_markdown
+from paper_replication.texts import comma_separated
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 verdicts = judge(datasets)
 title = "Verdicts on the paper's claims"
-save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code)
-Path(snakemake.output.md).write_text(claims_markdown(verdicts), encoding="utf-8", newline="\n")
+save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code, described, REFERENCE)
+Path(snakemake.output.md).write_text(
+    claims_markdown(verdicts, INTRODUCTION), encoding="utf-8", newline="\n"
+)
 table = comma_separated(all_claims(verdicts))
 Path(snakemake.output.csv).write_text(table, encoding="utf-8", newline="\n")
 save_record(snakemake)

@@ -17,10 +17,12 @@ sys.path.insert(0, str(TOP / "src"))
 
 import xarray as xr  # noqa: E402
 
-from bouncing_ball.compare import Project, main, report_of_run  # noqa: E402
-from bouncing_ball.drawing import save_picture  # noqa: E402
-from bouncing_ball.figures import FIGURES, draw  # noqa: E402
-from bouncing_ball.tables import TABLES, comma_separated, markdown  # noqa: E402
+from carbonelli2011.figures import FIGURES, draw  # noqa: E402
+from carbonelli2011.tables import TABLES  # noqa: E402
+from carbonelli2011.variables import described  # noqa: E402
+from paper_replication.compare import Project, main, report_of_run  # noqa: E402
+from paper_replication.drawing import save_picture  # noqa: E402
+from paper_replication.texts import comma_separated, markdown  # noqa: E402
 
 
 def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
@@ -38,6 +40,7 @@ PROJECT = Project(
     top=TOP,
     texts=("paper.md", "supplement.md"),
     make=make,
+    describe=described,
     code=("Snakefile", "config", "src", "workflow"),
 )
 

@@ -7,11 +7,12 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import Branch, End, NoOrbit, bifurcations, branch
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
-from bouncing_ball.paper import PARAMETERS, printed_table
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from carbonelli2011.paper import PARAMETERS, printed_table
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import grid, save_stage
 
 QUANTITIES = (
     "amplitude",
@@ -193,4 +194,4 @@ STAGE = {
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

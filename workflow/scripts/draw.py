@@ -3,9 +3,9 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read, save_record
-from bouncing_ball.drawing import save_picture
-from bouncing_ball.figures import Empty, draw
+from carbonelli2011.figures import Empty, draw
+from paper_replication.datasets import read, save_record
+from paper_replication.drawing import save_picture
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 shown = [read(path) for path in snakemake.input.data]

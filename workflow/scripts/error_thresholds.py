@@ -7,10 +7,11 @@ import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import grid, save_stage
 
 
 def fig14(parameters: dict, release: str) -> xr.Dataset:
@@ -72,4 +73,4 @@ STAGE = {"fig14": fig14, "thresholds": thresholds}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

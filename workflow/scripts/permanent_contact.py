@@ -7,8 +7,9 @@ import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
 from bouncing_ball.continuation import NoOrbit
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import permanent_contact_error, threshold
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import grid, save_stage
 
 
 def damping(r: float, release: str) -> float:
@@ -58,4 +59,4 @@ STAGE = {"fig11": fig11, "fig16": fig16}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -20,7 +20,6 @@ from scipy.stats import permutation_test
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import at_amplitude, at_bifurcation, bifurcations, correct, walk
-from bouncing_ball.datasets import save_stage
 from bouncing_ball.errors import (
     enough_from,
     orbits_along,
@@ -28,14 +27,12 @@ from bouncing_ball.errors import (
     relative_error,
     threshold,
 )
-from bouncing_ball.measures import ROUNDING
 from bouncing_ball.orbits import Family
-from bouncing_ball.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, printed_table
-from bouncing_ball.spring_damper import (
-    RELEASES,
-    Contact,
-    damping_ratio,
-)
+from bouncing_ball.spring_damper import RELEASES, Contact, damping_ratio
+from carbonelli2011.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, printed_table
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import save_stage
+from paper_replication.verdicts import ROUNDING
 
 DIGIT = 0.001
 """The last digit of Table 1."""
@@ -318,4 +315,4 @@ STAGE = {"hypotheses": hypotheses}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import save_stage
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import save_stage
 
 # Impacts of each ball that are stored.
 FIRST = 12
@@ -105,4 +106,4 @@ STAGE = {"fig02": fig02, "fig03": fig03, "three_balls": three_balls}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -3,8 +3,9 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read, save_record
-from bouncing_ball.tables import TABLES, comma_separated, markdown
+from carbonelli2011.tables import TABLES
+from paper_replication.datasets import read, save_record
+from paper_replication.texts import comma_separated, markdown
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 rows = TABLES[Path(snakemake.output.md).stem](read(snakemake.input.data))

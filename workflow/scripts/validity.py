@@ -14,10 +14,11 @@ from scipy.interpolate import CubicSpline
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import SPECIAL, bifurcations
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import grid, save_stage
 
 FINER = (16, 8)
 """Steps of the interpolation in each step of the grid of r, and of places. With twice as many, the
@@ -212,4 +213,4 @@ STAGE = {"validity_map": validity_map}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -17,8 +17,8 @@ from docutils.nodes import SkipNode
 from docutils.utils.math.latex2mathml import tex2mathml
 
 import bouncing_ball_beyond
-from bouncing_ball import pages
-from bouncing_ball.datasets import read
+from carbonelli2011 import index
+from paper_replication.datasets import read
 
 ROOT = Path(__file__).parents[3]
 EXPLORER = "extras/beyond/figures/explorer.html"
@@ -157,7 +157,7 @@ def home(app, failure):
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
     stages = [section for section in config.values() if isinstance(section, dict)]
     entries = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
-    page = pages.filled_in("html", {path.stem: read(path) for path in names}, entries)
+    page = index.filled_in("html", {path.stem: read(path) for path in names}, entries)
     # The tables in Markdown are pages of the site.
     page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', page)
     (folder / "index.html").write_text(page, encoding="utf-8")

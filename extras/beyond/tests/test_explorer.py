@@ -16,10 +16,10 @@ import pytest
 from integrated import contact, flight
 
 import bouncing_ball_beyond
-from bouncing_ball.datasets import read
 from bouncing_ball_beyond import SpringDamper
 from bouncing_ball_beyond.error_law import law_errors
 from bouncing_ball_beyond.tables import SINE, Table
+from paper_replication.datasets import read
 from studies.explorer import BOUND, page
 
 BEYOND = Path(__file__).resolve().parents[1]

@@ -142,7 +142,7 @@ def test_a_name_needs_its_stage_only(stubs):
         ("workflow/explorer/model.js", "", "// changed\n", {"explorer_page"}),
         ("workflow/templates/article.md.j2", "the", "a", {"article"}),
         ("workflow/studies/variables.py", "import", "import  ", set()),
-        ("../../src/bouncing_ball/compare.py", "import", "import  ", set()),
+        ("../../src/paper_replication/compare.py", "import", "import  ", set()),
     ],
 )
 def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):

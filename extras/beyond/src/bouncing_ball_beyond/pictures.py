@@ -14,11 +14,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from bouncing_ball.drawing import KINDS, WIDTH, colours, legend_below, pale, pieces, sample, style
 from bouncing_ball_beyond.branches import FollowedBranch, SpecialCurve
 from bouncing_ball_beyond.paths import OF_TABLES
 from bouncing_ball_beyond.periodic import PeriodicOrbit
 from bouncing_ball_beyond.results import OF_IMPACTS, OF_ORBITS, PARAMETERS
+from carbonelli2011.curves import KINDS, pieces
+from paper_replication.drawing import WIDTH, colours, legend_below, pale, sample, style
 
 MARKS = {
     "saddle-node": "o",

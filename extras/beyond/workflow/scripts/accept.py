@@ -5,7 +5,7 @@ from pathlib import Path
 
 from compare import PROJECT
 
-from bouncing_ball.compare import accept
+from paper_replication.compare import accept
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 try:

@@ -12,7 +12,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball.continuation import bifurcations
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.restitution import period_doubling, period_doubling_height, saddle_node
 from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.balls import Rigid, SpringDamper, damping_of
@@ -20,7 +19,8 @@ from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.error_law import free_impact, law_coefficients, law_errors
 from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.tables import Table
-from studies.variables import described
+from paper_replication.datasets import grid, save_stage
+from studies.variables import REFERENCE, described
 
 # Points of the drawn branches on each side of the saddle-node.
 POINTS = 101
@@ -202,4 +202,4 @@ STAGE = {"ext_answers": ext_answers}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

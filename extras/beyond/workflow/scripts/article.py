@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read, save_record
+from paper_replication.datasets import read, save_record
 from studies.article import filled_in
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")

@@ -5,12 +5,12 @@ import sys
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import save_stage
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.periodic import orbit
-from studies.variables import described
+from paper_replication.datasets import save_stage
+from studies.variables import REFERENCE, described
 
 NEAR = 1e-3
 """Sum of the distances in phase and in relative speed below which a touch is that of the orbit."""
@@ -88,4 +88,4 @@ STAGE = {"ext_basin": ext_basin}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

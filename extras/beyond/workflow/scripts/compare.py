@@ -15,9 +15,9 @@ sys.path[:0] = [str(TOP / folder) for folder in ("src", "workflow", "../../src")
 
 import xarray as xr  # noqa: E402
 
-from bouncing_ball.compare import Project, main, report_of_run  # noqa: E402
-from bouncing_ball.drawing import save_picture  # noqa: E402
-from bouncing_ball.tables import comma_separated, markdown  # noqa: E402
+from paper_replication.compare import Project, main, report_of_run  # noqa: E402
+from paper_replication.drawing import save_picture  # noqa: E402
+from paper_replication.texts import comma_separated, markdown  # noqa: E402
 from studies.explorer import page  # noqa: E402
 from studies.figures import FIGURES, draw  # noqa: E402
 from studies.tables import TABLES  # noqa: E402

@@ -20,7 +20,6 @@ import xarray as xr
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, Signature, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import (
@@ -32,8 +31,9 @@ from bouncing_ball_beyond.error_law import (
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.search import guess_of_instants
 from bouncing_ball_beyond.tables import SINE
+from paper_replication.datasets import grid, save_stage
 from studies.orbits import damping, flight_height, last_zero, solved
-from studies.variables import described
+from studies.variables import REFERENCE, described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -279,4 +279,4 @@ STAGE = {"ext_laws": ext_laws}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read, save_record
-from bouncing_ball.drawing import save_picture
+from paper_replication.datasets import read, save_record
+from paper_replication.drawing import save_picture
 from studies.figures import draw
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")

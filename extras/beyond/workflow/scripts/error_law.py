@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import permanent_contact_error, threshold
 from bouncing_ball_beyond.balls import Ball, Corrected, SpringDamper, damping_of
 from bouncing_ball_beyond.error_law import (
@@ -20,8 +19,9 @@ from bouncing_ball_beyond.error_law import (
     law_thresholds,
     restitution_values,
 )
+from paper_replication.datasets import grid, save_stage
 from studies.orbits import exact_values, half_next_to_saddle_node, last_zero, random_orbits
-from studies.variables import described
+from studies.variables import REFERENCE, described
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
 MODELS = {"restitution": None, "corrected": Corrected}
@@ -200,4 +200,4 @@ STAGE = {"ext_orders": ext_orders}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -7,7 +7,6 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.error_law import contact_values, law_errors, rows_of_orbits
@@ -15,8 +14,9 @@ from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
 from bouncing_ball_beyond.tables import Table
+from paper_replication.datasets import grid, save_stage
 from studies.orbits import follow_compliant, random_orbits
-from studies.variables import described
+from studies.variables import REFERENCE, described
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
@@ -225,4 +225,4 @@ STAGE = {"explorer": explorer}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

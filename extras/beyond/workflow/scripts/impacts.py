@@ -5,10 +5,10 @@ import sys
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import save_stage
 from bouncing_ball_beyond.balls import Impact, SpringDamper, damping_of
 from bouncing_ball_beyond.periodic import orbit
-from studies.variables import described
+from paper_replication.datasets import save_stage
+from studies.variables import REFERENCE, described
 
 RELEASES = ["displacement", "force"]
 
@@ -90,4 +90,4 @@ STAGE = {"ext_impact": ext_impact, "ext_instant": ext_instant}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -13,7 +13,6 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
-from bouncing_ball.datasets import save_stage
 from bouncing_ball_beyond.balls import Ball, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.bounces import Balls, step
 from bouncing_ball_beyond.error_law import (
@@ -25,7 +24,8 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.tables import Table
-from studies.variables import described
+from paper_replication.datasets import save_stage
+from studies.variables import REFERENCE, described
 from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -358,4 +358,4 @@ STAGE = {"ext_phase": ext_phase}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

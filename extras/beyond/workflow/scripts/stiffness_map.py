@@ -11,14 +11,14 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.continuation import bifurcations
-from bouncing_ball.datasets import grid, save_stage
 from bouncing_ball.errors import COMPARED, enough_from, orbits_along
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.error_law import free_impact, law_errors, law_thresholds
-from studies.variables import described
+from paper_replication.datasets import grid, save_stage
+from studies.variables import REFERENCE, described
 
 LEVELS = (10.0, 20.0, 50.0, 100.0, 200.0, 1000.0)
 """The ϖ of the lines of the figure; that of the paper is added."""
@@ -86,4 +86,4 @@ STAGE = {"ext_map": ext_map}
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described)
+    save_stage(STAGE, snakemake, described, REFERENCE)

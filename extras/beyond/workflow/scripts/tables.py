@@ -3,8 +3,8 @@
 import sys
 from pathlib import Path
 
-from bouncing_ball.datasets import read, save_record
-from bouncing_ball.tables import comma_separated, markdown
+from paper_replication.datasets import read, save_record
+from paper_replication.texts import comma_separated, markdown
 from studies.tables import TABLES
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")

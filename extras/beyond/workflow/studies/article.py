@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from bouncing_ball.article import environment
-from bouncing_ball.datasets import Datasets, parameters
+from paper_replication.datasets import Datasets, parameters
+from paper_replication.templates import environment
 
 TEMPLATES = Path(__file__).parents[1] / "templates"
 

@@ -9,20 +9,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from bouncing_ball.datasets import parameters
-from bouncing_ball.drawing import (
+from carbonelli2011.curves import TABLE, along_ratio, label, title
+from paper_replication.datasets import parameters
+from paper_replication.drawing import (
     COLOURS,
     DASHES,
     GUIDE,
-    TABLE,
     Look,
-    along_ratio,
-    label,
     legend_below,
     panels,
     sample,
     style,
-    title,
 )
 from studies.variables import LAW_NAMES
 

@@ -2,8 +2,8 @@
 
 import xarray as xr
 
-from bouncing_ball.datasets import parameters
-from bouncing_ball.tables import each, number
+from paper_replication.datasets import parameters
+from paper_replication.texts import each, number
 from studies.variables import LAW_NAMES
 
 

@@ -4,7 +4,8 @@ These are the variables of the replication, whose module `datasets` says what a 
 those of the studies here.
 """
 
-from bouncing_ball.variables import SYMBOLS, Variable
+from carbonelli2011.variables import SYMBOLS
+from paper_replication.datasets import Variable
 
 VARIABLES = SYMBOLS | {
     # Coordinates

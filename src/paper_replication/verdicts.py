@@ -26,11 +26,27 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball.datasets import Datasets
-from bouncing_ball.measures import ROUNDING, largest, smallest
-from bouncing_ball.paper import LIMIT, other_parameters
+from paper_replication.datasets import Datasets, other_parameters
+
+ROUNDING = 1e-9
+"""Relative difference below which numbers are equal: rounding errors of the datasets are 1e-12."""
 
 VERDICTS = ("reproduced", "partly", "not reproduced", "not testable", "not asked")
+
+
+def largest(values: ArrayLike) -> float:
+    """Return the largest number; NaN if there are none, or if one is NaN.
+
+    >>> largest([1.0, 2.0]), largest([1.0, np.nan]), largest([])
+    (2.0, nan, nan)
+    """
+    numbers = np.asarray(values, dtype=float)
+    return float(numbers.max()) if numbers.size else np.nan
+
+
+def smallest(values: ArrayLike) -> float:
+    """Return the smallest number; NaN if there are none, or if one is NaN."""
+    return -largest(-np.asarray(values, dtype=float))
 
 
 # Printed numbers
@@ -112,16 +128,16 @@ def at_least(name: str, values: ArrayLike, bound: float) -> Reading:
     return Reading(name, found >= bound, found, f"at least {three_digits(bound)}")
 
 
-def within_limit(name: str, values: ArrayLike) -> Reading:
-    """Require that no share is larger than the error that the paper allows."""
+def within(name: str, values: ArrayLike, limit: float) -> Reading:
+    """Require that no share is larger than a limit."""
     found = largest(values)
-    return Reading(name, found <= LIMIT, found, f"at most {100 * LIMIT:g} %", True)
+    return Reading(name, found <= limit, found, f"at most {100 * limit:g} %", True)
 
 
-def beyond_limit(name: str, values: ArrayLike) -> Reading:
-    """Require that no share is smaller than the error that the paper allows."""
+def beyond(name: str, values: ArrayLike, limit: float) -> Reading:
+    """Require that no share is smaller than a limit."""
     found = smallest(values)
-    return Reading(name, found >= LIMIT, found, f"at least {100 * LIMIT:g} %", True)
+    return Reading(name, found >= limit, found, f"at least {100 * limit:g} %", True)
 
 
 def above(name: str, values: ArrayLike) -> Reading:
@@ -248,7 +264,7 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
 def listed(readings: list[Reading]) -> list[str]:
     """Print readings, those that hold first, each with its number and the bound.
 
-    >>> listed([within_limit("Eq. 8", 0.0297), within_limit("Eq. 5", 0.000132)])
+    >>> listed([within("Eq. 8", 0.0297, 0.01), within("Eq. 5", 0.000132, 0.01)])
     ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
     """
     texts = []

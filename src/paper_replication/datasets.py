@@ -8,6 +8,7 @@ import json
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,34 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.provenance import computed_on, contents, versions
-from bouncing_ball.variables import Variable, described
+from paper_replication.provenance import computed_on, contents, versions
 
-REFERENCE = (
-    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
-    "spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
-)
+
+@dataclass(frozen=True)
+class Variable:
+    """Description of a variable, and the tolerance within which its numbers agree.
+
+    Attributes
+    ----------
+    long_name, symbol, equation, units
+        What the variable is, as text; the equation is that of the paper.
+    tolerance, floor
+        See the module. They apply to floating-point numbers only.
+    tolerance_scale
+        Another variable of the dataset, whose value replaces max(|y|, floor).
+    """
+
+    long_name: str
+    symbol: str = ""
+    equation: str = ""
+    units: str = "1"
+    tolerance: float = 1e-9
+    floor: float = 1e-3
+    tolerance_scale: str = ""
+
+
+Describe = Callable[[str], Mapping[str, Variable]]
+"""Returns the descriptions of the variables of a dataset, by its name."""
 Datasets = Mapping[str, xr.Dataset]
 """Datasets by the names of their figures and tables."""
 
@@ -46,7 +68,8 @@ def save(
     title: str,
     parameters: Mapping,
     code: Iterable[str | Path],
-    describe: Callable[[str], Mapping[str, Variable]] = described,
+    describe: Describe,
+    references: str = "",
 ) -> None:
     """Save a dataset as netCDF, atomically, with descriptions and provenance.
 
@@ -78,7 +101,7 @@ def save(
     complete = dataset.drop_encoding().assign_attrs(
         Conventions="CF-1.11",
         title=title,
-        references=REFERENCE,
+        references=references,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
         code=json.dumps(contents(code)),
         versions=json.dumps(versions()),
@@ -114,7 +137,8 @@ def write(path: Path, content: bytes) -> None:
 def save_stage(
     stage: Mapping[str, Callable[..., xr.Dataset]],
     snakemake: Any,
-    describe: Callable[[str], Mapping[str, Variable]] = described,
+    describe: Describe,
+    references: str = "",
 ) -> None:
     """Compute and save the datasets of a stage, for the job of its rule.
 
@@ -129,7 +153,7 @@ def save_stage(
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = computed(stage[name], entry | settings)
-        save(dataset, path, title, parameters(dataset), snakemake.input.code, describe)
+        save(dataset, path, title, parameters(dataset), snakemake.input.code, describe, references)
     save_record(snakemake)
 
 
@@ -196,3 +220,45 @@ def plain(value: Any) -> Any:
     if isinstance(value, list | tuple | np.ndarray):
         return [plain(each) for each in value]
     return value.item() if isinstance(value, np.generic) else value
+
+
+# Parameters
+
+
+def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
+    """Name the parameters of a dataset that differ from the needed ones; empty if none does.
+
+    Of a range only the needed keys count, and a set must be among the values of a list.
+    """
+    return "; ".join(others(name, parameters(data), needed))
+
+
+def others(name: str, given, needed) -> Iterator[str]:
+    """Yield what differs, with the name of its key.
+
+    >>> list(others("fig14", {"n": 2, "frequency_ratio": {"min": 2.0}}, {"n": 1}))
+    ['fig14.n is 2 instead of 1']
+    >>> list(others("tolerances", [0.1], {0.02, 0.1, 0.01}))
+    ['tolerances lacks 0.01, 0.02']
+    """
+    if isinstance(needed, Mapping) and isinstance(given, Mapping):
+        for key, value in needed.items():
+            yield from others(f"{name}.{key}", given.get(key), value)
+    elif isinstance(needed, set):
+        if missing := sorted(needed - {*(given or ())}):
+            yield f"{name} lacks {words(missing)}"
+    elif given != needed:
+        yield f"{name} is {words(given)} instead of {words(needed)}"
+
+
+def words(value: Any) -> str:
+    """Print a parameter, without square brackets, which would be those of a citation.
+
+    >>> words([{"n": 1, "amplitude": 0.8}])
+    '(amplitude 0.8, n 1)'
+    """
+    if isinstance(value, list):
+        return ", ".join(map(words, value))
+    if isinstance(value, Mapping):
+        return f"({', '.join(f'{key} {each}' for key, each in sorted(value.items()))})"
+    return str(value)

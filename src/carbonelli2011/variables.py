@@ -13,31 +13,12 @@ Symbols of the models mean the same in every dataset: `SYMBOLS`. All other varia
 dataset that has them: `OF_DATASET`.
 """
 
-from dataclasses import dataclass
+from paper_replication.datasets import Variable
 
-
-@dataclass(frozen=True)
-class Variable:
-    """Description of a variable, and the tolerance within which its numbers agree.
-
-    Attributes
-    ----------
-    long_name, symbol, equation, units
-        What the variable is, as text; the equation is that of the paper.
-    tolerance, floor
-        See the module. They apply to floating-point numbers only.
-    tolerance_scale
-        Another variable of the dataset, whose value replaces max(|y|, floor).
-    """
-
-    long_name: str
-    symbol: str = ""
-    equation: str = ""
-    units: str = "1"
-    tolerance: float = 1e-9
-    floor: float = 1e-3
-    tolerance_scale: str = ""
-
+REFERENCE = (
+    "Carbonelli, Perret-Liaudet, Rigaud and Feki, Investigation of restitution coefficient and "
+    "spring-damper models for the bouncing ball problem, DETC2011-47870 (2011)"
+)
 
 SYMBOLS = {
     # Coordinates

@@ -7,14 +7,13 @@ deriving them again; they are listed and not counted.
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import Datasets, parameters
-from bouncing_ball.measures import (
-    ROUNDING,
+from carbonelli2011.measures import (
     STIFF_CONTACTS,
     at,
     at_ratio,
@@ -23,17 +22,15 @@ from bouncing_ball.measures import (
     departure,
     error_of_eq_8,
     from_the_stiffest,
-    largest,
     last_special,
     residual,
     restitution_at_rest,
-    smallest,
     spread,
     stable_ranges,
     steps,
     stiff_errors,
 )
-from bouncing_ball.paper import (
+from carbonelli2011.paper import (
     BOUNDS,
     LIMIT,
     PARAMETERS,
@@ -43,17 +40,25 @@ from bouncing_ball.paper import (
     TABLE_1,
     printed_table,
 )
-from bouncing_ball.verdicts import (
+from paper_replication.datasets import Datasets, parameters
+from paper_replication.judgements import judged
+from paper_replication.verdicts import (
+    ROUNDING,
     Claim,
     above,
-    answer,
     argued,
     at_least,
     at_most,
-    beyond_limit,
-    within_limit,
+    beyond,
+    largest,
+    smallest,
+    within,
 )
 
+within_limit = partial(within, limit=LIMIT)
+"""Condition that a share is at most the error that the paper allows."""
+beyond_limit = partial(beyond, limit=LIMIT)
+"""Condition that a share is larger than that."""
 LINE = 0.01
 """Width of a line divided by the length of the axis, about 0.5 mm of 5 cm. Smaller differences are
 not visible in a figure."""
@@ -1048,67 +1053,19 @@ compared with its printed form in tests/test_formulas.py.
 """
 
 
-# All verdicts
+INTRODUCTION = """\
+# The claims of the paper and the verdict on each
 
-NOTHING = {
-    "claim": "",
-    "group": "",
-    "item": "",
-    "statement": "",
-    "decided_by": "",
-    "beside": "",
-    "printed_text": "",
-    "found": np.nan,
-    "deviation_units": np.nan,
-    "deviation": np.nan,
-    "verdict": "",
-    "own_sense": "",
-    "condition": [],
-    "reason": "",
-    "remark": "",
-}
-"""The variables of the dataset, for what a claim does not have."""
+A row is one claim of the paper, in our words.
+[Section 3 of the article](../paper.md) defines the four verdicts.
+A distance is in units of the last printed digit, and in per cent of the printed number.
+A statement is judged by a condition for each sense of its words: "yes" if it holds, "no" if not.
+The column *literal sense* says whether the first one holds, if they differ.
+Formulas were *restored* from the damaged text by deriving them again, and are not counted.
+"""
+"""The text above the claims on their page."""
 
 
 def judge(datasets: Datasets) -> xr.Dataset:
-    """The verdict on each claim, and the restored formulas, over the dimension `claim`.
-
-    Parameters
-    ----------
-    datasets : mapping
-        The datasets of the figures and tables by name. A claim whose datasets are missing is not
-        computed.
-    """
-    rows = [
-        NOTHING
-        | {
-            "claim": claim.name,
-            "group": "printed number" if claim.printed else "statement",
-            "item": claim.place,
-            "statement": claim.text,
-            "decided_by": ", ".join(claim.datasets),
-            "beside": claim.beside,
-            "printed_text": claim.printed,
-            "remark": claim.remark,
-        }
-        | answer(claim, datasets)
-        for claim in [*CLAIMS, *table1_ends()]
-    ]
-    rows += [
-        NOTHING
-        | {
-            "claim": equations,
-            "group": "restored formula",
-            "item": equations,
-            "statement": text,
-            "decided_by": members,
-            "condition": ["tests/test_formulas.py"],
-        }
-        for equations, text, members in FORMULAS
-    ]
-    most = max(len(row["condition"]) for row in rows)
-    padded = [[*row["condition"], *[""] * (most - len(row["condition"]))] for row in rows]
-    names = [name for name in NOTHING if name != "condition"]
-    columns = {name: ("claim", [row[name] for row in rows]) for name in names}
-    dataset = xr.Dataset(columns).assign(condition=(("claim", "sense"), padded))
-    return dataset.set_coords("claim")
+    """Judge the claims of the paper, and list the restored formulas."""
+    return judged(datasets, [*CLAIMS, *table1_ends()], FORMULAS, "tests/test_formulas.py")

@@ -1,8 +1,4 @@
-"""Pages for a browser: the results, and the article and its supplement; and the list of figures.
-
-The page of the results and the list are templates over the same parts. A part is a figure, a table
-or a dataset, with the claims that are shown next to it.
-"""
+"""Pages for a browser: texts in Markdown, and the origins of their numbers."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -11,20 +7,15 @@ from functools import cache
 from html import escape
 from itertools import pairwise
 
-import xarray as xr
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from bouncing_ball import article, origins, tables
-from bouncing_ball.claims import CLAIMS
-from bouncing_ball.datasets import Datasets, parameters
-from bouncing_ball.drawing import share_text
-from bouncing_ball.paper import QUANTITIES
-
-SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
-"""Parts with claims that belong to no single figure or table."""
+from paper_replication import origins
+from paper_replication.datasets import Datasets
+from paper_replication.judgements import counted
+from paper_replication.templates import TEMPLATES, environment
 
 
 @dataclass(frozen=True)
@@ -81,36 +72,6 @@ class Part:
     elsewhere: Sequence[str] = ()
 
 
-# The page of the results, and the list of figures
-
-
-def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **more) -> str:
-    """Return the list of figures in Markdown ("md"), or the page of the results ("html").
-
-    `entries` are the registered figures, tables and datasets by name.
-    """
-    found = parts(datasets, entries)
-    claims = datasets["claims"]
-    formulas = tables.claims_of(claims, "restored formula")
-    text = article.filled_in(
-        "figures",
-        datasets,
-        kind,
-        markdown=tables.markdown,
-        formula=convert,
-        counts=tables.counts(claims),
-        unasked=int((claims.verdict == "not asked").sum()),
-        exceptions=exceptions(datasets["validity_map"]),
-        formulas=tables.chosen(tables.SECTIONS["restored formula"], formulas),
-        figures=[part for part in found if "PNG" in part.files],
-        tabulated=[part for part in found if part.table],
-        others=[part for part in found if part.files.keys() == {"dataset"}],
-        general=[part for part in found if not part.files],
-        **more,
-    )
-    return with_subscripts(unbroken(text)) if kind == "html" else text
-
-
 def with_subscripts(page: str) -> str:
     """Set the indices of symbols below the line, in texts and not in tags.
 
@@ -120,38 +81,11 @@ def with_subscripts(page: str) -> str:
     return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
 
 
-def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
-    """All figures in the order of the paper, tables and datasets, then `SEVERAL`."""
-    found = []
-    for name in sorted(entries, key=lambda name: (not name.startswith("fig"), name)):
-        entry = entries[name]
-        kinds = {"dataset": "nc"} if name in datasets else {}
-        if "caption" in entry:
-            kinds |= {"PNG": "png", "SVG": "svg"}
-        if entry.get("table"):
-            kinds |= {"CSV": "csv", "Markdown": "md"}
-        decided = {claim.beside for claim in CLAIMS if name in claim.datasets}
-        found.append(
-            Part(
-                name,
-                title=entry["title"],
-                caption=entry.get("caption", ""),
-                files={label: f"{name}.{kind}" for label, kind in kinds.items()},
-                rows=rows_beside(name, datasets),
-                table=tables.TABLES[name](datasets[name]) if entry.get("table") else (),
-                elsewhere=sorted(decided & {*entries}),
-            )
-        )
-    general = [Part(key, title, rows=rows_beside(key, datasets)) for key, title in SEVERAL.items()]
-    return found + general
-
-
 def rows_beside(name: str, datasets: Datasets) -> list[Row]:
     """The claims next to a figure or table; the ends of Table 1 are in the table itself."""
     return [
         row(claim)
-        for group in tables.GROUPS
-        for claim in tables.claims_of(datasets["claims"], group)
+        for claim in counted(datasets["claims"])
         if claim["beside"] == name and claim["item"] != "Table 1"
     ]
 
@@ -168,52 +102,6 @@ def row(claim: Mapping) -> Row:
         reason=claim["reason"],
         remark=claim["remark"],
     )
-
-
-def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
-    """Where the advised frequency ratio is not enough, as rows of texts, the header first.
-
-    The last columns have the share of the range of Λ for each n, on average over r.
-    """
-    given = parameters(validity_map)
-    advised = article.short(given["advised"])
-    limit = article.percent(given["tolerance"])
-    families = [f"n = {n}" for n in validity_map.n.values]
-    heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
-    rows = [[*heads, f"share: {families[0]}", *families[1:]]]
-    for quantity in validity_map["quantity"].values:
-        error = validity_map.stiff_error.sel(quantity=quantity).max()
-        of = " of a period" if quantity == "phase_in_periods" else ""
-        where = article.failing(validity_map, quantity)
-        shares = map(share_text, validity_map.failing_mean.sel(quantity=quantity).values)
-        rows.append([QUANTITIES[quantity], article.percent(error, 2) + of, where, *shares])
-    beyond = {
-        "doubled": ("period", "doubled", "next to the period doubling"),
-        "below": ("no orbit in the simple model", "stable orbits", "below the saddle-node"),
-    }
-    for name, (quantity, found, side) in beyond.items():
-        where = positive(validity_map[f"{name}_share"], side)
-        shares = map(share_text, validity_map[f"{name}_mean"].values)
-        rows.append([quantity, f"{found} at ϖ = {advised}", where, *shares])
-    return rows
-
-
-def positive(share: xr.DataArray, side: str) -> str:
-    """Print for which n and r a share at one side of the range of Λ is positive.
-
-    It is a dash if the share is missing for some n and r.
-    """
-    if share.isnull().any():
-        return "–"
-    if (share > 0).all():
-        r = share.restitution
-        ends = [article.short(end) for end in (r.min(), r.max())]
-        return f"every r from {' to '.join(ends)}, {side}"
-    words = {False: "some", True: "every"}
-    parts = [
-        f"n = {of_n.n.item()} at {words[bool((of_n > 0).all())]} r" for of_n in share if of_n.any()
-    ]
-    return article.listed(parts) if parts else "no n"
 
 
 # The article and its supplement
@@ -260,7 +148,7 @@ def page_of(
 
 def framed(body: str, name: str, contents: Sequence[tuple[str, str]]) -> str:
     """Return a page of text. `contents` are anchors and texts of its headings, the title first."""
-    template = article.environment(article.TEMPLATES).get_template("article.html.j2")
+    template = environment(TEMPLATES).get_template("article.html.j2")
     return unbroken(
         template.render(name=name, title=contents[0][1], contents=contents[1:], body=body)
     )
@@ -374,10 +262,10 @@ def numbers(
 
     `texts` have marks, and `origin` has the origins of their expressions.
     """
-    judged = [row for group in tables.GROUPS for row in tables.claims_of(datasets["claims"], group)]
+    judged = counted(datasets["claims"])
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
     others = [each for name in texts for each in without_dataset(texts[name], origin[name])]
-    template = article.environment(article.TEMPLATES).get_template("numbers.html.j2")
+    template = environment(TEMPLATES).get_template("numbers.html.j2")
     contents = [
         ("", "Where the numbers come from"),
         *((name, name.title()) for name in texts),

@@ -39,10 +39,9 @@ import xarray as xr
 import yaml
 from PIL import Image
 
-from bouncing_ball.article import TEMPLATES, environment
-from bouncing_ball.datasets import attributes, plain, read, write
-from bouncing_ball.provenance import CHECKOUT, PACKAGES, content, contents, versions
-from bouncing_ball.variables import Variable, described
+from paper_replication.datasets import Variable, attributes, plain, read, write
+from paper_replication.provenance import CHECKOUT, PACKAGES, content, contents, versions
+from paper_replication.templates import TEMPLATES, environment
 
 FOLLOWING = ("claims", "choices")
 """Datasets that are made of all others."""
@@ -78,7 +77,7 @@ class Project:
     texts: tuple[str, ...]
     make: Callable[[str, xr.Dataset | None, Path], None]
     code: tuple[str, ...]
-    describe: Callable[[str], Mapping[str, Variable]] = described
+    describe: Callable[[str], Mapping[str, Variable]]
 
     def files(self, *sides: Path) -> list[str]:
         """All files that one of the folders has: datasets first, and `FOLLOWING` last of them."""

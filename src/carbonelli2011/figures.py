@@ -17,40 +17,42 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
 from numpy.typing import NDArray
 
-from bouncing_ball import paper
-from bouncing_ball.datasets import parameters
-from bouncing_ball.drawing import (
-    COLOURS,
-    DASHES,
-    GUIDE,
+from carbonelli2011 import paper
+from carbonelli2011.curves import (
     KINDS,
     NARROW,
-    POINTS,
     TABLE,
     WIDE,
-    Look,
     along_ratio,
     branch_legend,
-    colours,
     curve,
     draw_branch,
     label,
+    mark_special,
+    parted,
+    restitution_branch,
+    right_end,
+    spring_damper_branch,
+    title,
+)
+from paper_replication.datasets import other_parameters, parameters
+from paper_replication.drawing import (
+    COLOURS,
+    DASHES,
+    GUIDE,
+    POINTS,
+    Look,
+    colours,
     latex_number,
     legend_below,
-    mark_special,
     name_at_right,
     name_beside,
     pale,
     panels,
-    parted,
-    restitution_branch,
-    right_end,
     sample,
-    share_text,
-    spring_damper_branch,
     style,
-    title,
 )
+from paper_replication.texts import share_text
 
 CONTACT = COLOURS[1]
 """Colour of the spring-damper model where it is compared with the restitution model."""
@@ -298,7 +300,7 @@ def fig16(data: xr.Dataset) -> Figure:
     limit = float(data.restitution_threshold)
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
-    if not paper.other_parameters("fig16", data, paper.PARAMETERS["fig16"]):
+    if not other_parameters("fig16", data, paper.PARAMETERS["fig16"]):
         mark_printed(below, "permanent contact threshold")
     legend_below(figure)
     return figure
@@ -544,7 +546,7 @@ def fig14(data: xr.Dataset) -> Figure:
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     along_ratio(axes, data.frequency_ratio)
     draw_error(below, data, data.max_height - limit, "h")
-    if not paper.other_parameters("fig14", data, paper.PARAMETERS["fig14"]):
+    if not other_parameters("fig14", data, paper.PARAMETERS["fig14"]):
         mark_printed(below, "height threshold")
         for part in (axes, below):
             part.axvline(paper.STIFF, label=f"advised: {paper.STIFF:g}", **ADVISED)

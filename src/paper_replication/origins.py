@@ -29,17 +29,6 @@ MARK = re.compile("\ue000(\\d+)\ue001(.*?)\ue002")
 """The text that an expression printed, after the index of the expression in its template. The
 characters around them are of the private use area of Unicode."""
 
-BEHIND = {
-    "durations": ("fig08", "fig09"),
-    "failing": ("validity_map",),
-    "judged": ("claims",),
-    "claim": ("claims",),
-    "other_contacts": ("hypotheses",),
-    "others_with_82": ("hypotheses",),
-    "stiff_errors": ("fig05", "fig06", "fig10"),
-}
-"""The datasets behind the names that `article.written` gives to its templates."""
-
 
 class Marks(Extension):
     """Mark what the expressions of a template print."""
@@ -93,7 +82,11 @@ class Origin:
     datasets: Collection[str]
 
 
-def origins(source: str, datasets: Collection[str]) -> list[Origin]:
+def origins(
+    source: str,
+    datasets: Collection[str],
+    behind: Mapping[str, Collection[str]] = {},
+) -> list[Origin]:
     """Return the origin of each printed expression of a template, in their order.
 
     >>> each, = origins("{% set far = fig14.n %}{{ far.max() | fixed(2) }}", ["fig14"])
@@ -101,7 +94,7 @@ def origins(source: str, datasets: Collection[str]) -> list[Origin]:
     ({'far': 'far = fig14.n'}, ['fig14'])
     """
     known = {name: Origin("", {}, {name: 0}) for name in datasets}
-    known |= {name: Origin("", {}, dict.fromkeys(behind)) for name, behind in BEHIND.items()}
+    known |= {name: Origin("", {}, dict.fromkeys(sources)) for name, sources in behind.items()}
     found: list[Origin] = []
     outside = 0
     for part in PART.finditer(source):

@@ -4,14 +4,12 @@ The configuration repeats the parameters, and users may change them there. A cla
 its datasets were computed with the parameters below, and the article is written only if all were.
 """
 
-from collections.abc import Iterator, Mapping
 from operator import itemgetter
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball.datasets import Datasets, parameters
+from paper_replication.datasets import Datasets, others, parameters
 
 LIMIT = 0.01
 """The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
@@ -152,45 +150,6 @@ AXES = {
     "validity_map": {"frequency_ratio": {"min": 10.0, "max": 1e4}, "curves": unique(CURVES)},
 }
 """Our choices on which sentences of the article rest."""
-
-
-def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
-    """Name the parameters of a dataset that differ from the needed ones; empty if none does.
-
-    Of a range only the needed keys count, and a set must be among the values of a list.
-    """
-    return "; ".join(others(name, parameters(data), needed))
-
-
-def others(name: str, given, needed) -> Iterator[str]:
-    """Yield what differs, with the name of its key.
-
-    >>> list(others("fig14", {"n": 2, "frequency_ratio": {"min": 2.0}}, {"n": 1}))
-    ['fig14.n is 2 instead of 1']
-    >>> list(others("tolerances", [0.1], {0.02, 0.1, 0.01}))
-    ['tolerances lacks 0.01, 0.02']
-    """
-    if isinstance(needed, Mapping) and isinstance(given, Mapping):
-        for key, value in needed.items():
-            yield from others(f"{name}.{key}", given.get(key), value)
-    elif isinstance(needed, set):
-        if missing := sorted(needed - {*(given or ())}):
-            yield f"{name} lacks {words(missing)}"
-    elif given != needed:
-        yield f"{name} is {words(given)} instead of {words(needed)}"
-
-
-def words(value: Any) -> str:
-    """Print a parameter, without square brackets, which would be those of a citation.
-
-    >>> words([{"n": 1, "amplitude": 0.8}])
-    '(amplitude 0.8, n 1)'
-    """
-    if isinstance(value, list):
-        return ", ".join(map(words, value))
-    if isinstance(value, Mapping):
-        return f"({', '.join(f'{key} {each}' for key, each in sorted(value.items()))})"
-    return str(value)
 
 
 def differences(datasets: Datasets) -> list[str]:

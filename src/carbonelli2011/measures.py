@@ -2,34 +2,17 @@
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from bouncing_ball import restitution
-from bouncing_ball.datasets import parameters
-from bouncing_ball.paper import STIFF
 from bouncing_ball.spring_damper import Contact, damping_ratio
-
-ROUNDING = 1e-9
-"""Relative difference below which numbers are equal: rounding errors of the datasets are 1e-12."""
+from carbonelli2011.paper import STIFF
+from paper_replication.datasets import parameters
+from paper_replication.verdicts import ROUNDING
 
 STIFF_CONTACTS = slice(STIFF * (1 - ROUNDING), None)
 """Frequency ratios of at least `STIFF`."""
-
-
-def largest(values: ArrayLike) -> float:
-    """Return the largest number; NaN if there are none, or if one is NaN.
-
-    >>> largest([1.0, 2.0]), largest([1.0, np.nan]), largest([])
-    (2.0, nan, nan)
-    """
-    numbers = np.asarray(values, dtype=float)
-    return float(numbers.max()) if numbers.size else np.nan
-
-
-def smallest(values: ArrayLike) -> float:
-    """Return the smallest number; NaN if there are none, or if one is NaN."""
-    return -largest(-np.asarray(values, dtype=float))
 
 
 def at(values: xr.DataArray, **labels: float | str) -> xr.DataArray | float:

@@ -1,0 +1,122 @@
+"""The page of the results and the list of figures: templates over the same parts.
+
+A part is a figure, a table or a dataset, with the claims that are shown next to it.
+"""
+
+from collections.abc import Mapping
+
+import xarray as xr
+from latex2mathml.converter import convert
+
+from carbonelli2011 import article
+from carbonelli2011.claims import CLAIMS
+from carbonelli2011.paper import QUANTITIES
+from carbonelli2011.tables import TABLES
+from paper_replication import judgements, texts
+from paper_replication.datasets import Datasets, parameters
+from paper_replication.pages import Part, rows_beside, unbroken, with_subscripts
+
+SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
+"""Parts with claims that belong to no single figure or table."""
+
+
+# The page of the results, and the list of figures
+
+
+def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **more) -> str:
+    """Return the list of figures in Markdown ("md"), or the page of the results ("html").
+
+    `entries` are the registered figures, tables and datasets by name.
+    """
+    found = parts(datasets, entries)
+    claims = datasets["claims"]
+    formulas = judgements.claims_of(claims, "restored formula")
+    text = article.filled_in(
+        "figures",
+        datasets,
+        kind,
+        markdown=texts.markdown,
+        formula=convert,
+        counts=judgements.counts(claims),
+        unasked=int((claims.verdict == "not asked").sum()),
+        exceptions=exceptions(datasets["validity_map"]),
+        formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
+        figures=[part for part in found if "PNG" in part.files],
+        tabulated=[part for part in found if part.table],
+        others=[part for part in found if part.files.keys() == {"dataset"}],
+        general=[part for part in found if not part.files],
+        **more,
+    )
+    return with_subscripts(unbroken(text)) if kind == "html" else text
+
+
+def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
+    """All figures in the order of the paper, tables and datasets, then `SEVERAL`."""
+    found = []
+    for name in sorted(entries, key=lambda name: (not name.startswith("fig"), name)):
+        entry = entries[name]
+        kinds = {"dataset": "nc"} if name in datasets else {}
+        if "caption" in entry:
+            kinds |= {"PNG": "png", "SVG": "svg"}
+        if entry.get("table"):
+            kinds |= {"CSV": "csv", "Markdown": "md"}
+        decided = {claim.beside for claim in CLAIMS if name in claim.datasets}
+        found.append(
+            Part(
+                name,
+                title=entry["title"],
+                caption=entry.get("caption", ""),
+                files={label: f"{name}.{kind}" for label, kind in kinds.items()},
+                rows=rows_beside(name, datasets),
+                table=TABLES[name](datasets[name]) if entry.get("table") else (),
+                elsewhere=sorted(decided & {*entries}),
+            )
+        )
+    general = [Part(key, title, rows=rows_beside(key, datasets)) for key, title in SEVERAL.items()]
+    return found + general
+
+
+def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
+    """Where the advised frequency ratio is not enough, as rows of texts, the header first.
+
+    The last columns have the share of the range of Λ for each n, on average over r.
+    """
+    given = parameters(validity_map)
+    advised = texts.short(given["advised"])
+    limit = texts.percent(given["tolerance"])
+    families = [f"n = {n}" for n in validity_map.n.values]
+    heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
+    rows = [[*heads, f"share: {families[0]}", *families[1:]]]
+    for quantity in validity_map["quantity"].values:
+        error = validity_map.stiff_error.sel(quantity=quantity).max()
+        of = " of a period" if quantity == "phase_in_periods" else ""
+        where = article.failing(validity_map, quantity)
+        shares = map(texts.share_text, validity_map.failing_mean.sel(quantity=quantity).values)
+        rows.append([QUANTITIES[quantity], texts.percent(error, 2) + of, where, *shares])
+    beyond = {
+        "doubled": ("period", "doubled", "next to the period doubling"),
+        "below": ("no orbit in the simple model", "stable orbits", "below the saddle-node"),
+    }
+    for name, (quantity, found, side) in beyond.items():
+        where = positive(validity_map[f"{name}_share"], side)
+        shares = map(texts.share_text, validity_map[f"{name}_mean"].values)
+        rows.append([quantity, f"{found} at ϖ = {advised}", where, *shares])
+    return rows
+
+
+def positive(share: xr.DataArray, side: str) -> str:
+    """Print for which n and r a share at one side of the range of Λ is positive.
+
+    It is a dash if the share is missing for some n and r.
+    """
+    if share.isnull().any():
+        return "–"
+    if (share > 0).all():
+        r = share.restitution
+        ends = [texts.short(end) for end in (r.min(), r.max())]
+        return f"every r from {' to '.join(ends)}, {side}"
+    words = {False: "some", True: "every"}
+    parts = [
+        f"n = {of_n.n.item()} at {words[bool((of_n > 0).all())]} r" for of_n in share if of_n.any()
+    ]
+    return texts.listed(parts) if parts else "no n"

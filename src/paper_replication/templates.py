@@ -1,0 +1,32 @@
+"""Templates of texts and pages, with the filters that print numbers."""
+
+from functools import cache
+from pathlib import Path
+
+import jinja2
+
+from paper_replication import origins
+from paper_replication.provenance import CHECKOUT
+from paper_replication.texts import fixed, listed, percent, share_text, short
+
+TEMPLATES = CHECKOUT / "workflow" / "templates"
+
+
+@cache
+def environment(templates: Path, marked: bool = False) -> jinja2.Environment:
+    """Return the Jinja environment of a folder of templates, with the filters for numbers.
+
+    If `marked`, it marks what the expressions print (see `origins`).
+    """
+    found = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates, encoding="utf-8"),
+        undefined=jinja2.StrictUndefined,
+        autoescape=jinja2.select_autoescape(["html.j2"], default=False),
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        extensions=[origins.Marks] if marked else [],
+    )
+    found.filters.update(fixed=fixed, percent=percent, share=share_text, short=short)
+    found.filters.update(listed=listed, zip=zip, mark=origins.mark)
+    return found

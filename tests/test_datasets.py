@@ -3,12 +3,10 @@
 import json
 import os
 import platform
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
-from tests.jobs import Named
 
 from carbonelli2011.variables import described
 from paper_replication import datasets, provenance
@@ -52,12 +50,6 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkey
     assert small.phase.attrs == {}
 
 
-def test_a_path_may_be_a_text_as_snakemake_gives_it(small, tmp_path):
-    path = tmp_path / "fig02.nc"
-    datasets.save(small, str(path), "Figure 2", {}, [], described)
-    xr.testing.assert_equal(datasets.read(path), small)
-
-
 def test_a_variable_without_description_is_refused(small, tmp_path):
     with pytest.raises(ValueError, match=r"^fig02.nc: describe height, speed in variables.py$"):
         datasets.save(
@@ -89,41 +81,3 @@ def test_a_description_belongs_to_its_dataset(small, tmp_path):
         small, tmp_path / "mine.nc", "", {}, [], lambda name: own if name == "mine" else {}
     )
     assert datasets.read(tmp_path / "mine.nc").phase.long_name == "angle"
-
-
-def test_a_stage_saves_each_dataset_with_its_title_its_parameters_and_the_settings(tmp_path):
-    def orbits(given, release):
-        """The parameters of a function are those of its entry, without the title."""
-        assert release == "force"
-        return xr.Dataset(coords={"n": np.arange(given["n"])})
-
-    def branches(given, release, largest_step):
-        return orbits(given, release)
-
-    entries = {name: {"title": name.upper(), "n": n} for n, name in enumerate(("fig02", "fig03"))}
-    settings = {"release": "force", "largest_step": 0.1}
-    files = {name: str(tmp_path / f"{name}.nc") for name in entries}
-    snakemake = SimpleNamespace(
-        input=SimpleNamespace(code=[__file__]),
-        output=Named(**files, record=str(tmp_path / "records/stage.json")),
-        params=SimpleNamespace(entries=entries, settings=settings),
-    )
-    datasets.save_stage({"fig02": orbits, "fig03": branches}, snakemake, described)
-    for n, name in enumerate(entries):
-        data = datasets.read(tmp_path / f"{name}.nc")
-        assert data.sizes["n"] == n
-        assert data.attrs["title"] == name.upper()
-        # A setting that a function does not have has no effect on its dataset.
-        has = {"largest_step": 0.1} if name == "fig03" else {}
-        assert datasets.parameters(data) == {"n": n, "release": "force"} | has
-        assert [*json.loads(data.attrs["code"])] == ["tests/test_datasets.py"]
-    record = json.loads((tmp_path / "records/stage.json").read_text("utf-8"))
-    made = {f"{name}.nc": provenance.content(path) for name, path in files.items()}
-    code = provenance.contents([__file__])
-    assert record == {
-        "made": made,
-        "data": {},
-        "code": code,
-        "versions": provenance.versions(),
-        "entries": entries,
-    }

@@ -3,17 +3,16 @@
 The scripts only write their outputs here (see conftest): the rules are tested, and no numbers.
 """
 
-import os
-import signal
-import subprocess
+import ast
 import sys
-import time
+from inspect import signature
 from modulefinder import ModuleFinder
 from pathlib import Path
 
 import pytest
 import yaml
 from tests.conftest import Checkout
+from tests.reference import stage
 
 ROOT = Path(__file__).resolve().parents[1]
 CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
@@ -49,6 +48,14 @@ def test_a_whole_run_makes_every_file_of_the_reference(complete):
     assert {Path(file).stem for file in results - files - texts} <= ENTRIES.keys()
 
 
+def test_each_stage_runs_its_script_with_the_settings_that_its_functions_take(complete):
+    for name in COMPUTED:
+        functions = stage(name).STAGE.values()
+        needed = {each for one in functions for each in [*signature(one).parameters][1:]}
+        record = complete.path / f"results/records/{name}.json"
+        assert record.read_text("utf-8") == f"{name} {sorted(needed)}"
+
+
 def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.planned("fig01") == {"fig01"}
     assert fresh.planned("table1") == {"continuation", "table1"}
@@ -59,15 +66,6 @@ def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.run("--cores", "1", "fig14")[0] == 0
     files = {f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")}
     assert made(fresh.path) == files | {"figures/thresholds.nc"}
-
-
-def test_a_name_that_is_forced_is_made_again(complete):
-    command = ["-n", "--quiet", "host", "--cores", "1"]
-    for option in ("-f", "-R"):
-        status, printed = complete.run(*command, option, "fig14")
-        assert status == 0 and "rule fig14:" in printed and "rule error" not in printed
-    _, printed = complete.run(*command, "-R", "continuation")
-    assert all(f"rule {name}:" in printed for name in ("continuation", "fig08", "table1"))
 
 
 def test_every_rule_is_listed_with_what_it_makes(fresh):
@@ -147,6 +145,21 @@ def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
     assert used.planned() - {"all"} == again
 
 
+def imports(package: str) -> set[str]:
+    """The packages that the modules of a package import."""
+    trees = [ast.parse(path.read_text("utf-8")) for path in (ROOT / "src" / package).glob("*.py")]
+    nodes = [node for tree in trees for node in ast.walk(tree)]
+    names = [node.module for node in nodes if isinstance(node, ast.ImportFrom)]
+    names += [each.name for node in nodes if isinstance(node, ast.Import) for each in node.names]
+    return {name.partition(".")[0] for name in names}
+
+
+def test_the_models_and_what_any_replication_needs_import_no_other_package():
+    libraries = {"numpy", "scipy", "xarray", "bouncing_ball"}
+    assert imports("bouncing_ball") <= sys.stdlib_module_names | libraries
+    assert not imports("paper_replication") & {"bouncing_ball", "carbonelli2011"}
+
+
 def modules_of(script: Path) -> set[str]:
     """The modules of the package and the scripts that a script imports, directly or by another
     module, each with its folder.
@@ -184,29 +197,3 @@ def test_a_failed_figure_does_not_stop_others(fresh):
     assert fresh.run("--cores", "1", "fig16", "fig11")[0] == 1
     assert made(fresh.path) >= {"figures/fig11.png"}
     assert "figures/fig16.png" not in made(fresh.path)
-
-
-def test_a_killed_run_is_unlocked_and_completed(fresh):
-    script = fresh.path / "workflow/scripts/permanent_contact.py"
-    at_once = script.read_text("utf-8")
-    script.write_text(at_once.replace("raise SystemExit", "import time; time.sleep(60)"), "utf-8")
-    running = subprocess.Popen(
-        [sys.executable, "-m", "snakemake", "--cores", "1", "fig11"],
-        cwd=fresh.path,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        process_group=0,
-    )
-    dataset = fresh.path / "results/figures/fig11.nc"
-    while not dataset.exists():
-        assert running.poll() is None
-        time.sleep(0.05)
-    os.killpg(running.pid, signal.SIGKILL)
-    running.wait()
-    script.write_text(at_once, "utf-8")
-    dataset.write_text("half of it", "utf-8")
-    status, printed = fresh.run("--cores", "1", "fig11")
-    assert status == 1 and "--unlock" in printed
-    assert fresh.run("--unlock")[0] == 0
-    assert fresh.run("--cores", "1", "fig11")[0] == 0
-    assert dataset.read_text("utf-8") == "made by a stub"

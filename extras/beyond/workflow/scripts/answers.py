@@ -19,8 +19,9 @@ from bouncing_ball_beyond.continuation import limits
 from bouncing_ball_beyond.error_law import free_impact, law_coefficients, law_errors
 from bouncing_ball_beyond.periodic import orbit
 from bouncing_ball_beyond.tables import Table
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 # Points of the drawn branches on each side of the saddle-node.
 POINTS = 101

@@ -9,8 +9,9 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.periodic import orbit
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 NEAR = 1e-3
 """Sum of the distances in phase and in relative speed below which a touch is that of the orbit."""

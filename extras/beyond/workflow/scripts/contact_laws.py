@@ -31,9 +31,10 @@ from bouncing_ball_beyond.error_law import (
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.search import guess_of_instants
 from bouncing_ball_beyond.tables import SINE
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import damping, flight_height, last_zero, solved
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}

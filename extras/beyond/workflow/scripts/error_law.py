@@ -19,9 +19,10 @@ from bouncing_ball_beyond.error_law import (
     law_thresholds,
     restitution_values,
 )
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import exact_values, half_next_to_saddle_node, last_zero, random_orbits
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
 MODELS = {"restitution": None, "corrected": Corrected}

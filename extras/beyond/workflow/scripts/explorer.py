@@ -14,9 +14,10 @@ from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
 from bouncing_ball_beyond.tables import Table
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import follow_compliant, random_orbits
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).

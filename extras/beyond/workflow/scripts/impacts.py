@@ -7,8 +7,9 @@ import xarray as xr
 
 from bouncing_ball_beyond.balls import Impact, SpringDamper, damping_of
 from bouncing_ball_beyond.periodic import orbit
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 RELEASES = ["displacement", "force"]
 

@@ -24,8 +24,9 @@ from bouncing_ball_beyond.error_law import (
 )
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.tables import Table
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
-from studies.variables import REFERENCE, described
+from studies.variables import described
 from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}

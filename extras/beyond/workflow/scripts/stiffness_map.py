@@ -17,8 +17,9 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.balls import SpringDamper
 from bouncing_ball_beyond.error_law import free_impact, law_errors, law_thresholds
+from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
-from studies.variables import REFERENCE, described
+from studies.variables import described
 
 LEVELS = (10.0, 20.0, 50.0, 100.0, 200.0, 1000.0)
 """The ϖ of the lines of the figure; that of the paper is added."""

@@ -148,7 +148,7 @@ CHANGES = {
     "contact lengthens": ("fig13", "contact_duration", -1.0, "not reproduced"),
     "superimposed when stiff": ("fig08", "contact_duration", 100.0, "not reproduced"),
     "range widens": ("table1", "computed", -1.0, "not reproduced"),
-    "departure from nπ": ("fig10", "bounce_velocity", 0.9, "reproduced"),
+    "departure from nπ": ("fig10", "bounce_velocity", 0.9, "partly"),
     "velocity rises": ("fig13", "bounce_velocity", -1.0, "partly"),
     "height rises": ("fig14", "max_height", -1.0, "partly"),
     "phases converge": ("fig13", "restitution_phase", 1.1, "not reproduced"),
@@ -295,7 +295,7 @@ def test_an_orbit_that_does_not_exist_is_not_inadmissible(reference):
         phase=data["phase"].where(exists),
         admissible=data["admissible"] & exists,
     )
-    assert verdict("one impact per period", changed) == "not testable"
+    assert verdict("one impact per period", changed) == "reproduced"
 
 
 def test_crossings_lie_between_the_points_of_a_dataset():
@@ -389,7 +389,8 @@ def test_numbers_that_are_missing_take_away_their_claims(reference, name):
     lost = {each: data[each] * np.nan for each in computed if each != "printed"}
     datasets = with_other(reference, name, **lost)
     for claim in users(name):
-        assert verdict(claim.name, datasets) == "not asked"
+        decided = claim.datasets == claims.CONTACT_OF_FIG11
+        assert verdict(claim.name, datasets) == ("reproduced" if decided else "not asked")
 
 
 @pytest.mark.parametrize(
@@ -444,11 +445,13 @@ def test_parameters_on_which_no_claim_rests_may_be_others(reference, judged):
     given = parameters(reference["fig14"])
     other = given["frequency_ratio"] | {"samples": 77}
     changed = reference["fig14"].assign_attrs(
-        parameters=json.dumps(given | {"frequency_ratio": other, "remark": 1})
+        parameters=json.dumps(given | {"frequency_ratio": other, "tolerance": 0.02})
     )
     for claim in users("fig14"):
         found = verdict(claim.name, reference | {"fig14": changed})
-        assert found == verdicts(judged)[claim.name]
+        # Only the threshold of ϖ depends on the tolerance.
+        silent = claim.name == "height threshold"
+        assert found == ("not asked" if silent else verdicts(judged)[claim.name])
 
 
 # Formulas that no other module tests
@@ -489,7 +492,11 @@ def test_equations_37_and_38_are_shares_of_the_restitution_model():
 
 def test_algebra_alone_decides_what_has_no_dataset(judged):
     by_algebra = judged["decided_by"].values == "algebra"
-    without = [claim for claim in claims.CLAIMS if not claim.datasets]
+    without = [
+        claim
+        for claim in claims.CLAIMS
+        if not claim.datasets or claim.datasets == claims.CONTACT_OF_FIG11
+    ]
     # One is computed without a dataset, and one is not testable.
     others = {"static table", "other problems"}
     assert {*judged["claim"].values[by_algebra]} == {claim.name for claim in without} - others

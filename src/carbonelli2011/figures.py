@@ -300,7 +300,7 @@ def fig16(data: xr.Dataset) -> Figure:
     limit = float(data.restitution_threshold)
     axes.axhline(limit, label=r"restitution, $\Lambda_{CR}$", **LIMIT)
     draw_error(below, data, data.threshold_amplitude - limit, "PC")
-    if not other_parameters("fig16", data, paper.PARAMETERS["fig16"]):
+    if not other_parameters("fig16", data, paper.PARAMETERS["fig16"] | paper.TOLERANCES["fig16"]):
         mark_printed(below, "permanent contact threshold")
     legend_below(figure)
     return figure
@@ -546,7 +546,7 @@ def fig14(data: xr.Dataset) -> Figure:
     axes.set_title(title(data, "n", "restitution", "amplitude"))
     along_ratio(axes, data.frequency_ratio)
     draw_error(below, data, data.max_height - limit, "h")
-    if not other_parameters("fig14", data, paper.PARAMETERS["fig14"]):
+    if not other_parameters("fig14", data, paper.PARAMETERS["fig14"] | paper.TOLERANCES["fig14"]):
         mark_printed(below, "height threshold")
         for part in (axes, below):
             part.axvline(paper.STIFF, label=f"advised: {paper.STIFF:g}", **ADVISED)

@@ -153,15 +153,15 @@ def test_every_figure_has_its_picture_its_caption_and_its_data(read):
 
 def test_the_exceptions_are_those_of_the_map(data):
     other = data["validity_map"].copy(deep=True)
-    other["failing_up_to"][:] = float("nan")
+    other["failing_up_to"][:] = 0.0
     other["failing_up_to"].loc["bounce_velocity", 2] = 0.31
     other["stiff_error"].loc["summit"] = 0.0042
     other["failing_mean"].loc["summit"] = [0.2, 0.0004, 0.0]
     other["doubled_mean"][:] = 0.25
     other["below_mean"][:] = [0.0, 0.2, 1.3]
     assert index.exceptions(other)[1:3] == [
-        ["maximum height in flight", "0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
-        ["bouncing-off velocity", "1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
+        ["maximum height in flight", "error up to 0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
+        ["bouncing-off velocity", "error up to 1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
     ]
     assert index.exceptions(other)[-2][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
     assert index.exceptions(other)[-1][2:] == [
@@ -177,7 +177,7 @@ def test_the_exceptions_are_those_of_the_map(data):
         ([[0.0, 0.2], [0.3, 0.4]], "n = 1 at some r and n = 2 at every r"),
         ([[0.0, 0.0], [0.3, 0.0]], "n = 2 at some r"),
         ([[0.0, 0.0], [0.0, 0.0]], "no n"),
-        ([[0.0, np.nan], [0.1, 0.1]], "–"),
+        ([[0.0, np.nan], [0.1, 0.1]], "unknown"),
     ],
 )
 def test_a_share_at_one_side_of_the_range_is_said_where_it_is_positive(shares, where):

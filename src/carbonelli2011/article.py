@@ -118,9 +118,11 @@ def failing(validity_map: xr.Dataset, quantity: str) -> str:
     r = validity_map.restitution.values
     parts = []
     for up_to in validity_map.failing_up_to.sel(quantity=quantity):
-        if up_to == r[-1]:
+        if up_to.isnull():
+            parts.append(f"n = {up_to.n.item()} unknown")
+        elif up_to == r[-1]:
             parts.append(f"n = {up_to.n.item()} at every r")
-        elif np.isfinite(up_to):
+        elif up_to > 0:
             parts.append(f"n = {up_to.n.item()} up to r ≈ {fixed(up_to, 2)}")
     return listed(parts) if parts else "no n"
 

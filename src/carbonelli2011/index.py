@@ -5,6 +5,7 @@ A part is a figure, a table or a dataset, with the claims that are shown next to
 
 from collections.abc import Mapping
 
+import numpy as np
 import xarray as xr
 from latex2mathml.converter import convert
 
@@ -85,14 +86,15 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     advised = texts.short(given["advised"])
     limit = texts.percent(given["tolerance"])
     families = [f"n = {n}" for n in validity_map.n.values]
-    heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"error above {limit} for some Λ"]
+    heads = ["quantity", f"at ϖ ≥ {advised}", f"error above {limit}, or this, for some Λ"]
     rows = [[*heads, f"share: {families[0]}", *families[1:]]]
     for quantity in validity_map["quantity"].values:
-        error = validity_map.stiff_error.sel(quantity=quantity).max()
+        error = validity_map.stiff_error.sel(quantity=quantity).max(skipna=False).item()
         of = " of a period" if quantity == "phase_in_periods" else ""
+        largest = "unknown" if np.isnan(error) else f"error up to {texts.percent(error, 2)}{of}"
         where = article.failing(validity_map, quantity)
         shares = map(texts.share_text, validity_map.failing_mean.sel(quantity=quantity).values)
-        rows.append([QUANTITIES[quantity], texts.percent(error, 2) + of, where, *shares])
+        rows.append([QUANTITIES[quantity], largest, where, *shares])
     beyond = {
         "doubled": ("period", "doubled", "next to the period doubling"),
         "below": ("no orbit in the simple model", "stable orbits", "below the saddle-node"),
@@ -107,10 +109,10 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
 def positive(share: xr.DataArray, side: str) -> str:
     """Print for which n and r a share at one side of the range of Λ is positive.
 
-    It is a dash if the share is missing for some n and r.
+    It is unknown if the share is missing for some n and r.
     """
     if share.isnull().any():
-        return "–"
+        return "unknown"
     if (share > 0).all():
         r = share.restitution
         ends = [texts.short(end) for end in (r.min(), r.max())]

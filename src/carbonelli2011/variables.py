@@ -153,7 +153,7 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         ),
         "failing_mean": Variable("mean of this fraction over r", tolerance=1e-6),
         "failing_up_to": Variable(
-            "largest r at which the advised frequency ratio is too small for some Λ",
+            "largest r at which the advised frequency ratio is too small for some Λ, 0 if none",
             "r",
             tolerance=1e-6,
         ),

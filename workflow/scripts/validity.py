@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import SPECIAL, bifurcations
+from bouncing_ball.continuation import SPECIAL, NoOrbit, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio
 from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import grid, save_stage
 
@@ -30,12 +30,17 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     """The ϖ from which on errors stay within the tolerance, the largest errors from the advised ϖ
     on, and what the contact of the advised ϖ has at both ends of the range of stable orbits: next
     to its upper end the period has doubled, and below its lower end the contact has stable orbits.
+
+    Of the grid of r, the dataset has those that a contact can have.
     """
     advised = parameters["advised"]
     tolerance = parameters["tolerance"]
     ratios = grid(parameters["frequency_ratio"])
     ratios = np.sort([advised, *ratios[~np.isclose(ratios, advised, rtol=1e-9)]])
     r = grid(parameters["restitution"], np.linspace)
+    r = r[np.isfinite(damping_ratio(r, release))]
+    if r.size < 2:
+        raise NoOrbit(f"restitution = {parameters['restitution']}: {NO_CONTACT}")
     place = np.linspace(0, 1, parameters["places"]) ** 3
 
     # One column of orbits for all n, r and places, the places fastest.
@@ -199,9 +204,9 @@ def positive_part(corners: NDArray) -> NDArray:
 
 
 def last_positive(values: NDArray, r: NDArray) -> float:
-    """The r up to which there are positive values, linear between two r; NaN if there are none."""
+    """The r up to which there are positive values, linear between two r; 0 if there are none."""
     if not (values > 0).any():
-        return np.nan
+        return 0.0
     last = np.flatnonzero(values > 0)[-1]
     if last == r.size - 1:
         return r[-1]

@@ -676,7 +676,7 @@ def test_shares_of_linear_functions():
     assert last(np.array([1.0, -1.0, -3.0]), r) == pytest.approx(0.25)
     assert last(np.array([-1.0, 1.0, -3.0]), r) == pytest.approx(0.4)
     assert last(np.array([-1.0, -1.0, 0.1]), r) == 0.7
-    assert np.isnan(last(np.array([-1.0, 0.0, -1.0]), r))
+    assert last(np.array([-1.0, 0.0, -1.0]), r) == 0
 
 
 def test_the_failures_of_known_errors():

@@ -161,7 +161,14 @@ def test_the_exceptions_are_those_of_the_map(data):
     other["below_mean"][:] = [0.0, 0.2, 1.3]
     assert index.exceptions(other)[1:3] == [
         ["maximum height in flight", "error up to 0.42 %", "no n", "20.0 %", "< 0.1 %", "none"],
-        ["bouncing-off velocity", "error up to 1.32 %", "n = 2 up to r ≈ 0.31", "12.1 %", "none", "none"],
+        [
+            "bouncing-off velocity",
+            "error up to 1.32 %",
+            "n = 2 up to r ≈ 0.31",
+            "12.1 %",
+            "none",
+            "none",
+        ],
     ]
     assert index.exceptions(other)[-2][-3:] == ["25.0 %", "25.0 %", "25.0 %"]
     assert index.exceptions(other)[-1][2:] == [

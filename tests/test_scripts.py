@@ -15,6 +15,7 @@ from tests import independent
 from tests.reference import CONFIG, ROOT, printed_rows, reference, stage, table_with_another_row
 
 from bouncing_ball import errors, orbits
+from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.spring_damper import RELEASES
 from carbonelli2011 import claims, index
 from carbonelli2011.paper import QUANTITIES
@@ -729,6 +730,19 @@ def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
     # The height of the 1-T orbits beside their saddle-nodes, at small r.
     assert int(data.not_reached.sel(quantity="summit", n=1)) > 0
     assert float(data.enough_from.sel(n=3).max()) < 1000
+
+
+def test_the_map_of_the_force_release_has_the_restitutions_of_its_contacts():
+    given = few(n=[1], restitution={"min": 0.05, "max": 0.95, "samples": 16})
+    data = stage("validity").validity_map(given, "force")
+    assert data.restitution.min() > np.exp(-2) and data.sizes["restitution"] == 14
+    assert not data.failing_mean.isnull().any() and not data.doubled_mean.isnull().any()
+    # Known from another code.
+    assert data.failing_up_to.sel(quantity="summit").item() == pytest.approx(0.53, abs=0.01)
+    with pytest.raises(NoOrbit, match=r"restitution = .*0\.1353"):
+        stage("validity").validity_map(
+            few(restitution={"min": 0.05, "max": 0.1, "samples": 7}), "force"
+        )
 
 
 def test_both_ends_of_the_range_are_those_of_the_contact():

@@ -3,12 +3,11 @@
 # make replication  the same from nothing, and the comparison with the reference
 # make diff         the comparison alone; `snakemake --cores 2 fig14 diff` compares one figure
 
-PYTHON ?= python3
 VENV ?= .venv
 RUN := $(VENV)/bin/python -m
 SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
 PIP := $(RUN) pip install --quiet --disable-pip-version-check --require-hashes
-BUILT := --only-binary :all: --no-binary connection-pool --no-build-isolation
+BUILT := --only-binary :all: --no-build-isolation --no-binary "$$(./python.sh --builds $$(ls $(VENV)/lib))"
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
@@ -21,7 +20,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup develop test test-processors lint diff replication accept report newest lowest lock clean
+.PHONY: all setup develop test test-processors lint diff replication accept report newest lowest lock wheels clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
@@ -30,8 +29,8 @@ all: setup
 
 setup: $(VENV)/.installed
 $(VENV)/.installed: requirements-build.lock requirements.lock
+	@./python.sh -m venv --clear $(VENV)
 	@echo "Setting up $(VENV) from requirements.lock, in about a minute."
-	@$(PYTHON) -m venv --clear $(VENV)
 	@$(PIP) --only-binary :all: --requirement requirements-build.lock
 	@$(PIP) $(BUILT) --requirement requirements.lock
 	@$(RUN) pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
@@ -75,7 +74,7 @@ test-processors: develop
 
 # The newest versions that pyproject.toml allows, instead of those of the lock file.
 newest:
-	$(PYTHON) -m venv --clear .venv-newest
+	./python.sh -m venv --clear .venv-newest
 	.venv-newest/bin/python -m pip install --quiet --editable '.[pipeline,test]'
 	touch .venv-newest/.installed .venv-newest/.developing
 	$(MAKE) --keep-going replication test VENV=.venv-newest
@@ -83,7 +82,7 @@ newest:
 # The lowest versions that it allows of what numbers and pictures depend on.
 LOWEST := numpy scipy xarray netCDF4 matplotlib
 lowest:
-	$(PYTHON) -m venv --clear .venv-lowest
+	./python.sh -m venv --clear .venv-lowest
 	.venv-lowest/bin/python -m pip install --quiet --editable '.[pipeline]' \
 	  $(foreach name,$(LOWEST),"$(shell sed -n 's/^ *"\($(name)\)>=\([0-9.]*\).*/\1==\2/p' pyproject.toml)")
 	touch .venv-lowest/.installed
@@ -94,6 +93,11 @@ lock:
 	$(UV) pyproject.toml --extra pipeline --extra slurm --output-file requirements.lock
 	$(UV) pyproject.toml --extra pipeline --extra test --extra lint --extra slurm --constraint requirements.lock --output-file requirements-develop.lock
 	printf 'setuptools\nwheel\n' | $(UV) - --constraint requirements.lock --output-file requirements-build.lock
+	.ci/wheels
+
+# Whether each Python of pyproject.toml is served by each line of the lock files of all packages, with uv.
+wheels:
+	.ci/wheels
 
 clean:
 	rm -rf results .snakemake

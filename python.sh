@@ -49,7 +49,7 @@ others=$(seq --format python3.%g "$newest" -1 "$oldest")
 for python in ${PYTHON:-python3 $others}; do
     reason=$(trouble "$python")
     if [ -z "$reason" ]; then
-        [ -z "$found" ] || echo "$found. $python is taken." >&2
+        [ -z "$found" ] || echo "${found%%: *}, so $python is taken." >&2
         exec "$python" "$@"
     fi
     found=${found:-$reason}

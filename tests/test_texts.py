@@ -59,8 +59,8 @@ def numbers_of_readme() -> set[str]:
     }
 
 
-# A version of Python, and the ball of the example.
-GIVEN = {"3.11", "0.996", "0.65", "0.3"}
+# Versions of Python, the size of its environment in GB, and the ball of the example.
+GIVEN = {"3.11", "3.14", "0.6", "0.996", "0.65", "0.3"}
 
 
 def test_decimal_numbers_of_readme_are_those_of_the_datasets():

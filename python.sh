@@ -33,7 +33,7 @@ trouble() {
     version=$("$1" -c 'import sys; print("python%d.%d" % sys.version_info[:2])' 2> /dev/null) || version=missing
     minor=${version#python3.}
     if [ "$minor" = "$version" ] || [ "$minor" -lt "$oldest" ] || [ "$minor" -gt "$newest" ]; then
-        echo "$1 is $version: install Python 3.$oldest to 3.$newest"
+        echo "$1 is ${version#python}: install Python 3.$oldest to 3.$newest"
         return
     fi
     packages=

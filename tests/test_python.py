@@ -1,6 +1,6 @@
-"""Which Python the Makefiles take: python.sh. Its lists are checked against an index by .ci/wheels."""
+"""python.sh: which Python the Makefiles take. .ci/wheels checks its list of builds."""
 
-import os
+import shutil
 import subprocess
 import tomllib
 
@@ -21,7 +21,7 @@ esac
 
 @pytest.fixture
 def run(tmp_path):
-    """Runs python.sh beside a lock file, where the path has only Pythons that answer as they are told."""
+    """Run python.sh with stubs of Python: version, command instead of venv, compiler."""
     (tmp_path / "pyproject.toml").write_text((ROOT / "pyproject.toml").read_text("utf-8"), "utf-8")
 
     def start(pythons, locked="immutables", **variables):
@@ -30,8 +30,8 @@ def run(tmp_path):
             script = PYTHON.format(version=version, venv=venv, compiler=compiler)
             (tmp_path / name).write_text(script)
             (tmp_path / name).chmod(0o755)
-        for tool in "sed", "seq", "grep", "true", "false":
-            (tmp_path / tool).symlink_to(f"/usr/bin/{tool}")
+        for tool in "sed", "seq", "grep":
+            (tmp_path / tool).symlink_to(shutil.which(tool))
         done = subprocess.run(
             [ROOT / "python.sh", "-m", "venv"],
             cwd=tmp_path,
@@ -48,8 +48,8 @@ def run(tmp_path):
     ("pythons", "locked", "words"),
     [
         ({}, "immutables", "python3 is missing: install Python 3.11 to 3.14,"),
-        ({"python3": ("3.10", "true", "true")}, "numpy", "python3 is python3.10: install"),
-        ({"python3": ("3.15", "true", "true")}, "numpy", "python3 is python3.15: install"),
+        ({"python3": ("3.10", "true", "true")}, "numpy", "python3 is 3.10: install"),
+        ({"python3": ("3.15", "true", "true")}, "numpy", "python3 is 3.15: install"),
         ({"python3": ("3.13", "false", "false")}, "immutables", "call python3.13-venv: install"),
         ({"python3": ("3.14", "true", "false")}, "immutables", "call gcc python3.14-dev: install"),
         (
@@ -78,14 +78,14 @@ def test_another_python_is_taken_unless_one_is_named(run):
     pythons = {"python3": ("3.15", "true", "true"), "python3.12": ("3.12", "true", "false")}
     status, out, err = run(pythons)
     assert (status, out) == (0, "python3.12 -m venv\n")
-    assert err == "python3 is python3.15, so python3.12 is taken.\n"
+    assert err == "python3 is 3.15, so python3.12 is taken.\n"
 
 
 def test_a_named_python_is_not_replaced(run):
     pythons = {"python3": ("3.12", "true", "true"), "python3.15": ("3.15", "true", "true")}
     status, out, err = run(pythons, PYTHON="python3.15")
     assert (status, out) == (1, "")
-    assert err.startswith("python3.15 is python3.15: install")
+    assert err.startswith("python3.15 is 3.15: install")
 
 
 def test_the_versions_of_python_are_the_same_everywhere():

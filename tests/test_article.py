@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests import independent
-from tests.reference import ENTRIES, printed_rows, reference, table_with_another_row
+from tests.reference import ENTRIES, reference, with_more
 
 from bouncing_ball import spring_damper
-from carbonelli2011 import article, claims, index, measures
+from carbonelli2011 import article, claims, index, measures, paper
 from carbonelli2011.paper import LIMIT, STIFF, printed_table
 from paper_replication import judgements, origins, texts
 from paper_replication.datasets import parameters
@@ -33,8 +33,8 @@ TEMPLATES = (
 
 @pytest.fixture(scope="module")
 def data() -> dict[str, xr.Dataset]:
-    """All datasets of the reference by name."""
-    return reference()
+    """All datasets of the reference by name, with the curves and rows of the paper."""
+    return paper.of_paper(reference())
 
 
 @cache
@@ -141,17 +141,13 @@ def test_counts_follow_a_dataset(data):
     assert [str(count) in text for count in counts.values()] == [True, True]
 
 
-def test_a_row_of_table_1_that_the_paper_does_not_print_adds_its_lines_alone(data):
-    for name in TEXTS:
-        tables_1 = (printed_rows(data["table1"]), table_with_another_row())
-        before, after = (
-            text_of(name, data | {"table1": table.assign_attrs(data["table1"].attrs)}).splitlines()
-            for table in tables_1
-        )
-        assert [line for line in before if line not in after] == []
-        assert all(line.startswith("| 50 | ") for line in after if line not in before)
-    # The list of figures has the table itself.
-    assert len(after) == len(before) + 6
+@pytest.mark.parametrize("place", [0, 1, -1])
+def test_a_further_curve_or_row_changes_no_sentence(data, place):
+    more = {
+        name: with_more(each, paper.PARAMETERS.get(name, {}), place) for name, each in data.items()
+    }
+    for name in ("paper", "supplement"):
+        assert text_of(name, more) == text_of_reference(name)
 
 
 def template(name: str) -> str:

@@ -66,6 +66,7 @@ def written(name: str, datasets: Datasets) -> str:
     """
     if differences := unlike_the_paper(datasets):
         return filled_in("others", datasets, part=name, differences=differences)
+    datasets = paper.of_paper(datasets)
     return filled_in(
         name,
         datasets,
@@ -91,9 +92,9 @@ def written(name: str, datasets: Datasets) -> str:
 
 def unlike_the_paper(datasets: Datasets) -> list[str]:
     """Return what differs from the run of the paper: parameters, or numbers that are missing."""
-    claims = datasets["claims"]
-    unasked = claims.reason.values[claims.verdict.values == "not asked"]
-    return paper.differences(datasets) or list(dict.fromkeys(unasked.tolist()))
+    judged = counted(datasets["claims"])
+    unasked = [claim["reason"] for claim in judged if claim["verdict"] == "not asked"]
+    return paper.differences(datasets) or list(dict.fromkeys(unasked))
 
 
 def origins_of(name: str, datasets: Datasets) -> list[origins.Origin]:

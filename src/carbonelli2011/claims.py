@@ -77,11 +77,11 @@ def claim(
 
     `datasets` are the names of the datasets that the function takes, in its order. For a claim with
     a printed number, the function returns the computed one. The claim is shown `beside` a figure or
-    table, by default that of the first dataset.
+    table, by default that of the first dataset. A claim of one's own has an empty `place`.
     """
 
     def add(decide: Callable) -> Callable:
-        needed = {each: PARAMETERS[each] for each in datasets.split()}
+        needed = {each: PARAMETERS.get(each, {}) for each in datasets.split()}
         printed = PRINTED.get(name, "")
         shown = next(iter(needed), "") if beside is None else beside
         CLAIMS.append(Claim(name, place, text, needed, decide, printed, beside=shown, **more))
@@ -415,7 +415,7 @@ def static_table():
 def moving_table(fig05, fig06):
     both = [abs(each["apparent_restitution"] / each["restitution"] - 1) for each in (fig05, fig06)]
     curves = fig06.sel(frequency_ratio=10.0, method="nearest")
-    r = float(curves["restitution"][0])
+    r = float(curves["restitution"].max())
     at_rest = restitution_at_rest(r, float(curves["frequency_ratio"]))
     moved = abs(curves["apparent_restitution"] / at_rest - 1)
     name = "the largest relative difference of the apparent restitution from"
@@ -488,10 +488,10 @@ def depends_on_amplitude(fig06):
     "has one; the labels ascend from the top and the curves descend, so the labels may be swapped",
 )
 def dip_at_12(fig06):
-    curves = fig06["apparent_restitution"]
-    depth = (fig06["restitution"] - curves).max("frequency_ratio", skipna=False)
-    name = f"the depth below r at Λ = 1.2; it is {float(depth[0]):.2g} at Λ = 0.7"
-    return [at_least(name, depth[-1], line_width(curves))]
+    curves = fig06.swap_dims(case="amplitude")["apparent_restitution"]
+    depth = (curves["restitution"] - curves).max("frequency_ratio", skipna=False)
+    name = f"the depth below r at Λ = 1.2; it is {float(at(depth, amplitude=0.7)):.2g} at Λ = 0.7"
+    return [at_least(name, at(depth, amplitude=1.2), line_width(curves))]
 
 
 @claim(
@@ -503,7 +503,8 @@ def dip_at_12(fig06):
     "the amplitude",
 )
 def compliant_end(fig06):
-    return at(fig06["apparent_restitution"].isel(case=-1), frequency_ratio=1.0)
+    curves = fig06.swap_dims(case="amplitude")["apparent_restitution"]
+    return at(curves, amplitude=1.2, frequency_ratio=1.0)
 
 
 @claim(

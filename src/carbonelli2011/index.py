@@ -38,7 +38,7 @@ def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **m
         markdown=texts.markdown,
         formula=convert,
         counts=judgements.counts(claims),
-        unasked=int((claims.verdict == "not asked").sum()),
+        unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),
         formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
         figures=[part for part in found if "PNG" in part.files],

@@ -14,7 +14,7 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from paper_replication import origins
 from paper_replication.datasets import Datasets
-from paper_replication.judgements import counted
+from paper_replication.judgements import claims_of, counted
 from paper_replication.templates import TEMPLATES, environment
 
 
@@ -85,7 +85,7 @@ def rows_beside(name: str, datasets: Datasets) -> list[Row]:
     """The claims next to a figure or table; the ends of Table 1 are in the table itself."""
     return [
         row(claim)
-        for claim in counted(datasets["claims"])
+        for claim in [*counted(datasets["claims"]), *claims_of(datasets["claims"], "own claim")]
         if claim["beside"] == name and claim["item"] != "Table 1"
     ]
 

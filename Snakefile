@@ -128,6 +128,7 @@ TEMPLATES = [
     "article.html",
     "figures.md",
     "figures.html",
+    "claims.html",
     "numbers.html",
 ]
 
@@ -384,6 +385,7 @@ rule article:
         numbers="results/numbers.html",
         figures="results/figures/README.md",
         index="results/index.html",
+        claims="results/claims.html",
         record="results/records/article.json",
     params:
         entries=ENTRIES,

@@ -27,6 +27,7 @@ TEMPLATES = (
     "verdicts.md",
     "figures.md",
     "figures.html",
+    "claims.html",
     "article.html",
 )
 
@@ -102,7 +103,7 @@ def with_other_numbers(seed: int) -> dict[str, xr.Dataset]:
     return others
 
 
-@pytest.mark.parametrize("name", TEXTS)
+@pytest.mark.parametrize("name", ["paper", "supplement"])
 def test_every_computed_number_follows_a_dataset(name, data):
     remaining = decimals(text_of_reference(name)) - known(data)
     assert len(remaining) > 10
@@ -211,7 +212,7 @@ def test_the_article_of_a_run_with_other_parameters_names_them(data):
         assert re.findall("^- [a-z].*", text, re.MULTILINE) == [
             "- fig11: restitution is 0.7 instead of 0.65",
             "- fig14: n is 2 instead of 1",
-            "- table1: frequency_ratio lacks 2.0, 10.0",
+            "- table1: frequency_ratio lacks 10.0, 2.0",
         ]
         assert len(text.splitlines()) < 30
     forced = {name: with_parameters(data[name], release="force") for name in ("fig05", "fig06")}
@@ -247,8 +248,7 @@ def test_verdicts_are_those_of_the_claims(name, data):
     text = text_of(name, data | {"claims": unjudged})
     assert not re.search(r"is (reproduced|not reproduced|contradicted|undecidable)\b", text)
     if name == "figures":
-        rows = [line for line in text.splitlines() if line.endswith("* |")]
-        assert {row.split("|")[-2].strip() for row in rows} == {"*open*"}
+        assert {*re.findall(r" \*(.+?)\*", text)} == {"open"}
 
 
 # Bounds

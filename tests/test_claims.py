@@ -5,6 +5,7 @@ import importlib
 import io
 import json
 from collections import Counter
+from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
 
@@ -484,6 +485,24 @@ def test_equations_37_and_38_are_shares_of_the_restitution_model():
     assert errors.relative_error(5.05, 5.0) == pytest.approx(0.01)
 
 
+# Claims of one's own
+
+
+def test_a_claim_of_ones_own_changes_no_count_and_one_that_raises_is_named(judged, reference):
+    own = [replace(EVERY["threshold ensures"], name="mine", place="")]
+    wrong = replace(EVERY["dip at 1.2"], decide=lambda fig06: fig06["height"])
+    rest = [each for name, each in EVERY.items() if name != wrong.name]
+    found = judgements.judged(reference, [*rest, wrong, *own], [], "")
+    assert found["group"].sel(claim="mine") == "own claim"
+    assert found["verdict"].sel(claim="mine") == "reproduced"
+    assert "raises KeyError" in found["reason"].sel(claim=wrong.name).item()
+    assert "\n## Own claims\n" in judgements.claims_markdown(found, "", "")
+    expected = judgements.counts(judged)
+    expected["statement"]["not reproduced"] -= 1
+    expected["statement"]["not asked"] += 1
+    assert judgements.counts(found) == expected
+
+
 # All claims
 
 
@@ -554,13 +573,13 @@ def test_restored_formulas_cover_the_equations_and_name_members():
 
 
 def test_the_page_and_the_csv_have_every_claim(judged):
-    page = judgements.claims_markdown(judged, claims.INTRODUCTION)
+    page = judgements.claims_markdown(judged, claims.INTRODUCTION, "Table 1")
     rows = list(csv.reader(io.StringIO(texts.comma_separated(judgements.all_claims(judged)))))
     assert len(rows) == 1 + judged.sizes["claim"]
     assert {len(row) for row in rows} == {len(rows[0])}
     lines = [line for line in page.splitlines() if line.startswith("|")]
-    for name in judged["claim"].values:
-        assert any(line.startswith(f"| {name} |") for line in lines)
+    for name, item in zip(judged["claim"].values, judged["item"].values, strict=True):
+        assert any(line.startswith(f"| {name} |") for line in lines) == (item != "Table 1")
     for group, columns in judgements.SECTIONS.items():
         header, *body = judgements.chosen(columns, judgements.claims_of(judged, group))
         assert len(body) == int((judged["group"] == group).sum())

@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball import restitution, spring_damper
-from carbonelli2011 import measures, paper, tables
+from carbonelli2011 import measures, paper
 from paper_replication import origins
 from paper_replication.datasets import Datasets, parameters
 from paper_replication.judgements import counted, summary
@@ -85,7 +85,6 @@ def written(name: str, datasets: Datasets) -> str:
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
         summary=summary,
-        tables=tables.TABLES,
         markdown=markdown,
     )
 

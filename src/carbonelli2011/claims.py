@@ -1057,12 +1057,13 @@ compared with its printed form in tests/test_formulas.py.
 INTRODUCTION = """\
 # The claims of the paper and the verdict on each
 
-A row is one claim of the paper, in our words.
+A row is one claim of the paper, in our words; the ends of Table 1 are in [table1.md](table1.md).
 [Section 3 of the article](../paper.md) defines the four verdicts.
 A distance is in units of the last printed digit, and in per cent of the printed number.
 A statement is judged by a condition for each sense of its words: "yes" if it holds, "no" if not.
 The column *literal sense* says whether the first one holds, if they differ.
 Formulas were *restored* from the damaged text by deriving them again, and are not counted.
+`tests/test_formulas.py` compares each with its printed form.
 """
 """The text above the claims on their page."""
 

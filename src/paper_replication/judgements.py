@@ -171,7 +171,6 @@ SECTIONS = {
         "equations": "item",
         "what they give": "statement",
         "computed by": "decided_by",
-        "checked by": "condition",
     },
 }
 """The tables of claims, one for each group, with their columns."""
@@ -226,10 +225,13 @@ def summary(data: xr.Dataset) -> list[list[str]]:
     return rows
 
 
-def claims_markdown(data: xr.Dataset, introduction: str) -> str:
-    """Return the claims with their verdicts as a page in Markdown, after an introduction."""
+def claims_markdown(data: xr.Dataset, introduction: str, elsewhere: str) -> str:
+    """Return the claims with their verdicts as a page in Markdown, after an introduction.
+
+    Claims of the table `elsewhere` are left out, because they stand in that table.
+    """
     text = f"{introduction}\n## How many\n\n{markdown(summary(data))}"
     for group, columns in SECTIONS.items():
-        if claims := claims_of(data, group):
+        if claims := [each for each in claims_of(data, group) if each["item"] != elsewhere]:
             text += f"\n## {group.capitalize()}s\n\n{markdown(chosen(columns, claims))}"
     return text

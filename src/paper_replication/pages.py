@@ -24,6 +24,8 @@ class Row:
 
     Attributes
     ----------
+    name
+        The name of the claim.
     said, where
         What the paper says, with the printed number, and where.
     found
@@ -36,6 +38,7 @@ class Row:
         Why the claim is not testable, and how we read it.
     """
 
+    name: str
     said: str
     where: str
     found: Sequence[str]
@@ -94,6 +97,7 @@ def row(claim: Mapping) -> Row:
     """A claim as it is shown."""
     number = " ".join(filter(None, (claim["computed"], f"({claim['distance']})")))
     return Row(
+        name=claim["claim"],
         said=": ".join(filter(None, (claim["statement"], claim["printed_text"]))),
         where=claim["item"],
         found=[number] if claim["distance"] else claim["senses"],
@@ -111,8 +115,9 @@ PAGES = {
     "paper.md": "paper.html",
     "supplement.md": "supplement.html",
     "figures/README.md": "index.html",
+    "figures/claims.md": "claims.html",
 }
-"""The page for each text; the page of a table or of the claims is a part of index.html."""
+"""The page for each text; the page of a table is a part of index.html."""
 
 
 def page_of(

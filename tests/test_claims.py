@@ -496,7 +496,7 @@ def test_a_claim_of_ones_own_changes_no_count_and_one_that_raises_is_named(judge
     assert found["group"].sel(claim="mine") == "own claim"
     assert found["verdict"].sel(claim="mine") == "reproduced"
     assert "raises KeyError" in found["reason"].sel(claim=wrong.name).item()
-    assert "\n## Own claims\n" in judgements.claims_markdown(found, "", "")
+    assert "\n## Own claims\n" in judgements.claims_markdown(found, "", "Table 1")
     expected = judgements.counts(judged)
     expected["statement"]["not reproduced"] -= 1
     expected["statement"]["not asked"] += 1

@@ -299,7 +299,7 @@ def sentences_of(
                 rows.append(
                     {
                         "number": number,
-                        "text": together(printed.pop(number)),
+                        "text": ", ".join(printed.pop(number)),
                         "terms": terms,
                         "datasets": origin[number].datasets,
                         "claims": [row for row in judged if row["claim"] in claims],
@@ -308,16 +308,6 @@ def sentences_of(
         if rows:
             found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
     return found
-
-
-def together(words: Sequence[str], shown: int = 6) -> str:
-    """Join what an expression prints; of a long table the first words, and their number.
-
-    >>> together(["1.03", "1.04"]), together(["1.03", "1.04", "1.05"], 2)
-    ('1.03, 1.04', '1.03, 1.04, … (3 in all)')
-    """
-    text = ", ".join(words[:shown])
-    return text if len(words) <= shown else f"{text}, … ({len(words)} in all)"
 
 
 def without_dataset(text: str, origin: Sequence[origins.Origin]) -> list[tuple[str, str]]:

@@ -72,13 +72,6 @@ def listed(data) -> str:
     return index.filled_in("md", data, ENTRIES)
 
 
-def judged(data) -> list[dict]:
-    """The claims that are counted."""
-    return [
-        each for group in judgements.GROUPS for each in judgements.claims_of(data["claims"], group)
-    ]
-
-
 # All pages
 
 
@@ -123,7 +116,7 @@ def test_every_claim_is_once_on_both_pages_and_in_the_list(data, read, listed):
     lines = [line.removeprefix("Claims: ") for line in listed.splitlines() if "Claims: " in line]
     rows = re.findall(r"(.*?) \*([a-z ]+)\*(?:; )?", "".join(lines))
     expected = {}
-    for claim in judged(data):
+    for claim in judgements.counted(data["claims"]):
         if claim["item"] != "Table 1":
             said = ": ".join(filter(None, (claim["statement"], claim["printed_text"])))
             expected[claim["claim"]] = claim["verdict"]

@@ -4,7 +4,7 @@ The sections of a configuration are stages, and their entries are figures, table
 that an entry may have besides its parameters is `described` among the definitions of the schema.
 """
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from difflib import get_close_matches
 from itertools import chain, repeat
 from typing import Any
@@ -71,37 +71,34 @@ def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:
 
 def impossible_numbers(value: object, where: str = "") -> Iterator[str]:
     """Yield a line for each range whose ends are equal or reversed, and for each `.nan`."""
-    parts: Iterable[tuple[object, object]] = ()
+    if isinstance(value, list):
+        value = dict(enumerate(value))
     if isinstance(value, Mapping):
         low = value.get("min")
         high = value.get("max")
         if isinstance(low, int | float) and isinstance(high, int | float) and low >= high:
             yield f"{where}: min = {low:g} must be less than max = {high:g}"
-        parts = value.items()
-    elif isinstance(value, list):
-        parts = enumerate(value)
+        for key, part in value.items():
+            yield from impossible_numbers(part, f"{where}.{key}".removeprefix("."))
     elif value != value:
         yield f"{where}: .nan must be a number"
-    for key, part in parts:
-        yield from impossible_numbers(part, f"{where}.{key}".removeprefix("."))
 
 
 def repeated_keys(text: str) -> Iterator[str]:
-    """Yield a line for each key that a mapping in YAML has twice: of its values only the last counts.
+    """Yield a line for each key that a mapping in YAML has twice: only the last value counts.
 
     >>> list(repeated_keys("validity: {}\\ntable: {n: 1}\\nvalidity: {}"))
     ['line 3: validity stands twice: write its keys together']
     """
     nodes = [yaml.compose(text)]
     for node in nodes:
-        pairs = node.value if isinstance(node, yaml.MappingNode) else []
-        names = [key.value for key, _ in pairs]
-        for place, (key, _) in enumerate(pairs):
-            if key.value in names[:place]:
-                line = key.start_mark.line + 1
-                yield f"line {line}: {key.value} stands twice: write its keys together"
-        nodes += [value for _, value in pairs]
-        nodes += node.value if isinstance(node, yaml.SequenceNode) else []
+        if isinstance(node, yaml.MappingNode):
+            last = {key.value: key for key, _ in node.value}
+            for key, value in node.value:
+                nodes.append(value)
+                if key is not last[key.value]:
+                    line = last[key.value].start_mark.line + 1
+                    yield f"line {line}: {key.value} stands twice: write its keys together"
 
 
 def meant(key: str, known: Collection[str]) -> str:

@@ -19,7 +19,7 @@ min_version("9.5")
 # The folder of this file. A run may have another folder (--directory), which gets its results.
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
-from paper_replication.configuration import mistakes, with_whole_numbers
+from paper_replication.configuration import mistakes, repeated_keys, with_whole_numbers
 
 # Scripts import the package of this checkout, whatever else is installed.
 os.environ.update(PYTHONPATH=str(TOP / "src"))
@@ -30,8 +30,13 @@ configfile: TOP / "config/config.yaml"
 
 # A mistake in the configuration ends the run before any job.
 schema = yaml.safe_load((TOP / "config/schema.yaml").read_text("utf-8"))
-if found := [f"configuration: {line}" for line in mistakes(config, schema)]:
-    sys.exit("\n".join(found))
+found = [
+    f"{Path(file).name}, {line}"
+    for file in workflow.configfiles
+    for line in repeated_keys(Path(file).read_text("utf-8"))
+]
+if found := found or [*mistakes(config, schema)]:
+    sys.exit("\n".join(f"configuration: {line}" for line in found))
 config.update(with_whole_numbers(config, schema, schema["$defs"]))
 
 
@@ -123,6 +128,7 @@ TEMPLATES = [
     "article.html",
     "figures.md",
     "figures.html",
+    "claims.html",
     "numbers.html",
 ]
 
@@ -229,7 +235,7 @@ rule error_thresholds:
 rule validity:
     """Map of the stable orbits for which the advised frequency ratio is enough"""
     input:
-        code=checkout("workflow/scripts/validity.py") + MODELS,
+        code=checkout("workflow/scripts/validity.py") + MODELS + PAPER,
     output:
         **datasets("validity"),
         record="results/records/validity.json",
@@ -379,6 +385,7 @@ rule article:
         numbers="results/numbers.html",
         figures="results/figures/README.md",
         index="results/index.html",
+        claims="results/claims.html",
         record="results/records/article.json",
     params:
         entries=ENTRIES,

@@ -3,6 +3,7 @@
 import importlib.util
 import json
 import os
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -10,7 +11,7 @@ from types import ModuleType
 import xarray as xr
 import yaml
 
-from paper_replication.datasets import read
+from paper_replication.datasets import Among, parameters, read
 
 ROOT = Path(__file__).resolve().parents[1]
 TOP = Path(os.environ.get("CANDIDATE", ROOT)).resolve()
@@ -59,3 +60,26 @@ def table_with_another_row() -> xr.Dataset:
         title=ENTRIES["table1"]["title"],
         parameters=json.dumps(given | {"release": CONFIG["release"]}),
     )
+
+
+def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
+    """A dataset with a further curve or row at a place, where a list may have more than is needed.
+
+    Its numbers are wrong.
+    """
+    given = parameters(data)
+    for key, value in needed.items():
+        if isinstance(value, Among):
+            along = value.dimension
+            first = data.isel({along: [0]})
+            label = ["more"] if first[along].dtype.kind in "OU" else 7 * first[along].values
+            wrong = {
+                name: 3.3 * each
+                for name, each in first.data_vars.items()
+                if each.dtype.kind == "f" and along in each.dims
+            }
+            more = first.assign(wrong).assign_coords({along: label})
+            parts = [data.isel({along: slice(place)}), more, data.isel({along: slice(place, None)})]
+            data = xr.concat(parts, along, data_vars="minimal", coords="minimal", compat="override")
+            given[key].insert(place, "more")
+    return data.assign_attrs(parameters=json.dumps(given))

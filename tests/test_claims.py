@@ -5,6 +5,7 @@ import importlib
 import io
 import json
 from collections import Counter
+from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 import xarray as xr
 from scipy.optimize import brentq
 from tests import independent
-from tests.reference import ENTRIES, table_with_another_row
+from tests.reference import ENTRIES, with_more
 from tests.reference import reference as every_dataset
 
 from bouncing_ball import errors, restitution
@@ -32,8 +33,8 @@ NAMES = sorted({name for claim in claims.CLAIMS for name in claim.datasets} | {*
 
 @pytest.fixture(scope="module")
 def reference():
-    """The datasets of the reference that claims use, by name."""
-    return {name: every_dataset()[name] for name in NAMES}
+    """The datasets of the reference that claims use, by name, with the curves of the paper."""
+    return paper.of_paper({name: every_dataset()[name] for name in NAMES})
 
 
 @pytest.fixture(scope="module")
@@ -92,12 +93,13 @@ def test_numbers_that_are_those_of_the_paper_are_reproduced(reference):
     assert ends == ["reproduced"] * 18
 
 
-def test_a_row_of_table_1_that_the_paper_does_not_print_changes_no_verdict(reference, judged):
-    others = reference | {"table1": table_with_another_row()}
-    for claim in users("table1"):
-        found = answer(claim, others)
-        assert found["verdict"] == verdicts(judged)[claim.name]
-        assert found.get("own_sense", "") == judged["own_sense"].sel(claim=claim.name)
+@pytest.mark.parametrize("place", [0, 1, -1])
+def test_a_further_curve_or_row_changes_no_claim(reference, judged, place):
+    more = {
+        name: with_more(data, paper.PARAMETERS.get(name, {}), place)
+        for name, data in reference.items()
+    }
+    xr.testing.assert_identical(claims.judge(more), judged)
 
 
 def test_a_changed_number_changes_its_verdict_alone(reference, judged):
@@ -214,12 +216,11 @@ def test_a_moving_table_like_one_at_rest_is_no_reason_for_another_restitution(re
 
 def test_the_end_of_a_curve_is_that_of_the_curve_of_the_largest_amplitude(reference):
     name = "compliant end of 1.2"
-    curves = reference["fig06"]["apparent_restitution"].copy()
-    curves[:2, 0] = 0.84
-    others = with_other(reference, "fig06", apparent_restitution=curves.copy())
+    curves = reference["fig06"]["apparent_restitution"]
+    largest = curves["amplitude"] == 1.2
+    others = with_other(reference, "fig06", apparent_restitution=curves.where(largest, 0.84))
     assert verdict(name, others) == verdict(name, reference)
-    curves[2, 0] = 0.84
-    changed = with_other(reference, "fig06", apparent_restitution=curves)
+    changed = with_other(reference, "fig06", apparent_restitution=curves.where(~largest, 0.84))
     assert verdict(name, changed) == "not reproduced"
 
 
@@ -280,8 +281,8 @@ def test_a_dip_that_cannot_be_seen_is_none(reference):
     line = claims.line_width(curves)
     assert line == pytest.approx(0.01 * float(curves.max() - curves.min()))
     for depth, expected in ((0.9, "not reproduced"), (1.1, "reproduced")):
-        dipping = curves.copy()
-        dipping[-1, 150] = 0.65 - depth * line
+        there = (curves["amplitude"] == 1.2) & (curves["frequency_ratio"] == 10.0)
+        dipping = curves.where(~there, 0.65 - depth * line)
         changed = with_other(reference, "fig06", apparent_restitution=dipping)
         assert verdict("dip at 1.2", changed) == expected
 
@@ -487,6 +488,24 @@ def test_equations_37_and_38_are_shares_of_the_restitution_model():
     assert errors.relative_error(5.05, 5.0) == pytest.approx(0.01)
 
 
+# Claims of one's own
+
+
+def test_a_claim_of_ones_own_changes_no_count_and_one_that_raises_is_named(judged, reference):
+    own = [replace(EVERY["threshold ensures"], name="mine", place="")]
+    wrong = replace(EVERY["dip at 1.2"], decide=lambda fig06: fig06["height"])
+    rest = [each for name, each in EVERY.items() if name != wrong.name]
+    found = judgements.judged(reference, [*rest, wrong, *own], [], "")
+    assert found["group"].sel(claim="mine") == "own claim"
+    assert found["verdict"].sel(claim="mine") == "reproduced"
+    assert "raises KeyError" in found["reason"].sel(claim=wrong.name).item()
+    assert "\n## Own claims\n" in judgements.claims_markdown(found, "", "Table 1")
+    expected = judgements.counts(judged)
+    expected["statement"]["not reproduced"] -= 1
+    expected["statement"]["not asked"] += 1
+    assert judgements.counts(found) == expected
+
+
 # All claims
 
 
@@ -561,13 +580,13 @@ def test_restored_formulas_cover_the_equations_and_name_members():
 
 
 def test_the_page_and_the_csv_have_every_claim(judged):
-    page = judgements.claims_markdown(judged, claims.INTRODUCTION)
+    page = judgements.claims_markdown(judged, claims.INTRODUCTION, "Table 1")
     rows = list(csv.reader(io.StringIO(texts.comma_separated(judgements.all_claims(judged)))))
     assert len(rows) == 1 + judged.sizes["claim"]
     assert {len(row) for row in rows} == {len(rows[0])}
     lines = [line for line in page.splitlines() if line.startswith("|")]
-    for name in judged["claim"].values:
-        assert any(line.startswith(f"| {name} |") for line in lines)
+    for name, item in zip(judged["claim"].values, judged["item"].values, strict=True):
+        assert any(line.startswith(f"| {name} |") for line in lines) == (item != "Table 1")
     for group, columns in judgements.SECTIONS.items():
         header, *body = judgements.chosen(columns, judgements.claims_of(judged, group))
         assert len(body) == int((judged["group"] == group).sum())

@@ -24,7 +24,14 @@ import pytest
             "continuation: {fig08: {frequency_ratio: [1e4, 10]}}",
             "continuation.fig08.frequency_ratio.0: '1e4' is not of type 'number' (frequency",
         ),
-        ("validity: {validity_map: {curves: [{n: 1}]}}", "validity.validity_map.curves.0: 'rest"),
+        (
+            "apparent_restitution: {fig06: {cases: [{restitution: .nan, amplitude: 1.0}]}}",
+            "apparent_restitution.fig06.cases.0.restitution: .nan must be a number",
+        ),
+        (
+            "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",
+            "mine.yaml, line 2: continuation stands twice: write its keys together",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_before_any_job(fresh, changes, line):
@@ -32,6 +39,14 @@ def test_a_mistake_is_one_line_before_any_job(fresh, changes, line):
     status, printed = fresh.run("--cores", "1", "--configfile", "mine.yaml", "--", "fig01")
     assert str(status).splitlines()[0].startswith(f"configuration: {line}"), (status, printed)
     assert not (fresh.path / "results").exists()
+
+
+def test_a_part_of_a_configuration_that_replaces_it_all_names_the_missing_sections(fresh):
+    (fresh.path / "mine.yaml").write_text("continuation: {fig08: {points: 61}}", "utf-8")
+    command = ["-n", "--cores", "1", "--configfile", "mine.yaml", "--replace-workflow-config"]
+    status, _ = fresh.run(*command, "--", "fig01")
+    assert status.startswith("configuration: release, largest_step, schematics, restitution_model,")
+    assert status.endswith("missing: leave out --replace-workflow-config to change parts")
 
 
 def test_nested_values_of_the_command_line_are_texts_and_the_line_tells_the_remedy(fresh):

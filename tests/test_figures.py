@@ -645,20 +645,6 @@ def test_the_legend_of_the_map_has_the_advised_frequency_ratio_of_the_dataset():
     assert [r"$\varpi=50$" in entry for entry in entries] == [True, True, False]
 
 
-def test_the_legend_of_the_map_has_its_curves_and_calls_only_those_of_the_paper_so():
-    data = reference("validity_map").isel(n=[0], quantity=[0])
-    one = {"n": 1, "restitution": 0.5, "amplitude": 1.2}
-    for marked, place, expected in (
-        (paper.unique(paper.CURVES), data.curve_place, ["curves of the paper"]),
-        ([one], data.curve_place, ["other curves"]),
-        ([one], data.curve_place + 2, []),
-    ):
-        other = with_parameters(data.assign(curve_place=place), curves=marked)
-        figure = figures.draw("validity_map", other)
-        entries = [text.get_text() for text in figure.legends[0].get_texts()]
-        assert [each for each in entries if "curves" in each] == expected
-
-
 def test_an_orbit_of_the_validity_map_without_an_answer_is_a_cross():
     data = reference("validity_map").copy(deep=True)
     data.enough_from[1, 0, 7, 5] = np.nan

@@ -647,17 +647,6 @@ def few(**changed):
     return MAP | small | changed
 
 
-def test_the_curves_of_the_validity_map_are_those_of_the_figures_along_the_frequency_ratio():
-    given = CONFIG["apparent_restitution"]
-    cases = [(name, case) for name in ("fig05", "fig06") for case in given[name]["cases"]]
-    expected = [{"n": given[name]["n"]} | case for name, case in cases]
-    fig10 = given["fig10"]
-    shared = {"n": fig10["n"], "restitution": fig10["restitution"]}
-    expected += [shared | {"amplitude": amplitude} for amplitude in fig10["amplitude"]]
-    assert [curve for curve in expected if curve not in MAP["curves"]] == []
-    assert [curve for curve in MAP["curves"] if curve not in expected] == []
-
-
 def test_shares_of_linear_functions():
     place = np.array([0.0, 0.25, 1.0])
     share = stage("validity").positive_share

@@ -40,7 +40,7 @@ def made(folder: Path) -> set[str]:
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     files = {f"figures/{path.name}" for path in (ROOT / "figures").iterdir()}
-    pages = {f"{name}.html" for name in ("index", "paper", "supplement", "numbers")}
+    pages = {f"{name}.html" for name in ("index", "claims", "paper", "supplement", "numbers")}
     texts = {"paper.md", "supplement.md", *pages}
     results = made(complete.path)
     assert files - {"figures/accepted.json"} | texts <= results

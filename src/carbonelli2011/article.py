@@ -14,7 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball import restitution, spring_damper
-from carbonelli2011 import measures, paper, tables
+from carbonelli2011 import measures, paper
 from paper_replication import origins
 from paper_replication.datasets import Datasets, parameters
 from paper_replication.judgements import counted, summary
@@ -66,6 +66,7 @@ def written(name: str, datasets: Datasets) -> str:
     """
     if differences := unlike_the_paper(datasets):
         return filled_in("others", datasets, part=name, differences=differences)
+    datasets = paper.of_paper(datasets)
     return filled_in(
         name,
         datasets,
@@ -84,16 +85,15 @@ def written(name: str, datasets: Datasets) -> str:
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
         summary=summary,
-        tables=tables.TABLES,
         markdown=markdown,
     )
 
 
 def unlike_the_paper(datasets: Datasets) -> list[str]:
     """Return what differs from the run of the paper: parameters, or numbers that are missing."""
-    claims = datasets["claims"]
-    unasked = claims.reason.values[claims.verdict.values == "not asked"]
-    return paper.differences(datasets) or list(dict.fromkeys(unasked.tolist()))
+    judged = counted(datasets["claims"])
+    unasked = [claim["reason"] for claim in judged if claim["verdict"] == "not asked"]
+    return paper.differences(datasets) or list(dict.fromkeys(unasked))
 
 
 def origins_of(name: str, datasets: Datasets) -> list[origins.Origin]:

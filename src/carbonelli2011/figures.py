@@ -637,8 +637,7 @@ def validity_map(data: xr.Dataset) -> Figure:
     inside = (r >= data.restitution.min()) & (r <= data.restitution.max())
     inside &= (data.curve_place >= 0) & (data.curve_place <= 1) & data.curve_n.isin(data.n)
     if inside.any():
-        of_paper = given["curves"] == paper.unique(paper.CURVES)
-        entries["curves of the paper" if of_paper else "other curves"] = sample(**CURVES)
+        entries["curves of the paper"] = sample(**CURVES)
     if data.enough_from.isnull().any():
         largest = latex_number(given["frequency_ratio"]["max"])
         entries[rf"no $\varpi$ up to ${largest}$ is known to be enough"] = sample(**CROSS)

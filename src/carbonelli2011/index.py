@@ -1,6 +1,7 @@
-"""The page of the results and the list of figures: templates over the same parts.
+"""All texts and pages of a run: the article, the page of the results, the claims, the figures.
 
-A part is a figure, a table or a dataset, with the claims that are shown next to it.
+Templates show the same parts: a part is a figure, a table or a dataset, with the claims that are
+shown next to it.
 """
 
 from collections.abc import Mapping
@@ -15,38 +16,74 @@ from carbonelli2011.paper import QUANTITIES
 from carbonelli2011.tables import TABLES
 from paper_replication import judgements, texts
 from paper_replication.datasets import Datasets, parameters
-from paper_replication.pages import Part, rows_beside, unbroken, with_subscripts
+from paper_replication.origins import bare
+from paper_replication.pages import (
+    Part,
+    framed,
+    numbers,
+    page_of,
+    rows_beside,
+    unbroken,
+    with_subscripts,
+)
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
 
 
-# The page of the results, and the list of figures
+def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = False) -> dict:
+    """Return all texts and pages of a run, by the names of their files.
+
+    `entries` are the registered figures, tables and datasets by name. On a `site`, the explorer and
+    the documentation are next to the pages.
+    """
+    captions = {name: entry["caption"] for name, entry in entries.items() if "caption" in entry}
+    marked = {name: article.written(name, datasets) for name in ("paper", "supplement")}
+    origin = {name: article.origins_of(name, datasets) for name in marked}
+    evidence = filled_in("html", datasets, entries, name="claims", site=site)
+    found = {
+        "figures/README.md": filled_in("md", datasets, entries),
+        "index.html": filled_in("html", datasets, entries, site=site),
+        "claims.html": framed(evidence, "claims", [("", "The claims and the evidence")]),
+        "numbers.html": numbers(marked, origin, datasets),
+    }
+    for name, text in marked.items():
+        found[f"{name}.md"] = bare(text)
+        found[f"{name}.html"] = page_of(text, name, captions, origin[name])
+    return found
 
 
-def filled_in(kind: str, datasets: Datasets, entries: Mapping[str, Mapping], **more) -> str:
+def filled_in(
+    kind: str,
+    datasets: Datasets,
+    entries: Mapping[str, Mapping],
+    name: str = "figures",
+    site: bool = False,
+) -> str:
     """Return the list of figures in Markdown ("md"), or the page of the results ("html").
 
-    `entries` are the registered figures, tables and datasets by name.
+    The evidence of the "claims" is HTML without a frame.
     """
     found = parts(datasets, entries)
     claims = datasets["claims"]
     formulas = judgements.claims_of(claims, "restored formula")
     text = article.filled_in(
-        "figures",
+        name,
         datasets,
         kind,
         markdown=texts.markdown,
         formula=convert,
         counts=judgements.counts(claims),
-        unasked=int((claims.verdict == "not asked").sum()),
+        unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),
         formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
+        checked_by=formulas[0]["condition"],
+        parts=found,
         figures=[part for part in found if "PNG" in part.files],
         tabulated=[part for part in found if part.table],
         others=[part for part in found if part.files.keys() == {"dataset"}],
         general=[part for part in found if not part.files],
-        **more,
+        site=site,
     )
     return with_subscripts(unbroken(text)) if kind == "html" else text
 

@@ -47,9 +47,8 @@ def crossing(curve: xr.DataArray, level: float) -> float:
 
 
 def from_the_stiffest(table1: xr.Dataset) -> xr.Dataset:
-    """Select the rows of Table 1 that the paper prints, in order of decreasing ϖ."""
-    printed = table1.dropna("frequency_ratio", subset=["printed"])
-    return printed.sortby("frequency_ratio", ascending=False)
+    """Sort the rows of Table 1 by decreasing ϖ."""
+    return table1.sortby("frequency_ratio", ascending=False)
 
 
 def last_special(branch: xr.Dataset, kind: str) -> float:

@@ -2,6 +2,7 @@
 
 The configuration repeats the parameters, and users may change them there. A claim is judged only if
 its datasets were computed with the parameters below, and the article is written only if all were.
+Lists of curves and rows may have more: claims and article leave out what the paper does not have.
 """
 
 from operator import itemgetter
@@ -9,7 +10,14 @@ from operator import itemgetter
 import numpy as np
 import xarray as xr
 
-from paper_replication.datasets import Datasets, others, parameters
+from paper_replication.datasets import (
+    Among,
+    Datasets,
+    other_parameters,
+    others,
+    parameters,
+    selected,
+)
 
 LIMIT = 0.01
 """The error of the restitution model that the paper allows, 1 % (Eqs. 37 and 38)."""
@@ -55,14 +63,9 @@ def on_contacts(**given) -> dict:
     return {**given, "release": "displacement"}
 
 
-def unique(values: list) -> list:
-    """Each value once, in the order of the first."""
-    return [each for place, each in enumerate(values) if each not in values[:place]]
-
-
-def cases(*pairs: tuple[float, float]) -> list[dict]:
-    """Return cases of (r, Λ)."""
-    return [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs]
+def cases(*pairs: tuple[float, float]) -> Among:
+    """Return curves of (r, Λ)."""
+    return Among("case", [{"restitution": r, "amplitude": amplitude} for r, amplitude in pairs])
 
 
 QUANTITIES = {
@@ -79,9 +82,9 @@ QUANTITIES = {
 maximum height is that of a whole cycle: the table can lift the ball higher than it flies.
 """
 ALONG_RATIO = {"min": 1.0, "max": 1000.0}
-ROWS_OF_TABLE_1 = [1e4, 10.0, 2.0]
+ROWS_OF_TABLE_1 = Among("frequency_ratio", [1e4, 10.0, 2.0])
 PARAMETERS: dict[str, dict] = {
-    "fig03": {"n": [1, 2, 3, 4, 5], "restitution": 0.85},
+    "fig03": {"n": Among("n", [1, 2, 3, 4, 5]), "restitution": 0.85},
     "fig05": on_contacts(
         n=1,
         cases=cases((1.0, 0.8), (0.85, 1.0), (0.65, 1.0), (0.1, 2.6)),
@@ -93,61 +96,71 @@ PARAMETERS: dict[str, dict] = {
     "fig08": on_contacts(n=1, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
     "fig09": on_contacts(n=2, restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
     "fig10": on_contacts(
-        n=2, restitution=0.85, amplitude=[1.1, 1.0, 0.6], frequency_ratio=ALONG_RATIO
+        n=2,
+        restitution=0.85,
+        amplitude=Among("case", [1.1, 1.0, 0.6]),
+        frequency_ratio=ALONG_RATIO,
     ),
     "fig11": on_contacts(restitution=0.65),
-    "fig12": on_contacts(n=1, restitution=0.65, amplitude=1.0),
-    "fig13": on_contacts(n=1, restitution=0.65, amplitude=[1.0], frequency_ratio=ALONG_RATIO),
+    "fig12": on_contacts(
+        n=1,
+        restitution=0.65,
+        amplitude=1.0,
+        frequency_ratio=Among("frequency_ratio", [2.0, 5.0, 20.0, 100.0]),
+    ),
+    "fig13": on_contacts(
+        n=1, restitution=0.65, amplitude=Among("case", [1.0]), frequency_ratio=ALONG_RATIO
+    ),
     "fig14": on_contacts(n=1, restitution=0.65, amplitude=1.0, frequency_ratio=ALONG_RATIO),
     "fig15": on_contacts(n=2, restitution=0.65, frequency_ratio=10.0),
     "fig16": on_contacts(restitution=0.65, frequency_ratio={"min": 0.5, "max": 100.0}),
-    # Further rows may be computed.
     "three_balls": {
         "restitution": 0.5,
-        "amplitude": {1.2, 1.6, 1.75},
+        "amplitude": Among("amplitude", [1.2, 1.6, 1.75]),
         "phase": 1.0,
         "impact_speed": 5.0,
     },
-    "table1": on_contacts(n=[1, 2, 3], restitution=0.85, frequency_ratio={*ROWS_OF_TABLE_1}),
+    "table1": on_contacts(n=[1, 2, 3], restitution=0.85, frequency_ratio=ROWS_OF_TABLE_1),
     "thresholds": on_contacts(
         n=1,
         restitution=0.65,
         amplitude=1.0,
         # The map has two quantities of its own.
-        quantities={*QUANTITIES} - {"summit"},
+        quantities=Among("quantity", [each for each in QUANTITIES if each != "summit"]),
         frequency_ratio={"min": 1.0, "max": 1e4},
     ),
     "lowest_doubling": on_contacts(n=[1, 2, 3], restitution=0.85),
     "validity_map": on_contacts(n=[1, 2, 3], restitution={"min": 0.05, "max": 0.95}, advised=STIFF),
 }
 """The parameters that the claims need of each dataset: those of the paper, and where its axes
-cannot be read, the ends of the ranges to which the conditions refer. Those of the three balls are
-ours.
+cannot be read, the ends of the ranges to which the conditions refer. Those of the three balls and
+the frequency ratios of Fig. 12 are ours.
 """
 TOLERANCES: dict[str, dict] = {
     "fig14": {"tolerance": LIMIT},
     "fig16": {"tolerance": LIMIT},
-    "thresholds": {"tolerances": {LIMIT}},
+    "thresholds": {"tolerances": Among("tolerance", [LIMIT])},
     "validity_map": {"tolerance": LIMIT},
 }
 """The tolerance of the paper, which only thresholds of ϖ need."""
-CURVES = [
-    {"n": PARAMETERS[name]["n"], **case}
-    for name, each in {
-        "fig05": PARAMETERS["fig05"]["cases"],
-        "fig06": PARAMETERS["fig06"]["cases"],
-        "fig10": cases((0.85, 1.1), (0.85, 1.0), (0.85, 0.6)),
-    }.items()
-    for case in each
-]
-"""The orbits of Figs. 5, 6 and 10, which the map marks; one is in two figures."""
+CURVES = list(
+    dict.fromkeys(
+        [
+            (PARAMETERS[name]["n"], case["restitution"], case["amplitude"])
+            for name in ("fig05", "fig06")
+            for case in PARAMETERS[name]["cases"].values
+        ]
+        + [(2, 0.85, amplitude) for amplitude in PARAMETERS["fig10"]["amplitude"].values]
+    )
+)
+"""n, r and Λ of the curves of Figs. 5, 6 and 10, which the map marks; one is in two figures."""
 AXES = {
     "fig03": {"amplitude_max": 2.0},
     "fig08": {"amplitude_max": 1.5},
     "fig09": {"amplitude_max": 1.5},
     "fig15": {"amplitude_max": 2.2},
     "thresholds": {"frequency_ratio": {"samples": 101}},
-    "validity_map": {"frequency_ratio": {"min": 10.0, "max": 1e4}, "curves": unique(CURVES)},
+    "validity_map": {"frequency_ratio": {"min": 10.0, "max": 1e4}},
 }
 """Our choices on which sentences of the article rest."""
 
@@ -164,3 +177,12 @@ def differences(datasets: Datasets) -> list[str]:
         for line in others(name, parameters(datasets[name]), needed):
             found.setdefault(line.removeprefix(f"{name}."), []).append(name)
     return [f"{', '.join(dict.fromkeys(names))}: {line}" for line, names in found.items()]
+
+
+def of_paper(datasets: Datasets) -> dict[str, xr.Dataset]:
+    """Select the curves and rows of the paper, in its order, in the datasets that have them."""
+    found = {}
+    for name, data in datasets.items():
+        needed = PARAMETERS.get(name, {})
+        found[name] = data if other_parameters(name, data, needed) else selected(data, needed)
+    return found

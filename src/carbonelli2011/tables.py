@@ -1,4 +1,4 @@
-"""Table 1, the thresholds, hypotheses on the printed numbers and the choices.
+"""Table 1, the thresholds, and hypotheses on the printed numbers.
 
 Each table is a function of its dataset that returns rows of texts, the header first.
 """
@@ -115,17 +115,5 @@ def hypotheses(data: xr.Dataset) -> list[list[str]]:
     return found
 
 
-def choices(data: xr.Dataset) -> list[list[str]]:
-    """Our choices, the alternatives that were tried, and the verdicts that change."""
-    found = [["choice", "instead", "verdicts that depend on it"]]
-    for choice in dict.fromkeys(data["choice"].values.tolist()):
-        tried = data.isel(alternative=data["choice"].values == choice)
-        pairs = list(zip(tried["instead"].values, tried["changes"].values, strict=True))
-        changes = [": ".join(pair) for pair in pairs if pair[1]]
-        instead = "; ".join(instead for instead, _ in pairs)
-        found.append([choice, instead, "<br>".join(changes) or "none"])
-    return found
-
-
-TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses, "choices": choices}
+TABLES = {"table1": table1, "thresholds": thresholds, "hypotheses": hypotheses}
 """The tables by name."""

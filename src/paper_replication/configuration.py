@@ -9,6 +9,7 @@ from difflib import get_close_matches
 from itertools import chain, repeat
 from typing import Any
 
+import yaml
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
 
@@ -23,7 +24,10 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
     >>> list(mistakes({"relese": "force"}, schema))
     ['relese: unknown key, did you mean release?']
     """
-    yield from reversed_ranges(config)
+    if missing := [name for name in schema.get("required", []) if name not in config]:
+        yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
+        return
+    yield from impossible_numbers(config)
     described = schema.get("$defs", {}).get("described", {}).get("properties", {})
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
@@ -35,7 +39,8 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         elif error.validator == "required" and error.validator_value == ["title"]:
             stage, name = error.absolute_path
             known = schema["properties"][stage]["properties"]
-            yield f"{where}: unknown key{meant(name, known)} ({error.schema['description']})"
+            unknown = "" if name in known else f"unknown key{meant(name, known)} "
+            yield f"{where}: {unknown}({error.schema['description']})"
         else:
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
@@ -64,15 +69,36 @@ def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:
     return int(value) if schema.get("type") == "integer" else value
 
 
-def reversed_ranges(value: object, where: str = "") -> Iterator[str]:
-    """Yield a line for each range whose ends are equal or reversed."""
+def impossible_numbers(value: object, where: str = "") -> Iterator[str]:
+    """Yield a line for each range whose ends are equal or reversed, and for each `.nan`."""
+    if isinstance(value, list):
+        value = dict(enumerate(value))
     if isinstance(value, Mapping):
         low = value.get("min")
         high = value.get("max")
         if isinstance(low, int | float) and isinstance(high, int | float) and low >= high:
             yield f"{where}: min = {low:g} must be less than max = {high:g}"
         for key, part in value.items():
-            yield from reversed_ranges(part, f"{where}.{key}".removeprefix("."))
+            yield from impossible_numbers(part, f"{where}.{key}".removeprefix("."))
+    elif value != value:
+        yield f"{where}: .nan must be a number"
+
+
+def repeated_keys(text: str) -> Iterator[str]:
+    """Yield a line for each key that a mapping in YAML has twice: only the last value counts.
+
+    >>> list(repeated_keys("validity: {}\\ntable: {n: 1}\\nvalidity: {}"))
+    ['line 3: validity stands twice: write its keys together']
+    """
+    nodes = [yaml.compose(text)]
+    for node in nodes:
+        if isinstance(node, yaml.MappingNode):
+            last = {key.value: key for key, _ in node.value}
+            for key, value in node.value:
+                nodes.append(value)
+                if key is not last[key.value]:
+                    line = last[key.value].start_mark.line + 1
+                    yield f"line {line}: {key.value} stands twice: write its keys together"
 
 
 def meant(key: str, known: Collection[str]) -> str:

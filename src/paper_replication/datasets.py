@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from inspect import signature
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -225,10 +225,39 @@ def plain(value: Any) -> Any:
 # Parameters
 
 
+class Among(NamedTuple):
+    """Values that a list must have, in any order and among others.
+
+    Attributes
+    ----------
+    dimension
+        The dimension of the dataset along which the values of the list lie.
+    values
+        The values.
+    """
+
+    dimension: str
+    values: list
+
+
+def selected(data: xr.Dataset, needed: Mapping) -> xr.Dataset:
+    """Select of each list the needed values, in the order in which they are needed.
+
+    The result has the parameters of what is left.
+    """
+    given = parameters(data)
+    for key, value in needed.items():
+        if isinstance(value, Among):
+            places = [given[key].index(each) for each in value.values]
+            data = data.isel({value.dimension: places})
+            given[key] = value.values
+    return data.assign_attrs(parameters=json.dumps(given, ensure_ascii=False))
+
+
 def other_parameters(name: str, data: xr.Dataset, needed: Mapping) -> str:
     """Name the parameters of a dataset that differ from the needed ones; empty if none does.
 
-    Of a range only the needed keys count, and a set must be among the values of a list.
+    Of a range only the needed keys count, and a list may have more than is needed `Among` others.
     """
     return "; ".join(others(name, parameters(data), needed))
 
@@ -238,14 +267,14 @@ def others(name: str, given, needed) -> Iterator[str]:
 
     >>> list(others("fig14", {"n": 2, "frequency_ratio": {"min": 2.0}}, {"n": 1}))
     ['fig14.n is 2 instead of 1']
-    >>> list(others("tolerances", [0.1], {0.02, 0.1, 0.01}))
-    ['tolerances lacks 0.01, 0.02']
+    >>> list(others("tolerances", [0.1], Among("tolerance", [0.02, 0.1, 0.01])))
+    ['tolerances lacks 0.02, 0.01']
     """
     if isinstance(needed, Mapping) and isinstance(given, Mapping):
         for key, value in needed.items():
             yield from others(f"{name}.{key}", given.get(key), value)
-    elif isinstance(needed, set):
-        if missing := sorted(needed - {*(given or ())}):
+    elif isinstance(needed, Among):
+        if missing := [each for each in needed.values if each not in (given or ())]:
             yield f"{name} lacks {words(missing)}"
     elif given != needed:
         yield f"{name} is {words(given)} instead of {words(needed)}"

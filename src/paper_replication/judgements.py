@@ -51,7 +51,7 @@ def judged(
         NOTHING
         | {
             "claim": claim.name,
-            "group": "printed number" if claim.printed else "statement",
+            "group": group_of(claim),
             "item": claim.place,
             "statement": claim.text,
             "decided_by": ", ".join(claim.datasets),
@@ -80,6 +80,13 @@ def judged(
     columns = {name: ("claim", [row[name] for row in rows]) for name in names}
     dataset = xr.Dataset(columns).assign(condition=(("claim", "sense"), padded))
     return dataset.set_coords("claim")
+
+
+def group_of(claim: Claim) -> str:
+    """The group of a claim: those that the paper does not say are "own claim"."""
+    if not claim.place:
+        return "own claim"
+    return "printed number" if claim.printed else "statement"
 
 
 # Tables
@@ -151,11 +158,19 @@ SECTIONS = {
         "decided by": "decided_by",
         "remark": "notes",
     },
+    "own claim": {
+        "claim": "claim",
+        "what it says": "statement",
+        "verdict": "verdict",
+        "literal sense": "own_sense",
+        "found": "condition",
+        "decided by": "decided_by",
+        "remark": "notes",
+    },
     "restored formula": {
         "equations": "item",
         "what they give": "statement",
         "computed by": "decided_by",
-        "checked by": "condition",
     },
 }
 """The tables of claims, one for each group, with their columns."""
@@ -210,10 +225,13 @@ def summary(data: xr.Dataset) -> list[list[str]]:
     return rows
 
 
-def claims_markdown(data: xr.Dataset, introduction: str) -> str:
-    """Return the claims with their verdicts as a page in Markdown, after an introduction."""
+def claims_markdown(data: xr.Dataset, introduction: str, elsewhere: str) -> str:
+    """Return the claims with their verdicts as a page in Markdown, after an introduction.
+
+    Claims of the table `elsewhere` are left out, because they stand in that table.
+    """
     text = f"{introduction}\n## How many\n\n{markdown(summary(data))}"
     for group, columns in SECTIONS.items():
-        rows = chosen(columns, claims_of(data, group))
-        text += f"\n## {group.capitalize()}s\n\n{markdown(rows)}"
+        if claims := [each for each in claims_of(data, group) if each["item"] != elsewhere]:
+            text += f"\n## {group.capitalize()}s\n\n{markdown(chosen(columns, claims))}"
     return text

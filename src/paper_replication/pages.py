@@ -14,7 +14,7 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from paper_replication import origins
 from paper_replication.datasets import Datasets
-from paper_replication.judgements import counted
+from paper_replication.judgements import claims_of, counted
 from paper_replication.templates import TEMPLATES, environment
 
 
@@ -24,6 +24,8 @@ class Row:
 
     Attributes
     ----------
+    name
+        The name of the claim.
     said, where
         What the paper says, with the printed number, and where.
     found
@@ -36,6 +38,7 @@ class Row:
         Why the claim is not testable, and how we read it.
     """
 
+    name: str
     said: str
     where: str
     found: Sequence[str]
@@ -85,7 +88,7 @@ def rows_beside(name: str, datasets: Datasets) -> list[Row]:
     """The claims next to a figure or table; the ends of Table 1 are in the table itself."""
     return [
         row(claim)
-        for claim in counted(datasets["claims"])
+        for claim in [*counted(datasets["claims"]), *claims_of(datasets["claims"], "own claim")]
         if claim["beside"] == name and claim["item"] != "Table 1"
     ]
 
@@ -94,6 +97,7 @@ def row(claim: Mapping) -> Row:
     """A claim as it is shown."""
     number = " ".join(filter(None, (claim["computed"], f"({claim['distance']})")))
     return Row(
+        name=claim["claim"],
         said=": ".join(filter(None, (claim["statement"], claim["printed_text"]))),
         where=claim["item"],
         found=[number] if claim["distance"] else claim["senses"],
@@ -111,8 +115,9 @@ PAGES = {
     "paper.md": "paper.html",
     "supplement.md": "supplement.html",
     "figures/README.md": "index.html",
+    "figures/claims.md": "claims.html",
 }
-"""The page for each text; the page of a table or of the claims is a part of index.html."""
+"""The page for each text; the page of a table is a part of index.html."""
 
 
 def page_of(
@@ -294,7 +299,7 @@ def sentences_of(
                 rows.append(
                     {
                         "number": number,
-                        "text": together(printed.pop(number)),
+                        "text": ", ".join(printed.pop(number)),
                         "terms": terms,
                         "datasets": origin[number].datasets,
                         "claims": [row for row in judged if row["claim"] in claims],
@@ -303,16 +308,6 @@ def sentences_of(
         if rows:
             found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
     return found
-
-
-def together(words: Sequence[str], shown: int = 6) -> str:
-    """Join what an expression prints; of a long table the first words, and their number.
-
-    >>> together(["1.03", "1.04"]), together(["1.03", "1.04", "1.05"], 2)
-    ('1.03, 1.04', '1.03, 1.04, … (3 in all)')
-    """
-    text = ", ".join(words[:shown])
-    return text if len(words) <= shown else f"{text}, … ({len(words)} in all)"
 
 
 def without_dataset(text: str, origin: Sequence[origins.Origin]) -> list[tuple[str, str]]:

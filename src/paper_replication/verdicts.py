@@ -14,7 +14,7 @@ not testable
     The text does not say what decides the claim.
 not asked
     This run has other parameters than the claim needs, lacks a dataset, or lacks a number that
-    decides the claim.
+    decides the claim. Or: its function raises an exception.
 
 Each sense of a statement is a condition on the datasets, a `Reading`. The first is the literal one.
 """
@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from paper_replication.datasets import Datasets, other_parameters
+from paper_replication.datasets import Datasets, other_parameters, selected
 
 ROUNDING = 1e-9
 """Relative difference below which numbers are equal: rounding errors of the datasets are 1e-12."""
@@ -163,7 +163,7 @@ class Claim:
     name
         Its name in our datasets and texts.
     place
-        Where the paper says it.
+        Where the paper says it; empty for a claim of one's own.
     text
         What it says, in our words.
     datasets
@@ -195,7 +195,7 @@ class Claim:
 def answer(claim: Claim, datasets: Datasets) -> dict:
     """Judge a claim: its verdict, the number found, and the conditions or the reason as text.
 
-    What is missing for one claim changes no other.
+    What is missing for one claim, or raised by its function, changes no other.
     """
     absent = [name for name in claim.datasets if name not in datasets]
     if absent:
@@ -205,8 +205,12 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
     ]
     if any(others):
         return not_asked(f"other parameters: {'; '.join(filter(None, others))}")
-    decided = claim.decide(*(datasets[name] for name in claim.datasets))
-    return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
+    chosen = [selected(datasets[name], needed) for name, needed in claim.datasets.items()]
+    try:
+        decided = claim.decide(*chosen)
+        return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
+    except Exception as error:  # Whatever the function of a claim raises.
+        return not_asked(f"its function {claim.decide.__name__} raises {error!r}")
 
 
 def missing_numbers(claim: Claim) -> str:

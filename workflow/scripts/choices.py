@@ -22,7 +22,7 @@ import time_histories
 import xarray as xr
 
 from carbonelli2011 import claims
-from carbonelli2011.paper import TABLE_1, differences, printed_table
+from carbonelli2011.paper import TABLE_1, differences, of_paper, printed_table
 from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import Datasets, computed, parameters, read, save, save_record
 from paper_replication.verdicts import Claim, answer
@@ -64,8 +64,8 @@ class Choice(NamedTuple):
 
 
 def decided_by(names: Set[str], table: Mapping = TABLE_1) -> list[Claim]:
-    """The claims that some named datasets decide."""
-    decided = [claim for claim in claims.CLAIMS if names & claim.datasets.keys()]
+    """The claims of the paper that some named datasets decide."""
+    decided = [claim for claim in claims.CLAIMS if claim.place and names & claim.datasets.keys()]
     return decided + claims.table1_ends(table) if "table1" in names else decided
 
 
@@ -165,6 +165,7 @@ def exponents(data: Datasets) -> Iterator[Choice]:
 
 def changed_verdicts(data: Datasets) -> xr.Dataset:
     """Each other choice with the verdicts that it changes, as texts."""
+    data = of_paper(data)
     rows = []
     here: dict[frozenset[str], list[tuple[str, str]]] = {}
     for item, instead, datasets, table in choices(data):

@@ -15,7 +15,7 @@ verdicts = judge(datasets)
 title = "Verdicts on the paper's claims"
 save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code, described, REFERENCE)
 Path(snakemake.output.md).write_text(
-    claims_markdown(verdicts, INTRODUCTION), encoding="utf-8", newline="\n"
+    claims_markdown(verdicts, INTRODUCTION, "Table 1"), encoding="utf-8", newline="\n"
 )
 table = comma_separated(all_claims(verdicts))
 Path(snakemake.output.csv).write_text(table, encoding="utf-8", newline="\n")

@@ -17,6 +17,7 @@ from bouncing_ball.continuation import SPECIAL, NoOrbit, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio
+from carbonelli2011.paper import CURVES
 from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import grid, save_stage
 
@@ -70,10 +71,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     below = ((np.minimum(first[ends], doubling) - node) / width).reshape(shape[:2])
     below_mean = [mean_share(r, each, np.inf) for each in below]
 
-    curves = parameters["curves"]
-    n_curve, r_curve, amplitude_curve = (
-        np.array([curve[key] for curve in curves]) for key in ("n", "restitution", "amplitude")
-    )
+    n_curve, r_curve, amplitude_curve = map(np.array, zip(*CURVES, strict=True))
     begin = restitution.saddle_node(n_curve, r_curve)
     end = restitution.period_doubling(n_curve, r_curve)
 

@@ -151,16 +151,17 @@ def mathml(as_block):
 
 
 def home(app, failure):
-    """The front page is that of the results of the replication, with its pictures and data."""
+    """The results of the replication, with pictures and data, are the front page and the article."""
     folder = Path(app.outdir)
     names = sorted((ROOT / "figures").glob("*.nc"))
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
     stages = [section for section in config.values() if isinstance(section, dict)]
     entries = {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
-    page = index.filled_in("html", {path.stem: read(path) for path in names}, entries)
-    # The tables in Markdown are pages of the site.
-    page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', page)
-    (folder / "index.html").write_text(page, encoding="utf-8")
+    texts = index.written({path.stem: read(path) for path in names}, entries, site=True)
+    for name in (name for name in texts if name.endswith(".html")):
+        # The tables in Markdown are pages of the site.
+        page = re.sub(r'(href="figures/\w+)\.md"', r'\1.html"', texts[name])
+        (folder / name).write_text(page, encoding="utf-8")
     (folder / "figures").mkdir(exist_ok=True)
     for path in (ROOT / "figures").iterdir():
         if path.suffix in (".nc", ".csv", ".png", ".svg"):

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import xarray as xr
 import yaml
 
@@ -65,21 +66,20 @@ def table_with_another_row() -> xr.Dataset:
 def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
     """A dataset with a further curve or row at a place, where a list may have more than is needed.
 
-    Its numbers are wrong.
+    Its numbers are wrong, and in the parameters it is the first.
     """
     given = parameters(data)
     for key, value in needed.items():
         if isinstance(value, Among):
             along = value.dimension
             first = data.isel({along: [0]})
-            label = ["more"] if first[along].dtype.kind in "OU" else 7 * first[along].values
             wrong = {
-                name: 3.3 * each
-                for name, each in first.data_vars.items()
-                if each.dtype.kind == "f" and along in each.dims
+                name: (each.dims, np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values)
+                for name, each in first.variables.items()
+                if along in each.dims and (name in first.coords or each.dtype.kind == "f")
             }
-            more = first.assign(wrong).assign_coords({along: label})
+            more = first.assign(wrong).set_coords(first.coords)
             parts = [data.isel({along: slice(place)}), more, data.isel({along: slice(place, None)})]
             data = xr.concat(parts, along, data_vars="minimal", coords="minimal", compat="override")
-            given[key].insert(place, "more")
+            given[key].insert(0, "more")
     return data.assign_attrs(parameters=json.dumps(given))

@@ -243,12 +243,18 @@ class Among(NamedTuple):
 def selected(data: xr.Dataset, needed: Mapping) -> xr.Dataset:
     """Select of each list the needed values, in the order in which they are needed.
 
-    The result has the parameters of what is left.
+    A value is found by its coordinate, which has the name of the list or of the dimension. The
+    result has the parameters of what is left.
     """
     given = parameters(data)
     for key, value in needed.items():
         if isinstance(value, Among):
-            places = [given[key].index(each) for each in value.values]
+            name = key if key in data.coords else value.dimension
+            places = []
+            for each in value.values:
+                labels = each if isinstance(each, Mapping) else {name: each}
+                there = [data[label].values == number for label, number in labels.items()]
+                places.append(np.flatnonzero(np.all(there, axis=0))[0])
             data = data.isel({value.dimension: places})
             given[key] = value.values
     return data.assign_attrs(parameters=json.dumps(given, ensure_ascii=False))

@@ -480,7 +480,7 @@ class Comparison:
         # Results are judged by their numbers: a run may have a dataset that was written anew.
         by_bytes = not is_data or (self.config is not None and EDITED in old.wrong)
         if wrong and (found or by_bytes or wrong.keys() != {EDITED}):
-            return Finding("differs", new.wrong, found, wrong)
+            return Finding("differs", new.wrong, found if EDITED in wrong else (), wrong)
         before, after = old.record, new.record
         if not found and (not is_data or before["parameters"] == after["parameters"]):
             return Finding("agrees", new.wrong)
@@ -655,15 +655,20 @@ def accept(project: Project, results: Path) -> list[str]:
     made_by = {json.dumps(record["versions"], sort_keys=True) for record in records}
     if len(made_by) != 1:
         raise ValueError(f"nothing is accepted, run from nothing first: {' and '.join(made_by)}")
-    changed = []
-    for file, found in report.found.items():
-        path = project.top / file
-        if not found.wrong and found.verdict != "agrees":
-            write(path, (results / file).read_bytes())
-            changed.append(file)
-        elif found.wrong and file in old.records and git("ls-files", str(path)):
-            path.unlink()
-            changed.append(file)
+    taken = [
+        file
+        for file, found in report.found.items()
+        if not found.wrong and found.verdict != "agrees"
+    ]
+    removed = [
+        file
+        for file, found in report.found.items()
+        if found.wrong and file in old.records and git("ls-files", str(project.top / file))
+    ]
+    for file in taken:
+        write(project.top / file, (results / file).read_bytes())
+    for file in removed:
+        (project.top / file).unlink(missing_ok=True)
     accepted = {
         "made": {file: content(project.top / file) for file in report.found if file in new.records},
         "code": contents(CHECKOUT / file for file in committed),
@@ -671,7 +676,7 @@ def accept(project: Project, results: Path) -> list[str]:
         "entries": new.record(project.texts[0])["entries"],
     }
     write(project.top / ACCEPTED, f"{json.dumps(accepted, indent=0)}\n".encode())
-    return changed
+    return [*taken, *removed]
 
 
 # The command and the rule
@@ -719,8 +724,11 @@ def main(project: Project, arguments: list[str]) -> int:
         if len(runs) == 1:
             runs.insert(0, run_in(project.top, "the reference"))
             # A run in another folder has parameters of its own.
-            is_own = folders[0].resolve() == (project.top / "results").resolve()
-            config = project.configuration() if is_own else {}
+            config = (
+                project.configuration()
+                if folders[0].resolve() == (project.top / "results").resolve()
+                else {}
+            )
         beside = paths[-1] if paths[-1].is_dir() else paths[-1].parent
         return written(compare(project, runs[0], runs[1], config), beside / "diff", sys.stdout)
 

@@ -88,8 +88,8 @@ for stage in STAGES:
 
 
 def checkout(*paths):
-    """Files of this checkout, as paths from the folder of the run."""
-    return [os.path.relpath(TOP / path) for path in paths]
+    """Files of this checkout, as paths from the folder of the run; they are not in its storage."""
+    return [local(os.path.relpath(TOP / path)) for path in paths]
 
 
 def modules(*names):

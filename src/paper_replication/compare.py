@@ -651,7 +651,7 @@ def accept(project: Project, results: Path) -> list[str]:
             raise ValueError(f"nothing is accepted, run snakemake again first: {why}")
     records = [new.records[file] for file in report.found if file in new.records]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():
-        raise ValueError(f"nothing is accepted, git does not know {', '.join(sorted(unknown))}")
+        raise ValueError(f"nothing is accepted, commit first: git does not know {min(unknown)}")
     made_by = {json.dumps(record["versions"], sort_keys=True) for record in records}
     if len(made_by) != 1:
         raise ValueError(f"nothing is accepted, run from nothing first: {' and '.join(made_by)}")

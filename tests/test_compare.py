@@ -627,11 +627,11 @@ def mixed(project):
         (lambda project: edit(project, "src/model.py"), "commit first: M src/model.py"),
         (
             lambda project: shutil.rmtree(project.top / ".git"),
-            "commit first: git does not know src/drawing.py",
+            "git does not know src/drawing.py",
         ),
         (untracked, r"commit first: \?\? src/new.py"),
-        (ignored, "commit first: git does not know src/new.py"),
-        (in_a_repository_of_others, "commit first: git does not know src/drawing.py"),
+        (ignored, "git does not know src/new.py"),
+        (in_a_repository_of_others, "git does not know src/drawing.py"),
         (mixed, "run from nothing first: .*9.9"),
     ],
 )

@@ -27,10 +27,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
-from functools import partial
+from functools import cache, partial
 from itertools import takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -472,28 +471,27 @@ class Comparison:
             kind: [*old.wrong.get(kind, ()), *new.wrong.get(kind, ())]
             for kind in {**old.wrong, **new.wrong}
         }
-        if wrong.keys() & {UNREADABLE, UNNAMED} or len(wrong.get(MISSING, ())) == 2:
-            return Finding("not comparable", new.wrong, causes=wrong)
-        if MISSING in wrong:
-            return Finding("differs", new.wrong, causes=wrong)
+        unknown = wrong.keys() & {UNREADABLE, UNNAMED} or len(wrong.get(MISSING, ())) == 2
+        if unknown or MISSING in wrong:
+            return Finding("not comparable" if unknown else "differs", new.wrong, causes=wrong)
         found = [] if old.hash == new.hash else differences(file, old.contents, new.contents)
         # Results are judged by their numbers: a run may have a dataset that was written anew.
         by_bytes = not is_data or (self.config is not None and EDITED in old.wrong)
         if wrong and (found or by_bytes or wrong.keys() != {EDITED}):
             return Finding("differs", new.wrong, found if EDITED in wrong else (), wrong)
-        before, after = old.record, new.record
-        if not found and (not is_data or before["parameters"] == after["parameters"]):
+        if not found and (not is_data or old.record["parameters"] == new.record["parameters"]):
             return Finding("agrees", new.wrong)
         if is_data and self.config is not None and about(old.contents) != about(new.contents):
             # Descriptions are not among the code that a dataset records.
-            after["code"] |= contents(
+            new.record["code"] |= contents(
                 path
                 for name in self.project.code
                 for path in (CHECKOUT / name).rglob("variables.py")
             )
-        why = causes(before, after, before["code"] if self.config is None else self.main)
-        follows = [Path(each).stem for each in after["data"] if each in self.findings]
-        drawn_by = {record["versions"].get("matplotlib") for record in (before, after)} - {None}
+        main = old.record["code"] if self.config is None else self.main
+        why = causes(old.record, new.record, main)
+        follows = [Path(each).stem for each in new.record["data"] if each in self.findings]
+        drawn_by = {side.record["versions"].get("matplotlib") for side in (old, new)} - {None}
         if follows and not is_data:
             # A text with another title is another text.
             is_text = file.endswith(".md") and old.contents[0] == new.contents[0]
@@ -561,17 +559,24 @@ class Comparison:
 
     def rounded(self, file: str, why: Mapping) -> bool:
         """Whether a file differs only because numbers of its dataset, which agree, are rounded
-        otherwise: the same code made both, or today's code makes that of the reference again.
+        otherwise: the same code made both files, or today's code makes both again.
         """
-        path, other = ((run.folder / file).with_suffix(".nc") for run in (self.old, self.new))
-        if not path.is_file() or read(path).equals(read(other)):
+        paths = [(run.folder / file).with_suffix(".nc") for run in (self.old, self.new)]
+        if not paths[0].is_file() or read(paths[0]).equals(read(paths[1])):
             return False
         if self.config is None:
             return why == NOTHING
-        with TemporaryDirectory() as folder, suppress(Exception):
-            self.project.make(path.stem, read(path), Path(folder))
-            return content(Path(folder, Path(file).name)) == content(self.old.folder / file)
-        return False
+        name = Path(file).name
+        again = [remade(self.project.make, path, content(path)).get(name) for path in paths]
+        return again == [content(path.with_name(name)) for path in paths]
+
+
+@cache
+def remade(make: Callable, path: Path, _made: str) -> dict[str, str]:
+    """The hashes of the files that follow from a dataset, made again."""
+    with TemporaryDirectory() as folder:
+        make(path.stem, read(path), Path(folder))
+        return {each.name: content(each) for each in Path(folder).iterdir()}
 
 
 def compare(
@@ -587,13 +592,12 @@ def compare(
     makes with this configuration. If it is empty, the new run has parameters of its own. If it is
     None, both runs are judged by their records.
     """
-    main = {} if config is None else code_of_main()
-    report = Comparison(project, old, new, config, main)
+    report = Comparison(project, old, new, config, {} if config is None else code_of_main())
     for file in project.files((old, new), config or {}):
         if not names or Path(file).stem in names:
             try:
                 report.found[file] = report.finding(file)
-            except Exception as error:  # Whatever a damaged dataset of both runs raises.
+            except Exception as error:  # Whatever damaged attributes, or drawing again, raise.
                 wrong = {UNREADABLE: [f"{file}: {error!r}"]}
                 report.found[file] = Finding("not comparable", wrong, causes=wrong)
     return report
@@ -647,7 +651,7 @@ def accept(project: Project, results: Path) -> list[str]:
     for file, found in report.found.items():
         # A file that is missing, and that no record of the results names, is not made any more.
         if found.wrong and (file in new.records or MISSING not in found.wrong):
-            why = f"{Path(file).stem}: {found}"
+            why = "; ".join(f"{what}: {', '.join(which)}" for what, which in found.wrong.items())
             raise ValueError(f"nothing is accepted, run snakemake again first: {why}")
     records = [new.records[file] for file in report.found if file in new.records]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():

@@ -19,7 +19,13 @@ min_version("9.5")
 # The folder of this file. A run may have another folder (--directory), which gets its results.
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
-from paper_replication.configuration import mistakes, repeated_keys, with_whole_numbers
+from paper_replication.configuration import (
+    entries,
+    mistakes,
+    repeated_keys,
+    shown_as,
+    with_whole_numbers,
+)
 
 # Scripts import the package of this checkout, whatever else is installed.
 os.environ.update(PYTHONPATH=str(TOP / "src"))
@@ -43,9 +49,7 @@ config.update(with_whole_numbers(config, schema, schema["$defs"]))
 # Figures, tables and datasets are registered in config.yaml, each in the section of its stage.
 
 STAGES = {name: section for name, section in config.items() if isinstance(section, dict)}
-ENTRIES = {
-    name: entry for section in STAGES.values() for name, entry in section.items() if name != "title"
-}
+ENTRIES = entries(config)
 FIGURES = [name for name, entry in ENTRIES.items() if "caption" in entry]
 TABLES = [name for name, entry in ENTRIES.items() if entry.get("table")]
 DATASETS = [name for name in ENTRIES if name not in STAGES["schematics"]]
@@ -73,8 +77,7 @@ def parameters(stage):
 def files(name):
     """The files of a figure, a table or a dataset."""
     kinds = ["nc"] * (name in DATASETS)
-    kinds += ["png", "svg"] * (name in FIGURES)
-    kinds += ["md", "csv"] * (name in TABLES)
+    kinds += shown_as(ENTRIES[name])
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
@@ -96,8 +99,8 @@ for stage in STAGES:
 
 
 def checkout(*paths):
-    """Files of this checkout, as paths from the folder of the run."""
-    return [os.path.relpath(TOP / path) for path in paths]
+    """Files of this checkout, as paths from the folder of the run; they are not in its storage."""
+    return [local(os.path.relpath(TOP / path)) for path in paths]
 
 
 def modules(*names):

@@ -74,7 +74,10 @@ def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
             along = value.dimension
             first = data.isel({along: [0]})
             wrong = {
-                name: (each.dims, np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values)
+                name: (
+                    each.dims,
+                    np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values,
+                )
                 for name, each in first.variables.items()
                 if along in each.dims and (name in first.coords or each.dtype.kind == "f")
             }

@@ -1,15 +1,18 @@
 """Compare two runs, and make results the reference.
 
 The reference is a folder `figures` and some texts beside it; a run writes the same files into a
-folder of its own. Numbers of datasets agree within the tolerances that the first run declares. All
-other files are functions of datasets, and are compared byte for byte. If one of their datasets
-differs, this is what is reported; of a text the sentences that changed are listed. Another
-processor rounds numbers differently: then a picture, a table or a page of one dataset agrees if
-today's code makes the file of the reference again.
+folder of its own. Records say what made a file: datasets, code, versions of libraries, and the hash
+of the file. A run has a record for each job in its folder `records`. The reference has one for all
+its files, `figures/accepted.json`, with the code and the versions that gave them last.
 
-Records say what made a file: datasets, code, versions of libraries, and the hash of the file.
-A run has a record for each job in its folder `records`. The reference has one for all its files,
-`figures/accepted.json`, with the code and the versions that gave them last.
+Each side of a file is asked by itself first (`Comparison.side`): whether it is present, readable,
+named by a record, as the record says, and fresh. Then both sides are compared (`Comparison.pair`):
+
+- Numbers of datasets agree within the tolerances that the first run declares.
+- All other files are functions of datasets, and are compared byte for byte. If one of their
+  datasets differs, this is what is reported; of a text the changed sentences are listed.
+- Another processor rounds numbers differently. Then a picture, a table or a page of one dataset
+  agrees if today's code makes the file of the reference again.
 
 A difference has a cause: an edit by hand, parameters, files of code, or versions of libraries. A
 file of code is a cause only if the results have it neither as accepted nor as on the main branch.
@@ -24,14 +27,13 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Collection, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
-from functools import partial
+from functools import cache, partial
 from itertools import takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, TextIO
+from typing import Any, TextIO, cast
 from xml.etree import ElementTree
 
 import numpy as np
@@ -39,8 +41,9 @@ import xarray as xr
 import yaml
 from PIL import Image
 
+from paper_replication.configuration import entries, shown_as
 from paper_replication.datasets import Variable, attributes, plain, read, write
-from paper_replication.provenance import CHECKOUT, PACKAGES, content, contents, versions
+from paper_replication.provenance import CHECKOUT, PACKAGES, content, contents
 from paper_replication.templates import TEMPLATES, environment
 
 FOLLOWING = ("claims", "choices")
@@ -49,9 +52,77 @@ ACCEPTED = "figures/accepted.json"
 PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
 """Attributes of a dataset that are causes of a difference, or are not compared."""
 PICTURES = (".png", ".svg")
+MISSING, UNREADABLE, UNNAMED = "missing", "cannot be compared", "no record names"
+EDITED, STALE = "edited by hand", "stale, remove it and run again; changed since"
+"""What may be wrong with a file of one run."""
 NOTHING: Mapping[str, Sequence[str]] = {
     "cause": ["no parameter, code or version that is recorded has changed"]
 }
+
+
+RECORD = ("made", "data", "code", "versions", "entries")
+"""What a record has."""
+STATUS = {"agrees": 0, "follows": 0, "drawn elsewhere": 0, "differs": 1, "not comparable": 2}
+"""The exit status of each verdict. A file follows if one of its datasets has another verdict. A
+picture is drawn elsewhere if the same code drew it with another matplotlib.
+"""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A folder with results, and the records of what made them.
+
+    Attributes
+    ----------
+    label
+        The name of the run in a report.
+    folder
+        The folder with `figures` and the texts.
+    records
+        The record of each file, and each record by its own name.
+    damaged
+        Records that cannot be read, with the reasons.
+    """
+
+    label: str
+    folder: Path
+    records: Mapping[str, dict]
+    damaged: Sequence[str] = ()
+
+    def record(self, file: str, data: Any = None) -> dict[str, Any]:
+        """What made a file, as far as it is known. A dataset has its own parameters and code.
+
+        The parameters of a text are the entries of the configuration.
+        """
+        found = dict(self.records.get(file, {key: {} for key in RECORD}))
+        found["parameters"] = found["entries"]
+        if isinstance(data, xr.Dataset):
+            found |= {
+                key: json.loads(data.attrs[key]) for key in ("parameters", "code", "versions")
+            }
+            # The titles of claims and choices are code.
+            found["parameters"] |= {"title": data.attrs["title"]} if found["parameters"] else {}
+        return found | self.records.get(ACCEPTED, {})
+
+    def older(self, record: Mapping) -> list[str]:
+        """The datasets of a file that were made again after it."""
+        made = {name: self.record(name)["made"].get(name) for name in record["data"]}
+        return [name for name, known in record["data"].items() if made[name] not in (known, None)]
+
+
+def run_in(folder: Path, label: str) -> Run:
+    """The run in a folder, with its records."""
+    records: dict[str, dict] = {}
+    damaged = []
+    for path in [*folder.glob("records/*.json"), *folder.glob(ACCEPTED)]:
+        name = path.relative_to(folder).as_posix()
+        try:
+            known = {"data": {}} | json.loads(path.read_text("utf-8"))
+            record = {key: dict(known[key]) for key in RECORD}
+            records |= dict.fromkeys([name, *record["made"]], record)
+        except Exception as error:  # Whatever the reader raises for a damaged file.
+            damaged.append(f"{name} cannot be read: {error!r}")
+    return Run(label, folder, records, damaged)
 
 
 @dataclass(frozen=True)
@@ -79,12 +150,20 @@ class Project:
     code: tuple[str, ...]
     describe: Callable[[str], Mapping[str, Variable]]
 
-    def files(self, *sides: Path) -> list[str]:
-        """All files that one of the folders has: datasets first, and `FOLLOWING` last of them."""
-        found = {text for text in self.texts if any((side / text).exists() for side in sides)}
-        found |= {f"figures/{path.name}" for side in sides for path in side.glob("figures/[!.]*")}
+    def files(self, runs: Sequence[Run], config: Mapping) -> list[str]:
+        """What is compared: the files that a configuration and the records of runs register, and
+        whatever else is in their folders `figures`. Datasets are first, and `FOLLOWING` last of
+        them.
+        """
+        records = [record for run in runs for record in run.records.values()]
+        found = {file for record in records for file in (*record["made"], *record["data"])}
+        for known in (entries(config), *(record["entries"] for record in records)):
+            found |= {f"figures/{name}.{kind}" for name in known for kind in shown_as(known[name])}
+        for run in runs:
+            found |= {f"figures/{path.name}" for path in run.folder.glob("figures/[!.]*")}
         return sorted(
-            found - {ACCEPTED},
+            {file for file in found if file.startswith("figures/") or file in self.texts}
+            - {ACCEPTED},
             key=lambda file: (file[-3:] != ".nc", Path(file).stem in FOLLOWING, file),
         )
 
@@ -94,80 +173,48 @@ class Project:
 
 
 @dataclass(frozen=True)
-class Run:
-    """A folder with results, and the records of what made them.
+class Side:
+    """A file of one run, asked by itself.
 
     Attributes
     ----------
-    label
-        The name of the run in a report.
-    folder
-        The folder with `figures` and the texts.
-    records
-        The record of each file, and each record by its own name.
+    wrong
+        What is wrong with the file: details by kind, from `MISSING` to `STALE`.
+    contents, hash
+        Its contents, as `content_of` reads them, and their hash.
+    record
+        What made it.
     """
 
-    label: str
-    folder: Path
-    records: Mapping[str, dict]
-
-    def record(self, file: str, data: xr.Dataset | None = None) -> dict[str, Any]:
-        """What made a file, as far as it is known. A dataset has its own parameters and code.
-
-        The parameters of a text are the entries of the configuration.
-        """
-        accepted = self.records.get(ACCEPTED, {})
-        known = self.records.get(file, accepted)
-        found = {"made": {}, "data": {}, "code": {}, "versions": {}} | known
-        found["parameters"] = known.get("entries", {})
-        if data is not None:
-            found |= {
-                key: json.loads(data.attrs.get(key, "{}"))
-                for key in ("parameters", "code", "versions")
-            }
-            # The titles of claims and choices are code.
-            found["parameters"] |= {"title": data.attrs["title"]} if found["parameters"] else {}
-        return found | accepted
-
-    def older(self, record: Mapping) -> list[str]:
-        """The datasets of a file that were made again after it."""
-        made = {name: self.record(name)["made"].get(name) for name in record["data"]}
-        return [name for name, known in record["data"].items() if made[name] not in (known, None)]
-
-    def edited(self, file: str) -> bool:
-        """Whether a file is not what its record names."""
-        made = self.record(file)["made"]
-        return file in made and made[file] != content(self.folder / file)
-
-
-def run_in(folder: Path, label: str) -> Run:
-    """The run in a folder, with its records. A damaged record is none."""
-    records: dict[str, dict] = {}
-    for path in [*folder.glob("records/*.json"), *folder.glob(ACCEPTED)]:
-        with suppress(ValueError):
-            record = json.loads(path.read_text("utf-8"))
-            files = [path.relative_to(folder).as_posix(), *record.get("made", {})]
-            records |= dict.fromkeys(files, record)
-    return Run(label, folder, records)
+    wrong: Mapping[str, Sequence[str]]
+    contents: Any = None
+    hash: str = ""
+    record: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Finding:
-    """What is wrong with a file.
+    """The verdict on a file, and why.
 
     Attributes
     ----------
+    verdict
+        One of `STATUS`.
+    wrong
+        What is wrong with the file of the new run by itself.
     differences
         What differs, the furthest first.
     causes
-        Why, by the kind of the cause.
-    usable
-        Whether `accept` may make it the reference.
+        Why, or what is wrong with one side, by the kind of the cause.
+    sentences
+        The lines of a text that changed, the old and the new one.
     """
 
-    differences: Sequence[str]
+    verdict: str
+    wrong: Mapping[str, Sequence[str]]
+    differences: Sequence[str] = ()
     causes: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    usable: bool = True
+    sentences: Sequence[tuple[str, str]] = ()
 
     def __str__(self) -> str:
         causes = [f"{what}: {', '.join(which)}" for what, which in self.causes.items()]
@@ -240,7 +287,9 @@ def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
             ]
             text += f" at {', '.join(at)}" if at else ""
             text += (
-                f" (tolerance {old[name].tolerance:g})" if "tolerance" in old[name].attrs else ""
+                f" (tolerance {old[name].attrs['tolerance']:g})"
+                if "tolerance" in old[name].attrs
+                else ""
             )
             text += f", and {count - 1} more of {distance.size} values" if count > 1 else ""
             far.append((distance[worst], text))
@@ -312,7 +361,8 @@ def git(*arguments: str) -> str:
     try:
         names = run(["git", "rev-parse", "--local-env-vars"]).stdout.split()
         environment = {name: value for name, value in os.environ.items() if name not in names}
-        return run(["git", "-C", str(CHECKOUT), *arguments], env=environment).stdout.strip()
+        command = ["git", "-C", str(CHECKOUT), "-c", "core.quotePath=off", *arguments]
+        return run(command, env=environment).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return ""
 
@@ -325,10 +375,10 @@ def tree(commit: str, *paths: str) -> dict[str, str]:
 
 def code_of_main() -> dict[str, str]:
     """The hashes of the files on the main branch where this one left it; empty if no main branch is
-    known, as in a shallow checkout.
+    known, as in a shallow checkout, or if git has other hashes than records, as SHA-256.
     """
     bases = (git("merge-base", "HEAD", name) for name in ("origin/HEAD", "origin/main", "main"))
-    forks = [*filter(None, bases)]
+    forks = [base for base in bases if len(base) == 40]
     return tree(forks[0]) if forks else {}
 
 
@@ -337,8 +387,6 @@ def causes(before: Mapping, after: Mapping, main: Mapping) -> Mapping[str, Seque
 
     Parameters count if both records have some.
     """
-    if not before["code"] or not after["code"]:
-        return {"cause": ["not known without a record"]}
     code = [file for file, known in after["code"].items() if before["code"].get(file) != known]
     old, new = ({name: each["versions"].get(name) for name in PACKAGES} for each in (before, after))
     given = (before["parameters"], after["parameters"])
@@ -370,19 +418,13 @@ class Comparison:
     old, new
         The runs.
     config
-        The configuration of the new run, if the old one is the reference. Then the new run must be
-        what today's code makes. If it is None, both runs are judged by their records.
+        The configuration of the new run, if the old one is the reference; empty if it is not known.
+        Then the new run must be what today's code makes. If it is None, both runs are judged by
+        their records.
     main
         The code on the main branch, as in `causes`.
-    files
-        The files that are compared.
-    findings
-        Files that differ, are stale, missing or unexpected, with what is wrong.
-    following
-        Files that were not compared, because one of their datasets differs. A text has its changed
-        sentences, the old and the new one.
-    drawn_elsewhere
-        Pictures that were not compared, because another matplotlib drew them.
+    found
+        The verdict on each file.
     """
 
     project: Project
@@ -390,15 +432,26 @@ class Comparison:
     new: Run
     config: Mapping | None
     main: Mapping
-    files: Sequence[str]
-    findings: dict[str, Finding] = field(default_factory=dict)
-    following: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
-    drawn_elsewhere: list[str] = field(default_factory=list)
+    found: dict[str, Finding] = field(default_factory=dict)
+
+    def those(self, *verdicts: str) -> dict[str, Finding]:
+        """The files with one of these verdicts."""
+        return {file: each for file, each in self.found.items() if each.verdict in verdicts}
 
     @property
-    def names(self) -> list[str]:
-        """The figures, tables and texts that differ."""
-        return sorted({Path(file).stem for file in self.findings})
+    def findings(self) -> dict[str, Finding]:
+        """The files that differ or cannot be compared."""
+        return self.those("differs", "not comparable")
+
+    @property
+    def status(self) -> int:
+        """The exit status: 1 if a file differs, else 2 if one, or none at all, can be compared."""
+        given = {STATUS[each.verdict] for each in self.found.values()}
+        return next((status for status in (1, 2, 0) if status in given), 2)
+
+    def names(self, verdict: str) -> list[str]:
+        """The figures, tables and texts with a verdict."""
+        return sorted({Path(file).stem for file in self.those(verdict)})
 
     def lines(self) -> list[str]:
         """What is wrong, by name. Both pictures of a figure have the same line."""
@@ -406,68 +459,124 @@ class Comparison:
         return list(dict.fromkeys(f"{Path(file).stem}: {each}" for file, each in found))
 
     def printed(self, template: str, **more: Any) -> str:
-        """The report as a template prints it."""
-        return environment(TEMPLATES).get_template(template).render(report=self, **more)
+        """The report as a template prints it, with invisible characters escaped."""
+        printing = environment(TEMPLATES).overlay(finalize=shown)
+        return printing.get_template(template).render(report=self, **more)
 
-    def finding(self, file: str) -> Finding | None:
-        """What is wrong with a file; None if nothing is, or if it is listed elsewhere."""
-        runs = (self.old, self.new)
-        for run in runs:
-            if not (run.folder / file).is_file():
-                return Finding([f"{file} is missing in {run.label}"])
+    def finding(self, file: str) -> Finding:
+        """The verdict on a file: each side is asked by itself first, and then both together."""
         is_data = file.endswith(".nc")
-        same = not is_data and content(self.old.folder / file) == content(self.new.folder / file)
-        old: Any = None if same else content_of(self.old, file)
-        new: Any = None if same else content_of(self.new, file)
-        before = self.old.record(file, old if is_data else None)
-        after = self.new.record(file, new if is_data else None)
-        found = [] if same else differences(file, old, new)
-        by_hand = [f"{file} of {run.label}" for run in runs if run.edited(file)]
-        stale = self.old.older(before) + self.new.older(after)
-        if self.config is not None:
-            stale += outdated(self.project, self.new, file, self.config, new if is_data else None)
-        if stale and not (found and by_hand):
-            line = f"stale, remove it and run again; changed since: {', '.join(stale)}"
-            return Finding([line], usable=False)
-        if not found and (same or before["parameters"] == after["parameters"]):
-            return None
-        if by_hand:
-            return Finding(found, {"edited by hand": by_hand}, not self.new.edited(file))
-        main = self.main if self.config is not None else before["code"]
-        follows = [Path(each).stem for each in after["data"] if each in self.findings]
-        if is_data:
-            if self.config is not None and about(old) != about(new):
-                # Descriptions are not among the code that a dataset records.
-                after["code"] = after["code"] | contents(
-                    path
-                    for name in self.project.code
-                    for path in (CHECKOUT / name).rglob("variables.py")
-                )
-            why = {"follows from": follows} if follows else causes(before, after, main)
-            return Finding(found, why)
-        drawn_by = {record["versions"].get("matplotlib") for record in (before, after)} - {None}
-        if follows:
-            # A text with another title is another text.
-            self.following[file] = (
-                sentences(old, new) if file.endswith(".md") and old[0] == new[0] else []
+        old, new = (self.side(run, file) for run in (self.old, self.new))
+        wrong = {
+            kind: [*old.wrong.get(kind, ()), *new.wrong.get(kind, ())]
+            for kind in {**old.wrong, **new.wrong}
+        }
+        unknown = wrong.keys() & {UNREADABLE, UNNAMED} or len(wrong.get(MISSING, ())) == 2
+        if unknown or MISSING in wrong:
+            return Finding("not comparable" if unknown else "differs", new.wrong, causes=wrong)
+        found = [] if old.hash == new.hash else differences(file, old.contents, new.contents)
+        # Results are judged by their numbers: a run may have a dataset that was written anew.
+        by_bytes = not is_data or (self.config is not None and EDITED in old.wrong)
+        if wrong and (found or by_bytes or wrong.keys() != {EDITED}):
+            return Finding("differs", new.wrong, found if EDITED in wrong else (), wrong)
+        if not found and (not is_data or old.record["parameters"] == new.record["parameters"]):
+            return Finding("agrees", new.wrong)
+        if is_data and self.config is not None and about(old.contents) != about(new.contents):
+            # Descriptions are not among the code that a dataset records.
+            new.record["code"] |= contents(
+                path
+                for name in self.project.code
+                for path in (CHECKOUT / name).rglob("variables.py")
             )
-        elif file.endswith(PICTURES) and len(drawn_by) == 2:
-            self.drawn_elsewhere.append(file)
-        elif not self.rounded(file, before, after):
-            return Finding(found, causes(before, after, main))
-        return None
+        main = old.record["code"] if self.config is None else self.main
+        why = causes(old.record, new.record, main)
+        follows = [Path(each).stem for each in new.record["data"] if each in self.findings]
+        drawn_by = {side.record["versions"].get("matplotlib") for side in (old, new)} - {None}
+        if follows and not is_data:
+            # A text with another title is another text.
+            is_text = file.endswith(".md") and old.contents[0] == new.contents[0]
+            changed = sentences(old.contents, new.contents) if is_text else []
+            return Finding("follows", new.wrong, sentences=changed)
+        if (
+            file.endswith(PICTURES)
+            and len(drawn_by) == 2
+            and not [kind for kind in why if kind.startswith("changed")]
+        ):
+            return Finding("drawn elsewhere", new.wrong)
+        if not is_data and self.rounded(file, why):
+            return Finding("agrees", new.wrong)
+        return Finding("differs", new.wrong, found, {"follows from": follows} if follows else why)
 
-    def rounded(self, file: str, before: Mapping, after: Mapping) -> bool:
-        """Whether a file differs only because numbers of its datasets, which agree, are rounded
-        otherwise: the same code made both, or today's code makes that of the reference again.
+    def side(self, run: Run, file: str) -> Side:
+        """A file of one run, asked by itself: is it present, readable, named by a record, what the
+        record says, and fresh?
         """
+        path = run.folder / file
+        is_result = run is self.new and self.config is not None
+        try:
+            if is_result and path.resolve() == (self.old.folder / file).resolve():
+                raise ValueError(f"it is the file of {self.old.label}")
+            found = content_of(path)
+            record = run.record(file, found)
+            stale = run.older(record) + (self.outdated(file, found, record) if is_result else [])
+            made = content(path)
+        except FileNotFoundError:
+            return Side({MISSING: [f"{file} in {run.label}"]})
+        except Exception as error:  # Whatever readers raise for a damaged file.
+            return Side({UNREADABLE: [f"{file} in {run.label}: {error!r}"]})
+        named = file in run.records
+        asked = {
+            UNNAMED: [] if named else [f"{file} in {run.label}", *run.damaged],
+            EDITED: [f"{file} of {run.label}"] if named and record["made"][file] != made else [],
+            STALE: stale,
+        }
+        return Side({kind: each for kind, each in asked.items() if each}, found, made, record)
+
+    def outdated(self, file: str, data: Any, record: Mapping) -> list[str]:
+        """What changed in the checkout since a file was made: parameters of a dataset or a text,
+        descriptions and code.
+        """
+        name = Path(file).stem
+        config = self.config or {}
+        known: Mapping = entries(config)
+        variables: Mapping = {}
+        if isinstance(data, xr.Dataset):
+            entry = known.get(name, {}).items()
+            known = {key: value for key, value in config.items() if key in record["parameters"]}
+            known |= {key: value for key, value in entry if key not in ("caption", "table")}
+            variables = data.variables
+        found = [
+            f"{line} (config/config.yaml or the Snakefile)"
+            for line in changes(record["parameters"], plain(known))
+            if record["parameters"] and config
+        ]
+        told = self.project.describe(name)
+        variables = {key: each for key, each in variables.items() if key in told}
+        today = {key: attributes(told[key], each.dtype) for key, each in variables.items()}
+        found += changes({key: plain(each.attrs) for key, each in variables.items()}, plain(today))
+        now = contents(path for path in map(CHECKOUT.joinpath, record["code"]) if path.is_file())
+        return found + [each for each, known in record["code"].items() if now.get(each) != known]
+
+    def rounded(self, file: str, why: Mapping) -> bool:
+        """Whether a file differs only because numbers of its dataset, which agree, are rounded
+        otherwise: the same code made both files, or today's code makes both again.
+        """
+        paths = [(run.folder / file).with_suffix(".nc") for run in (self.old, self.new)]
+        if not paths[0].is_file() or read(paths[0]).equals(read(paths[1])):
+            return False
         if self.config is None:
-            return causes(before, after, before["code"]) == NOTHING
-        path = (self.old.folder / file).with_suffix(".nc")
-        with TemporaryDirectory() as folder, suppress(Exception):
-            self.project.make(path.stem, read(path) if path.exists() else None, Path(folder))
-            return content(Path(folder, Path(file).name)) == content(self.old.folder / file)
-        return False
+            return why == NOTHING
+        name = Path(file).name
+        again = [remade(self.project.make, path, content(path)).get(name) for path in paths]
+        return again == [content(path.with_name(name)) for path in paths]
+
+
+@cache
+def remade(make: Callable, path: Path, _made: str) -> dict[str, str]:
+    """The hashes of the files that follow from a dataset, made again."""
+    with TemporaryDirectory() as folder:
+        make(path.stem, read(path), Path(folder))
+        return {each.name: content(each) for each in Path(folder).iterdir()}
 
 
 def compare(
@@ -480,79 +589,34 @@ def compare(
     """Compare all files of two runs, or those of the figures and tables named.
 
     If `config` is given, the old run is the reference, and the new run must be what today's code
-    makes with this configuration. If not, both runs are judged by their records.
+    makes with this configuration. If it is empty, the new run has parameters of its own. If it is
+    None, both runs are judged by their records.
     """
-    files = [
-        file
-        for file in project.files(old.folder, new.folder)
-        if not names or Path(file).stem in names
-    ]
-    main = {} if config is None else code_of_main()
-    report = Comparison(project, old, new, config, main, files)
-    for file in files:
-        try:
-            found = report.finding(file)
-        except Exception as error:  # Whatever readers raise for a damaged file.
-            found = Finding([f"{file} cannot be compared: {error}"], usable=False)
-        if found:
-            report.findings[file] = found
+    report = Comparison(project, old, new, config, {} if config is None else code_of_main())
+    for file in project.files((old, new), config or {}):
+        if not names or Path(file).stem in names:
+            try:
+                report.found[file] = report.finding(file)
+            except Exception as error:  # Whatever damaged attributes, or drawing again, raise.
+                wrong = {UNREADABLE: [f"{file}: {error!r}"]}
+                report.found[file] = Finding("not comparable", wrong, causes=wrong)
     return report
 
 
-def outdated(
-    project: Project, run: Run, file: str, config: Mapping, data: xr.Dataset | None
-) -> list[str]:
-    """What changed in the checkout since a file was made: the parameters of a dataset or a text,
-    descriptions and code.
-    """
-    if file not in run.records:
-        return ["it has no record"]
-    record = run.record(file, data)
-    recorded = record["parameters"]
-    wanted = {
-        name: entry
-        for stage in config.values()
-        if isinstance(stage, Mapping)
-        for name, entry in stage.items()
-        if name != "title"
-    }
-    if data is not None:
-        entry = wanted.get(Path(file).stem, {}).items()
-        wanted = {key: value for key, value in config.items() if key in recorded}
-        wanted |= {key: value for key, value in entry if key not in ("caption", "table")}
-    found = [
-        f"{line} (config/config.yaml or the Snakefile)"
-        for line in changes(recorded, plain(wanted))
-        if recorded
-    ]
-    variables = {} if data is None else {str(name): data[name] for name in data.variables}
-    told = project.describe(Path(file).stem)
-    today = {
-        name: attributes(told[name], variables[name].dtype) for name in variables if name in told
-    }
-    found += changes({name: plain(variables[name].attrs) for name in today}, plain(today))
-    now = contents(path for path in map(CHECKOUT.joinpath, record["code"]) if path.is_file())
-    return found + [each for each, known in record["code"].items() if now.get(each) != known]
-
-
-def content_of(run: Run, file: str) -> Any:
+def content_of(path: Path) -> Any:
     """A dataset, a picture, or the lines of a text.
 
-    Raises ValueError if a file is damaged, or is not what its name says. An example is a pointer of
+    Raises an error if a file is damaged, or is not what its name says. An example is a pointer of
     Git LFS.
     """
-    path = run.folder / file
-    try:
-        if path.suffix == ".nc":
-            return read(path)
-        if path.suffix == ".svg":
-            return ElementTree.parse(path)
-        if path.suffix == ".png":
-            with Image.open(path) as picture:
-                return picture.load()
-        return path.read_bytes().replace(b"\r\n", b"\n").decode().split("\n")
-    except Exception as error:  # Whatever readers raise for a damaged file.
-        raise ValueError(f"in {run.label} {error!r}") from error
+    if path.suffix == ".nc":
+        return read(path)
+    if path.suffix == ".svg":
+        return ElementTree.parse(path)
+    if path.suffix == ".png":
+        with Image.open(path) as picture:
+            return picture.verify()
+    return path.read_bytes().replace(b"\r\n", b"\n").decode().split("\n")
 
 
 def sentences(old: Sequence[str], new: Sequence[str]) -> list[tuple[str, str]]:
@@ -575,36 +639,48 @@ def accept(project: Project, results: Path) -> list[str]:
     """Make results the reference, and return the files that were written or removed.
 
     Datasets that agree, and their pictures, stay as they are: only the code that gave them again is
-    noted. Raises ValueError if a result is stale, was edited by hand or cannot be read, or if its
-    code is not committed.
+    noted. Files that no rule makes any more are removed if git tracks them and the record of the
+    reference names them. Raises ValueError if a result is not fresh and as recorded, if the results
+    were made with several versions of libraries, or if their code is not committed.
     """
-    if not git("rev-parse", "HEAD"):
-        raise ValueError("nothing is accepted, because there is no git")
-    if edited := git("status", "--porcelain", "--", *project.code):
+    committed = tree("HEAD", "--", *project.code)
+    if edited := git("status", "--porcelain", "--untracked-files=all", "--", *project.code):
         raise ValueError(f"nothing is accepted, commit first: {edited}")
-    new = run_in(results, "the results")
-    report = compare(project, run_in(project.top, "the reference"), new, project.configuration())
-    if wrong := [file for file, found in report.findings.items() if not found.usable]:
-        why = f"{Path(wrong[0]).stem}: {report.findings[wrong[0]]}"
-        raise ValueError(f"nothing is accepted, run snakemake again first: {why}")
-    before = {file: content(project.top / file) for file in project.files(project.top)}
-    for file in report.files:
-        if not (results / file).is_file():
-            (project.top / file).unlink()
-        elif Path(file).stem in report.names or file in {
-            *report.following,
-            *report.drawn_elsewhere,
-        }:
-            write(project.top / file, (results / file).read_bytes())
-    made = {file: content(project.top / file) for file in project.files(project.top)}
+    old, new = run_in(project.top, "the reference"), run_in(results, "the results")
+    report = compare(project, old, new, project.configuration())
+    for file, found in report.found.items():
+        # A file that is missing, and that no record of the results names, is not made any more.
+        if found.wrong and (file in new.records or MISSING not in found.wrong):
+            why = "; ".join(f"{what}: {', '.join(which)}" for what, which in found.wrong.items())
+            raise ValueError(f"nothing is accepted, run snakemake again first: {why}")
+    records = [new.records[file] for file in report.found if file in new.records]
+    if unknown := {file for record in records for file in record["code"]} - committed.keys():
+        raise ValueError(f"nothing is accepted, commit first: git does not know {min(unknown)}")
+    made_by = {json.dumps(record["versions"], sort_keys=True) for record in records}
+    if len(made_by) != 1:
+        raise ValueError(f"nothing is accepted, run from nothing first: {' and '.join(made_by)}")
+    taken = [
+        file
+        for file, found in report.found.items()
+        if not found.wrong and found.verdict != "agrees"
+    ]
+    removed = [
+        file
+        for file, found in report.found.items()
+        if found.wrong and file in old.records and git("ls-files", str(project.top / file))
+    ]
+    for file in taken:
+        write(project.top / file, (results / file).read_bytes())
+    for file in removed:
+        (project.top / file).unlink(missing_ok=True)
     accepted = {
-        "made": made,
-        "code": tree("HEAD", "--", *project.code),
-        "versions": versions(),
-        "entries": new.record(project.texts[0])["parameters"],
+        "made": {file: content(project.top / file) for file in report.found if file in new.records},
+        "code": contents(CHECKOUT / file for file in committed),
+        "versions": records[0]["versions"],
+        "entries": new.record(project.texts[0])["entries"],
     }
     write(project.top / ACCEPTED, f"{json.dumps(accepted, indent=0)}\n".encode())
-    return [file for file in report.files if before.get(file) != made.get(file)]
+    return [*taken, *removed]
 
 
 # The command and the rule
@@ -614,26 +690,30 @@ def results_of(path: Path, unpacked: Path) -> Path:
     """The folder of the results of a run: `results` in a folder, or the folder itself, or the same
     in a zip file, as continuous integration delivers it, which is unpacked.
 
-    Raises ValueError if there are none, or another error if a zip file is damaged.
+    Raises ValueError if there are none, as in a checkout that was not run, or another error if a
+    zip file is damaged.
     """
     if path.is_file():
         shutil.unpack_archive(path, unpacked, "zip")
-        path = unpacked
-    for folder in (path / "results", path):
-        if (folder / "figures").is_dir():
+    top = unpacked if path.is_file() else path
+    for folder in (top / "results", top):
+        if (folder / "figures").is_dir() and not (folder / ACCEPTED).exists():
             return folder
-    raise ValueError(f"there is nothing to compare in {path}")
+    raise ValueError(f"{path} has no results of a run")
 
 
 def main(project: Project, arguments: list[str]) -> int:
     """Compare a run with the reference, or two runs: the command `compare.py`.
 
-    Returns the exit status: 1 if something differs.
+    Returns the exit status: 1 if something differs, 2 if it could not be compared.
     """
+    # The encoding of a console may lack characters such as arrows.
+    cast(Any, sys.stdout).reconfigure(errors="backslashreplace")
     parser = argparse.ArgumentParser(
         prog="compare.py",
         description="Compare a run with the reference in git, or two runs with each other.",
-        epilog="The exit status is 1 if something differs. The last line is the path of a page.",
+        epilog="The exit status is 1 if something differs, and 2 if it could not be compared. "
+        "The last line is the path of a page.",
     )
     parser.add_argument("run", type=Path, help="a folder with results, or a zip file of it")
     parser.add_argument("other", type=Path, nargs="?", help="compare this run with the first one")
@@ -647,7 +727,12 @@ def main(project: Project, arguments: list[str]) -> int:
         config = None
         if len(runs) == 1:
             runs.insert(0, run_in(project.top, "the reference"))
-            config = project.configuration()
+            # A run in another folder has parameters of its own.
+            config = (
+                project.configuration()
+                if folders[0].resolve() == (project.top / "results").resolve()
+                else {}
+            )
         beside = paths[-1] if paths[-1].is_dir() else paths[-1].parent
         return written(compare(project, runs[0], runs[1], config), beside / "diff", sys.stdout)
 
@@ -655,17 +740,17 @@ def main(project: Project, arguments: list[str]) -> int:
 def report_of_run(project: Project, results: Path, config: Mapping, names: Collection[str]) -> int:
     """Compare the results of a run: the rule `diff`.
 
-    Returns the exit status: 1 if something differs. Snakemake then prints the log, at its end.
+    Returns the exit status, as `main` does. If it is not 0, Snakemake prints the log at its end.
     """
     old = run_in(project.top, "the reference")
     report = compare(project, old, run_in(results, "the results"), config, names)
-    return written(report, results / "diff", sys.stderr if report.findings else sys.stdout)
+    return written(report, results / "diff", sys.stderr if report.status else sys.stdout)
 
 
 def written(report: Comparison, folder: Path, stream: TextIO) -> int:
     """Print a report, and save it as a text and as a page with the pictures of both sides.
 
-    Returns the exit status: 1 if something differs.
+    Returns the exit status.
     """
     pictures = {
         file: [
@@ -673,12 +758,15 @@ def written(report: Comparison, folder: Path, stream: TextIO) -> int:
             for path in (report.old.folder / file, report.new.folder / file)
             if path.is_file()
         ]
-        for file in [*report.findings, *report.following, *report.drawn_elsewhere]
-        if file.endswith(".png")
+        for file, found in report.found.items()
+        if file.endswith(".png") and found.verdict != "agrees"
     }
     page = folder.resolve() / "index.html"
-    write(page, report.printed("diff.html.j2", pictures=pictures).encode())
-    text = f"{report.printed('diff.txt.j2')}{page}\n"
-    write(folder / "report.txt", text.encode())
-    print(text, end="", file=stream)
-    return 1 if report.findings else 0
+    text = report.printed("diff.txt.j2")
+    try:
+        write(page, report.printed("diff.html.j2", pictures=pictures).encode())
+        write(folder / "report.txt", f"{text}{page}\n".encode())
+        print(f"{text}{page}", file=stream)
+    except OSError as error:
+        print(f"{text}The page cannot be written: {error}", file=stream)
+    return report.status

@@ -45,6 +45,21 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
 
+def entries(config: Mapping) -> dict[str, Mapping]:
+    """Return the figures, tables and datasets of all stages, by name."""
+    stages = [section for section in config.values() if isinstance(section, Mapping)]
+    return {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
+
+
+def shown_as(entry: Mapping) -> list[str]:
+    """Return the endings of the files that show an entry: pictures have a caption.
+
+    >>> shown_as({"caption": "Height over time", "table": True})
+    ['png', 'svg', 'md', 'csv']
+    """
+    return ["png", "svg"] * ("caption" in entry) + ["md", "csv"] * bool(entry.get("table"))
+
+
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:
     """Return a configuration with an int for each number that its schema calls an integer.
 

@@ -6,7 +6,8 @@ continuous integration, are compared with the reference, or with each other:
     python workflow/scripts/compare.py RUN
     python workflow/scripts/compare.py RUN OTHER
 
-The exit status is 1 if something differs.
+The exit status is 0 if what was asked for is present and agrees, 1 if something differs, and 2 if
+it could not be compared.
 """
 
 import sys
@@ -45,8 +46,6 @@ PROJECT = Project(
 )
 
 if __name__ == "__main__" and "snakemake" not in globals():
-    # The encoding of a console may lack characters such as arrows.
-    sys.stdout.reconfigure(errors="backslashreplace")
     sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":

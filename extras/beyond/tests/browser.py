@@ -1,4 +1,4 @@
-"""What a browser shows of the explorer, in frames on another page that writes down what is in them."""
+"""What a browser shows of the explorer, in frames on a page that writes down what is in them."""
 
 import html
 import json
@@ -59,6 +59,7 @@ function look(frame) {
     verdict: page.getElementById("verdict").textContent,
     position: page.getElementById("position").textContent,
     refused: page.getElementById("refused").textContent,
+    others: [...page.querySelectorAll("#others button")].map(button => button.textContent),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
       ({dataset: {key, value}}) => [key, isNaN(value) ? value : Number(value)])),
   };

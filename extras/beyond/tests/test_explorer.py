@@ -101,8 +101,6 @@ def test_the_self_check_passes(seen, screen):
 
 def test_the_call_computes_what_the_page_shows(seen):
     names = {name: getattr(bouncing_ball_beyond, name) for name in bouncing_ball_beyond.__all__}
-    answer = eval(seen["desk "]["call"], names)
-    assert f"{answer.error:.1%}".replace("%", " %") in seen["desk "]["verdict"]
     found = eval(seen["desk #r=0.65&w=6&a=1"]["call"], names)
     assert f"{found.max_height:.4g}" in seen["desk #r=0.65&w=6&a=1"]["verdict"]
     for call in seen[f"desk {LOOSE}"]["call"].splitlines():

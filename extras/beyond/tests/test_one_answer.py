@@ -28,6 +28,8 @@ MEASURES = ("max_height", "bounce_velocity", "apparent_restitution", "phase")
 ENDS = ("saddle_node", "period_doubling")
 EXACT = 1e-8
 """Largest difference of two codes, relative to the value; errors are differences of such values."""
+ROUGH = 1e-3
+"""Largest error of the formula for ϖ by hand."""
 
 
 class Given(NamedTuple):
@@ -70,28 +72,25 @@ class Given(NamedTuple):
 def balls():
     """Thirty balls, and those of README and of the paper's Fig. 5.
 
-    A place is a part of the range of the restitution model, or a position between the ends of both
-    models.
+    A place is a position on the range of the restitution model, or the middle between an end of
+    both models.
     """
     rng = np.random.default_rng(128)
-    places = (0.02, 0.4, 0.95, 1.3, -0.3, "between saddle_node", "between period_doubling", 0.7, 0.1, 3)
     columns = (
         ["force", "displacement"] * 15,
         [0.1355, 0.16, 0.25, 0.4, 0.55, 0.65, 0.75, 0.85, 0.94, 1.0] * 3,
         [1, 2, 3, 4, 5, 6] * 5,
-        [*places] * 3,
+        [0.02, 0.4, 0.95, 1.3, -0.3, "saddle-node", "period doubling", 0.7, 0.1, 3] * 3,
         np.geomspace(6, 2000, 30),
         [True, True, False] * 10,
     )
-    orders = [range(30), *(rng.permutation(30) for _ in columns[1:])]
-    rows = zip(*([column[k] for k in order] for column, order in zip(columns, orders, strict=True)))
-    for release, r, n, place, ratio, measured in rows:
+    shuffled = [[column[k] for k in rng.permutation(30)] for column in columns]
+    for release, r, n, place, ratio, measured in zip(*shuffled, strict=True):
         low, high = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
         if isinstance(place, str):
-            kind = place.removeprefix("between ").replace("_", " ").replace("saddle ", "saddle-")
-            end = low if kind == "saddle-node" else high
-            found = bifurcations(n, kind, Contact(ratio, damping_ratio(r, release), release))[0]
-            amplitude = (end + np.nan_to_num(found.item(), nan=0.9 * end)) / 2
+            end = low if place == "saddle-node" else high
+            found = bifurcations(n, place, Contact(ratio, damping_ratio(r, release), release))[0]
+            amplitude = (end + np.nan_to_num(found.item())) / 2
         else:
             amplitude = low + place * (high - low)
         # An elastic ball has orbits from Λ = 0.
@@ -141,7 +140,15 @@ def by_hand(ball):
         "rough frequency_ratio": ratio,
         "restitution saddle_node": low,
         "restitution period_doubling": high,
+        "numbers": " ".join(map(str, stable_numbers(amplitude, r))),
     }
+
+
+def stable_numbers(amplitude, r):
+    """Numbers n up to 20 with a stable orbit in the restitution model."""
+    push = 2 * (1 + r**2) / (1 + r) ** 2
+    least = np.sqrt(max(amplitude**2 - push**2, 0.0))
+    return [n for n in range(1, 21) if least <= n * np.pi * (1 - r) / (1 + r) <= amplitude]
 
 
 def by_errors(ball):
@@ -150,12 +157,13 @@ def by_errors(ball):
     if ball.measured:
         contact = contact_of_duration(ball.rate * ball.time / 1000, ball.r, ball.release)
     ratio = np.asarray(contact.frequency_ratio).item()
-    ends = [bifurcations(ball.n, kind, contact)[0].item() for kind in ("saddle-node", "period doubling")]
+    kinds = ("saddle-node", "period doubling")
+    ends = [bifurcations(ball.n, kind, contact)[0].item() for kind in kinds]
     simple = restitution.saddle_node(ball.n, ball.r), restitution.period_doubling(ball.n, ball.r)
     if ball.r == 1:
         ends[0] = 0.0
     states = [state(ball.amplitude, *each) for each in (simple, ends)]
-    names = dict(zip(MEASURES, ("max_height", "bounce_velocity", "apparent_restitution", "phase_in_periods"), strict=True))
+    names = {name: name for name in MEASURES} | {"phase": "phase_in_periods"}
     given = (ball.n, ball.r, ball.amplitude, np.array([ratio]), ball.release)
     found = {"frequency_ratio": ratio}
     found |= {f"restitution {end}": value for end, value in zip(ENDS, simple, strict=True)}
@@ -166,7 +174,7 @@ def by_errors(ball):
         found |= {f"size {name}": values[names[name]].values.item() for name in MEASURES}
         height = found["size max_height"]
     else:
-        with pytest.raises(NoOrbit, match=f"stable {ball.n}-T orbits of the restitution model need"):
+        with pytest.raises(NoOrbit, match="orbits of the restitution model need"):
             errors(["max_height"], *given)
     return found | {"verdict": verdict(states, height)}
 
@@ -242,7 +250,7 @@ HEADLINES = {
 }
 
 
-def by_explorer(seen):
+def by_explorer(seen, n):
     values = seen["values"]
     words = [name for start, name in HEADLINES.items() if seen["verdict"].startswith(start)]
     found = {name: values[name] for name in ("amplitude", "frequency_ratio")}
@@ -251,29 +259,29 @@ def by_explorer(seen):
     states = {values[f"{column} state"] for column in ("restitution", "spring-damper")}
     if states <= {"stable", "marginally stable"}:
         found |= {f"error {name}": float(values[f"errors {name}"]) for name in MEASURES}
+    numbers = {int(name.removeprefix("n = ")) for name in seen["others"]}
+    if values["restitution state"] in ("stable", "marginally stable"):
+        numbers.add(n)
+    found["numbers"] = " ".join(map(str, sorted(numbers)))
     return found | {"verdict": words[0] if words else seen["verdict"] or seen["refused"]}
 
 
 def differences(answers):
-    """Where two places differ: quantity, and the value in each place."""
-    found = []
-    for name in sorted(set().union(*answers.values())):
+    """Quantities in which places differ, with the value in each place that has one."""
+    found = {}
+    for name in set().union(*answers.values()):
         values = {place: each[name] for place, each in answers.items() if name in each}
         kind, _, what = name.partition(" ")
         if kind == "rough":
             values["errors"] = answers["errors"][what]
         if kind == "size":
-            values |= {p: abs(a[f"error {what}"]) for p, a in answers.items() if f"error {what}" in a}
-        first = next(iter(values.values()))
-        for place, value in values.items():
-            if isinstance(first, str):
-                same = value == first
-            else:
-                limit = 1e-3 if kind == "rough" else EXACT
-                same = value == pytest.approx(first, rel=limit, abs=EXACT, nan_ok=True)
-            if not same:
-                found.append((name, values))
-                break
+            signed = f"error {what}"
+            values |= {at: abs(each[signed]) for at, each in answers.items() if signed in each}
+        first, *others = values.values()
+        limit = {"rel": ROUGH if kind == "rough" else EXACT, "abs": EXACT, "nan_ok": True}
+        expected = first if isinstance(first, str) else pytest.approx(first, **limit)
+        if any(each != expected for each in others):
+            found[name] = values
     return found
 
 
@@ -284,7 +292,34 @@ def test_every_place_gives_one_answer(explored, k):
         "by hand": by_hand(ball),
         "errors": by_errors(ball),
         "on_shaker": by_shaker(ball),
-        "explorer": by_explorer(explored[str(k)]),
+        "explorer": by_explorer(explored[str(k)], ball.n),
         "orbit": by_orbit(ball),
     }
     assert not differences(answers), ball
+    low, high = (answers["by hand"][f"restitution {end}"] for end in ENDS)
+    if ball.r >= 0.5 and 0.1 <= (ball.amplitude - low) / (high - low):
+        size = answers["errors"].get("size max_height", 1 / (ball.n * ball.ratio))
+        assert 0.55 <= size * ball.n * ball.ratio <= 1.1
+
+
+def test_a_restitution_that_no_contact_has_is_refused_in_every_place(explored):
+    """With the force release r must be above e⁻²."""
+    given = (1, 0.13, 2.6, np.array([100.0]), "force")
+    with pytest.raises(NoOrbit, match="must be above e⁻²"):
+        errors(["max_height"], *given)
+    with pytest.raises(ValueError, match=r"restitution = 0.13: must be in \(0.135335, 1\]"):
+        on_shaker(frequency=30.0, acceleration=20.0, restitution=0.13, contact_duration=1e-3)
+    with pytest.raises(ValueError, match=r"restitution = 0.13: must be in \(0.135335, 1\]"):
+        SpringDamper(100.0, restitution=0.13, release="force")
+    assert "e⁻²" in explored["refused"]["refused"]
+    assert explored["refused"]["verdict"] == ""
+
+
+def test_the_call_of_the_explorer_computes_what_it_shows(explored):
+    """The verdict's number, and the same error, for each ball whose orbits are stable."""
+    names = {name: getattr(bouncing_ball_beyond, name) for name in bouncing_ball_beyond.__all__}
+    for k in range(0, len(BALLS), 4):
+        seen = explored[str(k)]
+        answer = eval(seen["call"], names)
+        assert answer.amplitude == pytest.approx(seen["values"]["amplitude"], rel=1e-12)
+        assert answer.ball.frequency_ratio == pytest.approx(seen["values"]["frequency_ratio"])

@@ -478,8 +478,8 @@ class SpringDamper(Ball):
         ϖ > 0, large for a stiff contact. T is ϖD.
     restitution : array_like, optional
         r in (0, 1] of free impacts with this release (`damping_of`). With the release "force", r is
-        above e⁻² = 0.1353: give ``damping_ratio`` ≥ 1 for a smaller r. Under a load, the restitution
-        of the contact differs from r.
+        above e⁻² = 0.1353: give ``damping_ratio`` ≥ 1 for a smaller r. Under a load, the
+        restitution of the contact differs from r.
     damping_ratio : array_like, optional
         ζ ≥ 0. Give either ``restitution`` or ``damping_ratio``. If ζ ≥ 1 and the release is
         "displacement", free impacts do not end, and `free` and `signature` are NaN.

@@ -25,7 +25,7 @@ STANDARD_GRAVITY = 9.80665
 
 
 ELASTIC = 1 - 1e-9
-"""Restitution coefficient above which contacts have no loss, and stable orbits are marginally so."""
+"""Restitution coefficient above which orbits are only marginally stable, for lack of a loss."""
 
 
 def _in_mm(value: float) -> str:

@@ -5,7 +5,7 @@ const NAMES = ["spring-damper", "restitution", "corrected"];
 // Of their dots: each is seen where they lie upon each other.
 const SIZES = [8, 5.5, 3.5];
 
-// What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
+// What a ball does that starts next to an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
 function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
@@ -16,24 +16,24 @@ const DEFINITION = "Errors are those of Eqs. 37 and 38, relative to the simple m
 
 // Whether the restitution model is good enough, the verdict as text, and what its errors are.
 function verdictOf(found, question) {
-  const {n, physical, tolerance} = question, {states} = found, name = `${n}-T orbit`;
-  const [exact, simple] = found.orbits, error = found.errors.max_height;
+  const {n, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
+  const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
   const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
-  const instead = exact.exists && !exact.is_stable ? ` A ball near it: ${insteadOf(exact, found)}.` : "";
-  if (states[0] === states[1] && !exact.is_stable)
-    return ["none", `Whether the restitution model is good enough has no answer: no ball stays on the ${name} of `
-      + `either model (${states[0]}).${instead}`];
-  const predicted = `for the greatest height of the ${states[0]} ${name} it predicts `
+  const instead = exact.exists && !exact.is_stable ? ` A ball that starts next to it ${insteadOf(exact, found)}.` : "";
+  if (ofContact === ofSimple && !exact.is_stable)
+    return ["none", "Whether the restitution model is good enough has no answer: no ball stays on the "
+      + `${n}-T orbit of either model (${ofContact}).${instead}`];
+  const predicted = `for the greatest height of the ${ofContact} ${n}-T orbit it predicts `
     + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
-  if (states[0] === states[1] && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`, DEFINITION];
-  const good = states[0] === states[2] && Math.abs(found.corrected.max_height) <= tolerance;
-  return [false, "The restitution model is not good enough: " + (states[0] === states[1]
-    ? `${predicted}, beyond ${percent(tolerance)}`
-    : `the ${name} is ${states[1]} in this model and ${states[0]} on the contact`)
-    + (good ? "; the corrected restitution model is good enough: its error is "
-      + `${signed(found.corrected.max_height, tolerance)}.`
-      : "; nor is the corrected one: simulate the contact.") + instead, DEFINITION];
+  if (ofContact === ofSimple && Math.abs(error) <= tolerance)
+    return [true, `The restitution model is good enough: ${predicted}, within ${nearest(100 * tolerance, 6)} %.`, DEFINITION];
+  const corrected = ofContact !== ofCorrected || !(Math.abs(other) <= tolerance)
+    ? "; nor is the corrected one: simulate the contact."
+    : `; the corrected restitution model ${exact.is_stable ? `is good enough: its error is ${signed(other, tolerance)}.`
+      : "agrees with the contact."}`;
+  return [false, "The restitution model is not good enough: " + (ofContact === ofSimple
+    ? `${predicted}, beyond ${nearest(100 * tolerance, 6)} %`
+    : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead, DEFINITION];
 }
 
 function drawBranch(found, {n, amplitude, physical: scales}) {
@@ -42,9 +42,8 @@ function drawBranch(found, {n, amplitude, physical: scales}) {
     ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
   const {name, factor} = phaseAxis(scales), quarter = factor * Math.PI / 2;
   const plot = new Plot("branch", [0, top], [-quarter, quarter], amplitudeName(scales), name,
-    `Branches of ${n}-T orbits: phase against amplitude. The contact's saddle-node is at `
-    + `${shown(found.limits[0].saddle_node)}, its period doubling at `
-    + `${shown(found.limits[0].period_doubling)}.`);
+    `Branches of ${n}-T orbits: phase against amplitude. Saddle-node of the contact: `
+    + `${shown(found.limits[0].saddle_node)}, period doubling: ${shown(found.limits[0].period_doubling)}.`);
   for (const [model, kind] of [[simple, "restitution"], [corrected, "corrected"]])
     for (const side of ["unstable", "stable"]) {
       const start = model.saddleNode(n), turned = {true: [], false: []};
@@ -213,7 +212,7 @@ function positionOf({models: [, simple], states}, {n, amplitude}, others) {
   const low = simple.saddleNode(n), high = simple.periodDoubling(n);
   const says = `Position of Λ = ${shown(amplitude, 4)}: ${shown((amplitude - low) / (high - low), 3)}, where 0 is the `
     + `saddle-node of the restitution model, Λ = ${shown(low, 4)}, and 1 its period doubling, Λ = ${shown(high, 4)}.`;
-  if (others.includes(n)) return says;
+  if (others.includes(n)) return says + (others.length > 1 ? " Other n with a stable orbit at this Λ:" : "");
   return `${says} Outside of 0 to 1 this model has no stable ${n}-T orbit (${states[1]}; the contact: ${states[0]}). `
     + (others.length ? "Ask for an n with a stable orbit at this Λ:" : "At this Λ it has no stable orbit with n up to "
       + `${RANGES.n[1]}: the tab Stage follows balls.`);

@@ -33,12 +33,12 @@ function endsOfStarts(contact, amplitude, orbit) {
       const words = endInWords(followed({contact}, amplitude, phase, velocity, 0, IMPACTS_OF_START, known));
       counts.set(words, (counts.get(words) ?? 0) + 1);
     }
-  const all = STARTS * STARTS, on = stays ? counts.get(`on the ${orbit.n}-T orbit`) ?? 0 : 0;
-  const shares = [...counts].map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
+  const all = STARTS * STARTS, own = `on the ${orbit.n}-T orbit`, on = stays ? counts.get(own) ?? 0 : 0;
+  const shares = [...counts].filter(([words]) => !stays || words !== own)
+    .map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
   const named = shares.slice(0, 3).map(([words, share], k) => `${percent(share)}${k ? "" : " end"} ${words}`);
   const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
   if (left) named.push(`${percent(left)} on others`);
-  const balls = `${all} balls with other starts`;
-  const reach = `${on || "None"} of ${balls} ${on > 1 ? "end" : "ends"} on the stable ${orbit.n}-T orbit. Of all`;
-  return {share: on / all, sentence: `${stays ? reach : `Of ${balls}`}, ${named.join(", ")}.`};
+  if (stays) named.unshift(`${on || "none"} ${on > 1 ? "end" : "ends"} ${own}`);
+  return {share: on / all, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
 }

@@ -12,9 +12,7 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   return SAID[end.kind](end);
 }
 
-const DEFINITION = "Errors are those of Eqs. 37 and 38, relative to the simple model: negative where it has too much.";
-
-// Whether the restitution model is good enough, the verdict as text, and what its errors are.
+// Whether the restitution model is good enough, and the verdict as text.
 function verdictOf(found, question) {
   const {n, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
   const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
@@ -26,14 +24,14 @@ function verdictOf(found, question) {
   const predicted = `for the greatest height of the ${ofContact} ${n}-T orbit it predicts `
     + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
   if (ofContact === ofSimple && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${nearest(100 * tolerance, 6)} %.`, DEFINITION];
+    return [true, `The restitution model is good enough: ${predicted}, within ${nearest(100 * tolerance, 6)} %.`];
   const corrected = ofContact !== ofCorrected || !(Math.abs(other) <= tolerance)
     ? "; nor is the corrected one: simulate the contact."
     : `; the corrected restitution model ${exact.is_stable ? `is good enough: its error is ${signed(other, tolerance)}.`
       : "agrees with the contact."}`;
   return [false, "The restitution model is not good enough: " + (ofContact === ofSimple
     ? `${predicted}, beyond ${nearest(100 * tolerance, 6)} %`
-    : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead, DEFINITION];
+    : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead];
 }
 
 function drawBranch(found, {n, amplitude, physical: scales}) {
@@ -156,9 +154,6 @@ function fillTables(found, question) {
       ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
   );
-  $("error-definition").textContent
-    = "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38; of the phase, "
-      + "(q_SD − q)/(2π), a share of a period";
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
       [`${signed(value, question.tolerance)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
@@ -219,26 +214,13 @@ function positionOf({models: [, simple], states}, {n, amplitude}, others) {
 }
 
 // What the reader should know of the contact besides.
-function notesOf(found, {n, physical: {time}}, state) {
-  const [orbit] = found.orbits, {release, zeta, omega} = found.contact;
-  return [
-    ...orbit.exists && !sampledAdmissible(orbit) ? [`the ${n}-T orbit is inadmissible (an earlier impact occurs), `
-      + "so that no ball stays on it"] : [],
-    ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
-    ...release === "displacement" && zeta > 0 ? [otherRelease(found, state, time)] : []];
-}
-
-// What this r and this contact would be if the contact ended as a measured one does.
-function otherRelease(found, state, time) {
-  const without = {...state, release: "force"}, {own, contact} = found;
-  const start = "before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero";
-  if (Number.isNaN(dampingOf(own, "force"))) return `${start}, which no linear contact with this r and ζ below 1 does`;
-  const ratio = frequencyRatioOf(without);
-  return `${start}: with that release ` + (state.touch === "time"
-    ? `this contact time and this r have ϖ = ${shown(ratio, 4)} in place of ${shown(contact.omega, 4)}`
-    : `this stiffness and this r have a contact time of ${prefixed(freeTime(without) / contact.omega * time, "s")} `
-      + `in place of ${prefixed(freeTime(state) / contact.omega * time, "s")}`);
-}
+const notesOf = ({orbits: [orbit], contact: {zeta, omega, release}}, {n}) => [
+  ...orbit.exists && !sampledAdmissible(orbit)
+    ? [`the ${n}-T orbit is inadmissible (an earlier impact occurs), so that no ball stays on it`] : [],
+  ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
+  ...release === "displacement" && zeta > 0
+    ? ["before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero"] : [],
+];
 
 // ---- The animation: it starts by its button alone.
 function frame(now) {

@@ -18,7 +18,7 @@ function refuse(text) {
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "definition", "position", "others", "starts", "call"]) $(id).textContent = "";
+  for (const id of ["verdict", "position", "others", "starts", "call"]) $(id).textContent = "";
   play(false);
 }
 
@@ -49,7 +49,7 @@ function show(hash, kept = DEFAULTS) {
     $(`panel-${tab}`).hidden = !on;
   }
   const onStage = state.tab === "stage";
-  for (const id of ["starts", "definition", "position", "others"]) $(id).hidden = onStage;
+  for (const id of ["starts", "position", "others"]) $(id).hidden = onStage;
   $("sides").hidden = state.tab === "design";
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
@@ -67,9 +67,8 @@ function show(hash, kept = DEFAULTS) {
   }
   play(false);
   stage = null;
-  const question = questionOf(state), found = answer(question), verdict = verdictOf(found, question);
-  say(verdict);
-  $("definition").textContent = verdict[2] ?? "";
+  const question = questionOf(state), found = answer(question);
+  say(verdictOf(found, question));
   const others = othersOf(found, question);
   $("position").textContent = positionOf(found, question, others);
   $("others").replaceChildren(...others.filter(n => n !== state.n).map(n => {
@@ -91,7 +90,7 @@ function show(hash, kept = DEFAULTS) {
   if (state.tab === "design") {
     $("design-rows").replaceChildren(...physical(found, question).map(
       ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
-    $("notes").replaceChildren(...notesOf(found, question, state).map(note => {
+    $("notes").replaceChildren(...notesOf(found, question).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;
       return item;

@@ -65,9 +65,7 @@ function solver([a, b, c]) {
   return (s, t, v) => [0, 1, 2].map(k => (s * bc[k] + t * ca[k] + v * ab[k]) * inverse);
 }
 
-// ---- The contact: ϖ, ζ < 1, and sin α = κϖ/2 of the release rule.
-const contactWith = (zeta, omega, release) =>
-  ({omega, zeta, release, sine: release === "force" ? zeta : 0});
+// ---- The contact.
 // ζ with which a free impact has r: by Eq. 16 if it ends at δ = 0, and if it ends where its force is
 // zero the root of r = exp[-ζ(π - 2 arcsin ζ)/√(1 - ζ²)], which is below 1 for r > e⁻² only.
 function dampingOf(r, release) {
@@ -76,7 +74,11 @@ function dampingOf(r, release) {
   const surplus = zeta => 2 * zeta * Math.acos(zeta) / Math.sqrt((1 - zeta) * (1 + zeta)) - decrement;
   return decrement < 2 ? rootOf(surplus, 0, 1 - Number.EPSILON) : NaN;
 }
-const contactOf = (r, omega, release) => contactWith(dampingOf(r, release), omega, release);
+// ϖ, ζ < 1, and sin α = κϖ/2 of the release rule.
+function contactOf(r, omega, release) {
+  const zeta = dampingOf(r, release);
+  return {omega, zeta, release, sine: release === "force" ? zeta : 0};
+}
 // The angle at which a free contact ends: Release.free_angle.
 const freeAngle = contact => 2 * Math.acos(contact.sine);
 const dampedFrequency = contact =>

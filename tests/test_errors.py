@@ -213,6 +213,8 @@ def test_where_there_is_no_orbit_the_error_is_infinite():
         # Below the saddle-node; a compliant contact may have no range.
         (3, 0.05, 8.515, 100.0, "displacement", "to 8.71895 .* ϖ = 100 need 8.50199 to 8.6949"),
         (1, 0.65, 0.6, 0.5, "displacement", r"from 0.666398 to 1.2394 \(Eqs. 7 and R1\)$"),
+        # Stable in the restitution model only: the contact has doubled its period.
+        (1, 0.65, 1.239, 100.0, "force", "to 1.2394 .* ϖ = 100 need 0.662677 to 1.23761$"),
         (1, 0.1, 2.6, 100.0, "force", "r = 0.1: with the force release, r must be above e⁻²"),
     ],
 )

@@ -110,9 +110,10 @@ def test_stability_is_that_of_the_eigenvalues():
 
 
 def test_an_orbit_within_rounding_errors_of_a_bifurcation_is_not_stable():
-    for trace, determinant in ((1.25, 0.25), (-1.25, 0.25), (0.3, 1.0)):
+    for trace, determinant in ((1.25, 0.25), (-1.25, 0.25), (2.0, 1.0)):
         assert not restitution.is_stable(trace, determinant - 1e-10)
-        assert restitution.is_stable(trace * (1 - 1e-7), determinant - 1e-8 * (determinant == 1))
+        assert restitution.is_stable(trace * (1 - 1e-7), determinant)
+    assert not restitution.is_stable(0.3, 1 + 1e-8)
 
 
 def test_height_and_velocity_over_a_cycle():

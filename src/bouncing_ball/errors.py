@@ -28,7 +28,7 @@ from bouncing_ball.continuation import (
     walk,
 )
 from bouncing_ball.orbits import Family
-from bouncing_ball.restitution import Numbers
+from bouncing_ball.restitution import Numbers, is_stable
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
 
 
@@ -249,8 +249,9 @@ def errors(
     ------
     NoOrbit
         If no contact with ζ < 1 has this r (`damping_ratio`). Also if a quantity of orbits is
-        named, and the restitution model has no stable orbit at the amplitude: there is nothing to
-        compare with. The message says where the contact of the largest ϖ has stable orbits.
+        named, and the restitution model or the contacts of all ϖ have no stable orbit at the
+        amplitude: there is nothing to compare. The message says where the contact of the largest ϖ
+        has stable orbits.
     KeyError
         If a name is unknown.
 
@@ -264,8 +265,12 @@ def errors(
         raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
+        family = Family(n, contact)
         ends = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
-        if not ends[0] <= amplitude < ends[1]:
+        orbits = np.full((4, len(ratios)), np.nan)
+        if ends[0] <= amplitude < ends[1]:
+            orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
+        if not is_stable(*family.trace_and_determinant(orbits)).any():
             stiffest = replace(contact, frequency_ratio=np.max(ratios))
             low, high = (bifurcations(n, kind, stiffest)[0].item() for kind in SPECIAL[:2])
             of_contact = f"; those with ϖ = {np.max(ratios):g} need {low:.6g} to {high:.6g}"
@@ -273,8 +278,7 @@ def errors(
                 f"Λ = {amplitude:.6g}: stable {n}-T orbits of the restitution model need Λ from "
                 f"{ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1){of_contact * (low < high)}"
             )
-        orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-        known |= orbit_errors(Family(n, contact), orbits, r, amplitude)
+        known |= orbit_errors(family, orbits, r, amplitude)
     if {"saddle_node", "period_doubling"} & set(quantities):
         known |= bifurcation_errors(n, r, ratios, release)
     known["permanent_contact"] = permanent_contact_error(ratios, contact.damping_ratio, release)

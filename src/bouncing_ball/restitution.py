@@ -102,19 +102,22 @@ def holmes_period_doubling(n: Numbers, r: Numbers) -> NDArray:
 
 
 def stable(r: Numbers, impact_height: Numbers) -> NDArray[np.bool_]:
-    """Whether both Floquet multipliers of an n-T orbit are inside the unit circle."""
+    """Whether an n-T orbit is stable (`is_stable`)."""
     return is_stable(trace(r, impact_height), np.asarray(r) ** 2)
 
 
 def is_stable(trace: Numbers, determinant: Numbers) -> NDArray[np.bool_]:
-    """Whether both eigenvalues of a 2 × 2 matrix are inside the unit circle.
+    """Whether an orbit is stable: small deviations do not grow.
 
-    The conditions are |trace| < 1 + determinant and determinant < 1. Both must hold by a margin of
-    1e-9. Without the margin, rounding errors would decide at a bifurcation.
+    The Floquet multipliers are the eigenvalues of a 2 × 2 matrix. For |trace| < 1 + determinant and
+    determinant < 1 both are inside the unit circle. For determinant = 1, without damping, both are
+    on the circle: the orbit is *marginally stable*, because deviations neither decay nor grow. At a
+    bifurcation, |trace| = 1 + determinant, the orbit is not stable. The conditions are decided by a
+    margin of 1e-9; without it, rounding errors would decide.
     """
     determinant = np.asarray(determinant)
     margin = 1e-9
-    return (np.abs(trace) < 1 + determinant - margin) & (determinant < 1 - margin)
+    return (np.abs(trace) < 1 + determinant - margin) & (determinant < 1 + margin)
 
 
 def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:

@@ -59,7 +59,7 @@ SYMBOLS = {
     "multiplier_imag": Variable(
         "imaginary part of the Floquet multiplier", "Im μ", tolerance=1e-6, floor=1.0
     ),
-    "stable": Variable("whether both Floquet multipliers are inside the unit circle", "|μ| < 1"),
+    "stable": Variable("whether no Floquet multiplier is outside the unit circle", "|μ| ≤ 1"),
     "admissible": Variable("whether the orbit has no earlier impact or release"),
     "end_kind": Variable("kind of the end of the branch"),
     "end_reason": Variable("reason for the end of the branch"),

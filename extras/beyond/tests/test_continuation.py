@@ -426,7 +426,7 @@ def test_a_lost_release_is_an_orbit_that_leaves_the_table_with_no_speed():
 
 
 def test_the_grazing_of_a_release_touches_the_release_within_a_contact():
-    ball = SpringDamper(1.580803888063078, restitution=0.431368537136941, release="force")
+    ball = SpringDamper(1.580803888063078, damping_ratio=0.25853365407092316, release="force")
     branch = follow(orbit(ball, amplitude=2.5166920162308033, n=2), along="frequency", to=0.92)
     touch = branch.first("grazing of a release")
     T = touch.z[2] * np.linspace(0.02, 0.98, 100001)

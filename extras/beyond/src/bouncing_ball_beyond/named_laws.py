@@ -99,7 +99,7 @@ def _damping_and_duration(law_of: Callable, restitution: Values) -> tuple[float,
         while impact(damping)[0] > restitution and damping < MOST_DAMPED:
             low = damping
             damping = 2 * damping
-    if impact(damping)[0] < restitution:
+    if low < damping and impact(damping)[0] < restitution:
         high = damping
         damping = brentq(lambda g: impact(g)[0] - restitution, low, high, xtol=1e-16, rtol=1e-15)
     r, duration = impact(damping)

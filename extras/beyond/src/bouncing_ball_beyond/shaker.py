@@ -24,6 +24,10 @@ STANDARD_GRAVITY = 9.80665
 """Standard acceleration of gravity in m/s²."""
 
 
+ELASTIC = 1 - 1e-9
+"""Restitution coefficient above which orbits are only marginally stable, for lack of a loss."""
+
+
 def _in_mm(value: float) -> str:
     return "–" if np.isnan(value) else f"{1e3 * value:.4g}"
 
@@ -117,10 +121,10 @@ class ShakerAnswer:
         """Why a restitution coefficient is not good enough; empty if it is good enough."""
         if not self.bounces:
             where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
-            return f"the ball does not bounce, {where}, so there is no height to compare"
+            return f"Λ is below the saddle-node {where}, so there is no height to compare"
         if not self.stable:
             where = WHERE[tuple(value < self.amplitude for value in self.period_doubling[:2])]
-            return f"the orbit is unstable {where}, so a ball does not stay on it"
+            return f"the orbit has doubled {where}, so a ball does not stay on it"
         if not abs(self.error) <= self.tolerance:
             return "the heights of both models differ by more than the tolerance"
         return ""
@@ -164,7 +168,8 @@ class ShakerAnswer:
                 " displacements are in m."
             )
         elif self.bounces:
-            sentences.append(f"This motion is {STABLE[doubled]}.")
+            elastic = self.stable and self.ball.signature(1.0).restitution > ELASTIC
+            sentences.append(f"This motion is {'marginally ' if elastic else ''}{STABLE[doubled]}.")
             lower = "lower" if self.error < 0 else "higher"
             beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
             by_law = self.max_height.by_law / self.max_height.by_restitution - 1
@@ -222,6 +227,7 @@ def on_shaker(
     n: int = 1,
     tolerance: float = 0.01,
     table: Table = SINE,
+    release: str = "force",
 ) -> ShakerAnswer:
     """Decide whether a restitution coefficient is good enough for a ball on a shaker, in SI units.
 
@@ -230,7 +236,7 @@ def on_shaker(
     frequency : float
         Frequency of the table in Hz.
     restitution : float
-        Restitution coefficient r of a free impact, between 0 and 1.
+        Restitution coefficient r of a free impact, above 0 and up to 1.
     displacement, acceleration : float
         Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
         between the lowest and highest positions of the table. The acceleration, in m/s², is the
@@ -243,7 +249,7 @@ def on_shaker(
         Give exactly one of the three.
 
         - Duration of the contact in s, or stiffness in N/m. The contact is then a spring and a
-          damper.
+          damper with the given ``release``.
         - Young's modulus of the ball in Pa. The contact is then a Hertz contact with the damping
           of Tsuji. Its r is the same at every speed. The radius of the ball is required.
     poissons_ratio, table_youngs_modulus, table_poissons_ratio : float
@@ -257,6 +263,9 @@ def on_shaker(
         Largest relative error of the maximum height.
     table : Table
         Waveform of the table, by default a sine.
+    release : {"force", "displacement"}
+        What ends the contact of a spring and a damper. A measured contact cannot pull, and ends
+        where its force vanishes. Contacts of the paper end at zero depth: "displacement".
 
     Returns
     -------
@@ -276,8 +285,8 @@ def on_shaker(
     (False, -0.0121)
     """
     restitution = positive("restitution", restitution, "")
-    if restitution >= 1:
-        raise ValueError(f"restitution = {restitution!r}: must be between 0 and 1")
+    if restitution > 1:
+        raise ValueError(f"restitution = {restitution!r}: must be above 0, up to 1")
     rate = 2 * np.pi * positive("frequency", frequency, "Hz")
     fall = positive("gravity", gravity, "m/s²")
     tolerance = positive("tolerance", tolerance, "")
@@ -306,7 +315,7 @@ def on_shaker(
             return hertz.at(stiffness=force * times**2.5)
 
     else:
-        spring = SpringDamper(1.0, restitution=restitution)
+        spring = SpringDamper(1.0, restitution=restitution, release=release)
         if contact == "stiffness":
             square = positive("stiffness", stiffness, "N/m") / positive("mass", mass, "kg")
             ratio = np.sqrt(square) / rate
@@ -353,6 +362,9 @@ def _answer(
     law = law_errors(impact, amplitude=amplitude, table=table)
     names = ("saddle_node", "period_doubling", "max_height")
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names, table=table)
+    if impact.restitution > ELASTIC:
+        # The orbits begin at Λ = 0, without a bifurcation.
+        simple["saddle_node"] = exact["saddle_node"] = law["saddle_node"] = 0.0
     if np.isnan(exact["saddle_node"] + exact["period_doubling"]):
         raise ValueError(
             f"the saddle-node or the period doubling is not found: a contact lasts"

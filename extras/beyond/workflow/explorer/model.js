@@ -65,9 +65,7 @@ function solver([a, b, c]) {
   return (s, t, v) => [0, 1, 2].map(k => (s * bc[k] + t * ca[k] + v * ab[k]) * inverse);
 }
 
-// ---- The contact: ϖ, ζ < 1, and sin α = κϖ/2 of the release rule.
-const contactWith = (zeta, omega, release) =>
-  ({omega, zeta, release, sine: release === "force" ? zeta : 0});
+// ---- The contact.
 // ζ with which a free impact has r: by Eq. 16 if it ends at δ = 0, and if it ends where its force is
 // zero the root of r = exp[-ζ(π - 2 arcsin ζ)/√(1 - ζ²)], which is below 1 for r > e⁻² only.
 function dampingOf(r, release) {
@@ -76,7 +74,11 @@ function dampingOf(r, release) {
   const surplus = zeta => 2 * zeta * Math.acos(zeta) / Math.sqrt((1 - zeta) * (1 + zeta)) - decrement;
   return decrement < 2 ? rootOf(surplus, 0, 1 - Number.EPSILON) : NaN;
 }
-const contactOf = (r, omega, release) => contactWith(dampingOf(r, release), omega, release);
+// ϖ, ζ < 1, and sin α = κϖ/2 of the release rule.
+function contactOf(r, omega, release) {
+  const zeta = dampingOf(r, release);
+  return {omega, zeta, release, sine: release === "force" ? zeta : 0};
+}
 // The angle at which a free contact ends: Release.free_angle.
 const freeAngle = contact => 2 * Math.acos(contact.sine);
 const dampedFrequency = contact =>
@@ -246,8 +248,15 @@ function multipliersOf(trace, determinant) {
   const first = half + (half < 0 ? -1 : 1) * Math.sqrt(inside);
   return [[first, 0], [first === 0 ? 0 : determinant / first, 0]];
 }
+// As `is_stable` of the replication: without damping, where the determinant is 1, marginally.
 const isStable = (trace, determinant) =>
-  Math.abs(determinant) < 1 && 1 - trace + determinant > 0 && 1 + trace + determinant > 0;
+  Math.abs(trace) < 1 + determinant - 1e-9 && determinant < 1 + 1e-9;
+// What an orbit at Λ is, in one word for each model.
+function stateOf({exists, is_stable, trace, determinant, amplitude}, limits) {
+  if (!exists) return amplitude < limits.saddle_node ? "below the saddle-node" : "no orbit";
+  if (!is_stable) return trace < 0 ? "doubled" : "unstable";
+  return determinant > 1 - 1e-9 ? "marginally stable" : "stable";
+}
 
 function described(n, amplitude, phase, duration, impact, trace, determinant, more) {
   const flight = 2 * Math.PI * n - duration, bounce = impact + flight;
@@ -380,7 +389,8 @@ function contactModel(contact) {
     },
     bifurcations(n) { return [this.fold(n), this.flip(n)].map(eps => branchPoint(eps, contact, n)); },
     flip(n) { return of(flips, n, () => periodDoubling(contact, n, this.fold(n))); },
-    saddleNode(n) { return branchPoint(this.fold(n), contact, n).amplitude; },
+    // Without damping the orbits begin at Λ = 0, without a bifurcation.
+    saddleNode(n) { return contact.zeta ? branchPoint(this.fold(n), contact, n).amplitude : 0; },
     periodDoubling(n) { return branchPoint(this.flip(n), contact, n).amplitude; },
     orbit(n, amplitude, side) {
       const eps = excessAt(contact, n, amplitude, side, this.fold(n));
@@ -388,21 +398,6 @@ function contactModel(contact) {
       return {...orbit, n, amplitude, excess: eps};
     },
   };
-}
-
-// The relative shift of the period doubling by the error law (Eq. R6 of the article), to first order,
-// on a table Λ [sin τ + h sin(3τ + p)].
-function doublingLaw({delay, r, load}, n, {h, p}) {
-  const half = n * Math.PI, line = half * (1 - r) / (1 + r), push = 2 * (1 + r * r) / (1 + r) ** 2;
-  const wave = (order, at) => Math.sin(at + order * Math.PI / 2)
-    + h * 3 ** order * Math.sin(3 * at + p + order * Math.PI / 2);
-  // Where w′ = C and -w″ = Y for one Λ: for h up to 0.02 less than 0.2 from where it is on a sine.
-  const onSine = Math.atan2(push, line);
-  const at = rootOf(x => -line * wave(2, x) - push * wave(1, x), onSine - 0.3, onSine + 0.3);
-  const third = push / -wave(2, at) * wave(3, at);
-  const shift = load / (1 + r), across = shift * (push - 1);
-  const along = ((1 - r) * across + 2 * delay * (push - 1) + half * load * third) / (half * (1 + r));
-  return (push * along - third * across) / (push * push - line * third);
 }
 
 // Height of the ball a time since its impact, in any of the models.
@@ -435,9 +430,6 @@ function sampledAdmissible(orbit, samples = 600) {
   return true;
 }
 
-// The paper's error of a simple model (Eqs. 37 and 38): negative where the simple model has too much.
-const relativeError = (exact, simple) => (exact - simple) / simple;
-
 // All that the page shows of one state.
 function answer({contact, amplitude, n, side = "stable"}) {
   const own = ownRestitution(contact), signature = signatureOf(contact);
@@ -447,9 +439,12 @@ function answer({contact, amplitude, n, side = "stable"}) {
   const thresholds = [permanentContact(contact), 1, 1];
   const value = (name, k) => name === "permanent_contact" ? thresholds[k]
     : name in limits[k] ? limits[k][name] : orbits[k].exists ? orbits[k][name] : NaN;
-  const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(
-    name => [name, relativeError(value(name, 0), value(name, k))]));
-  return {contact, own, models, orbits, limits, thresholds, signature, errors: errors(1), corrected: errors(2)};
+  // Errors of a simple model (Eqs. 37 and 38): negative where it has too much. That of a phase is a
+  // share of a period.
+  const errors = k => Object.fromEntries(Object.keys(QUANTITIES).map(name => [name,
+    (value(name, 0) - value(name, k)) / (name === "phase" ? 2 * Math.PI : value(name, k))]));
+  const states = orbits.map((orbit, k) => stateOf(orbit, limits[k]));
+  return {contact, own, models, orbits, limits, states, thresholds, signature, errors: errors(1), corrected: errors(2)};
 }
 
 // ---- What the package computed, computed again: the largest difference over the size of each
@@ -467,12 +462,8 @@ function compareRows({names, rows}, again) {
   return {worst, where, count: rows.length};
 }
 
-function orbitAgain({
-  release, restitution: r, frequency_ratio: omega, n, amplitude, third_harmonic: h, third_phase: p,
-}) {
-  // The dataset names a contact by the r that Eq. 16 gives, whatever ends it.
-  const contact = contactWith(dampingOf(r, "displacement"), omega, release);
-  const {orbits, limits, signature} = answer({contact, amplitude, n});
+function orbitAgain({release, restitution: r, frequency_ratio: omega, n, amplitude}) {
+  const {orbits, limits} = answer({contact: contactOf(r, omega, release), amplitude, n});
   const [exact, simple, corrected] = orbits, middle = exact.state(exact.contact_duration / 2);
   const {phase, contact_duration, impact_velocity, bounce_velocity, apparent_restitution, max_height,
     trace, determinant} = exact;
@@ -486,6 +477,5 @@ function orbitAgain({
     corrected_phase: corrected.phase, corrected_max_height: corrected.max_height,
     corrected_trace: corrected.trace, corrected_saddle_node: limits[2].saddle_node,
     corrected_period_doubling: limits[2].period_doubling,
-    doubling_law: doublingLaw(signature, n, {h, p}),
   };
 }

@@ -5,41 +5,33 @@ const NAMES = ["spring-damper", "restitution", "corrected"];
 // Of their dots: each is seen where they lie upon each other.
 const SIZES = [8, 5.5, 3.5];
 
-// What a ball does that starts beside an unstable orbit, as far as the page follows contacts.
+// What a ball does that starts next to an unstable orbit, as far as the page follows contacts.
 const BESIDE = 1e-3;
 function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
   const end = endOf({contact}, amplitude, phase, impact_velocity * (1 + BESIDE));
-  return `one that starts beside it ${SAID[end.kind](end)}`;
+  return SAID[end.kind](end);
 }
 
-const DEFINITION = "Errors are those of Eqs. 37 and 38, relative to the simple model: negative where it has too much.";
-
-// Whether the restitution model is good enough, the verdict in words, and what its errors are.
+// Whether the restitution model is good enough, and the verdict as text.
 function verdictOf(found, question) {
-  const {n, physical, tolerance} = question;
-  const [exact, simple, corrected] = found.orbits, error = found.errors.max_height;
-  const wrong = exact.exists !== simple.exists
-    ? (exact.exists ? `it misses the ${n}-T orbit, which the contact has`
-      : `it has the ${n}-T orbit, which the contact has not`)
-    : exact.is_stable !== simple.is_stable
-      ? `its ${n}-T orbit ` + (simple.is_stable ? "is stable, and the contact's is not"
-        : "is not stable, and the contact's is") : "";
-  const same = exact.exists === corrected.exists && exact.is_stable === corrected.is_stable;
+  const {n, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
+  const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
   const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
-  const predicted = `for the greatest height of the ${n}-T orbit it predicts `
+  const instead = exact.exists && !exact.is_stable ? ` A ball that starts next to it ${insteadOf(exact, found)}.` : "";
+  if (ofContact === ofSimple && !exact.is_stable)
+    return ["none", "Whether the restitution model is good enough has no answer: no ball stays on the "
+      + `${n}-T orbit of either model (${ofContact}).${instead}`];
+  const predicted = `for the greatest height of the ${ofContact} ${n}-T orbit it predicts `
     + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
-  if (!exact.exists && !simple.exists)
-    return [false, `There is no ${n}-T orbit here: the saddle-node is at Λ = `
-      + `${shown(found.limits[0].saddle_node, 4)}.`];
-  if (exact.exists && !exact.is_stable)
-    return [false, `No ball stays on the ${n}-T orbit, because it is unstable: ${insteadOf(exact, found)}.`];
-  if (!wrong && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${percent(tolerance)}.`, DEFINITION];
-  return [false, `The restitution model is not good enough: `
-    + `${wrong || `${predicted}, beyond ${percent(tolerance)}`}`
-    + (same && Math.abs(found.corrected.max_height) <= tolerance
-      ? `; the corrected restitution model is good enough: its error is ${signed(found.corrected.max_height, tolerance)}.`
-      : "; nor is the corrected one: simulate the contact."), DEFINITION];
+  if (ofContact === ofSimple && Math.abs(error) <= tolerance)
+    return [true, `The restitution model is good enough: ${predicted}, within ${nearest(100 * tolerance, 6)} %.`];
+  const corrected = ofContact !== ofCorrected || !(Math.abs(other) <= tolerance)
+    ? "; nor is the corrected one: simulate the contact."
+    : `; the corrected restitution model ${exact.is_stable ? `is good enough: its error is ${signed(other, tolerance)}.`
+      : "agrees with the contact."}`;
+  return [false, "The restitution model is not good enough: " + (ofContact === ofSimple
+    ? `${predicted}, beyond ${nearest(100 * tolerance, 6)} %`
+    : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead];
 }
 
 function drawBranch(found, {n, amplitude, physical: scales}) {
@@ -48,9 +40,8 @@ function drawBranch(found, {n, amplitude, physical: scales}) {
     ...found.limits.map(l => Number.isFinite(l.period_doubling) ? l.period_doubling : 0));
   const {name, factor} = phaseAxis(scales), quarter = factor * Math.PI / 2;
   const plot = new Plot("branch", [0, top], [-quarter, quarter], amplitudeName(scales), name,
-    `Branches of ${n}-T orbits: phase against amplitude. The contact's saddle-node is at `
-    + `${shown(found.limits[0].saddle_node)}, its period doubling at `
-    + `${shown(found.limits[0].period_doubling)}.`);
+    `Branches of ${n}-T orbits: phase against amplitude. Saddle-node of the contact: `
+    + `${shown(found.limits[0].saddle_node)}, period doubling: ${shown(found.limits[0].period_doubling)}.`);
   for (const [model, kind] of [[simple, "restitution"], [corrected, "corrected"]])
     for (const side of ["unstable", "stable"]) {
       const start = model.saddleNode(n), turned = {true: [], false: []};
@@ -103,7 +94,9 @@ function drawMotion(found, {n, amplitude, physical: scales}) {
 }
 
 function drawMultipliers(found) {
-  const plot = new Plot("multipliers", [-1.5, 1.5], [-1.5, 1.5], "real part", "imaginary part",
+  const sizes = found.orbits.filter(orbit => orbit.exists).flatMap(orbit => orbit.multipliers.map(m => Math.hypot(...m)));
+  const span = 1.1 * Math.max(1.4, ...sizes);
+  const plot = new Plot("multipliers", [-span, span], [-span, span], "real part", "imaginary part",
     "Floquet multipliers in the plane: " + NAMES.map((name, k) =>
       `${name} ${found.orbits[k].multipliers.map(m => `${shown(m[0], 3)} + ${shown(m[1], 3)} i`).join(" and ")}`)
       .join("; ") + ".");
@@ -111,32 +104,6 @@ function drawMultipliers(found) {
   plot.line(circle, "curve table");
   found.orbits.forEach((orbit, k) => orbit.multipliers.forEach(
     ([re, im]) => plot.mark("dot", re, im, `dot ${NAMES[k]}`, SIZES[k])));
-}
-
-// The shift of the period doubling over r, on a sine and with a third harmonic of the table.
-function drawWaveform(found, {n, contact: {omega, release}, harmonic}) {
-  const coefficient = (x, wave) =>
-    omega * doublingLaw(signatureOf(contactOf(x, omega, release)), n, wave);
-  // The sign changes at large r, where shifts are much smaller. Without force r is above e⁻² = 0.135.
-  const r = found.own, least = r >= 0.5 ? 0.5 : release === "force" ? 0.14 : 0.05;
-  const lines = [{h: 0, p: 0}, harmonic].map(wave => Array.from({length: 101}, (_, k) => {
-    const x = least + (1 - least) * k / 100;
-    return [x, coefficient(x, wave)];
-  }));
-  const heights = [0, ...lines.flat().map(([, y]) => y)];
-  const low = Math.min(...heights), high = Math.max(...heights), room = 0.1 * (high - low);
-  const [sine, other] = [{h: 0, p: 0}, harmonic].map(wave => coefficient(r, wave));
-  const exact = omega * found.errors.period_doubling;
-  const first = x => x < 0 ? "doubles first" : "doubles later";
-  $("waveform-says").textContent = `At r = ${shown(r)} the shift is ${shown(other, 3)} with the third `
-    + `harmonic, where the contact ${first(other)}, and ${shown(sine, 3)} on a sine, where it `
-    + `${first(sine)}; exactly, on a sine at ϖ = ${shown(omega)}, ${shown(exact, 3)}.`;
-  const plot = new Plot("waveform", [least, 1], [low - room, high + room], "restitution coefficient r",
-    "ϖ times relative shift", $("waveform-says").textContent);
-  plot.line([[least, 0], [1, 0]], "curve table");
-  plot.line(lines[0], "curve unstable spring-damper");
-  plot.line(lines[1], "curve spring-damper");
-  plot.mark("dot", r, exact, "dot spring-damper");
 }
 
 // ---- Tables.
@@ -177,11 +144,9 @@ function fillTables(found, question) {
   const written = (key, x) => scales ? IN_UNITS[key](x, scales) : shown(x);
   $("orbit-units").textContent = scales ? "Λ is the acceleration of the table over g"
     : "Times Ωt, lengths Ω²z/g, velocities Ωż/g";
-  const yes = (orbit, value) => !orbit.exists ? "no orbit" : value ? "yes" : "no";
   $("orbit-rows").replaceChildren(
-    row("exists", cells(o => [o.exists ? "yes" : "no", o.exists, "exists"])),
-    row("stable", cells(o => [yes(o, o.is_stable), o.is_stable, "is_stable"])),
-    row("admissible (sampled only)", cells(o => [yes(o, sampledAdmissible(o))])),
+    row("stability", cells((o, l, k) => [found.states[k], found.states[k], "state"])),
+    row("admissible (sampled only)", cells(o => [!o.exists ? "no orbit" : sampledAdmissible(o) ? "yes" : "no"])),
     row("saddle-node Λ", cells((o, l) => [shown(l.saddle_node), l.saddle_node, "saddle_node"])),
     row("period doubling Λ", cells((o, l) => [shown(l.period_doubling), l.period_doubling, "period_doubling"])),
     ...Object.entries(ORBIT_ROWS).map(([key, name]) => row(name, cells(o => [written(key, o[key]), o[key], key]))),
@@ -189,8 +154,6 @@ function fillTables(found, question) {
       ([re, im]) => im ? `${shown(re, 4)} ${im < 0 ? "−" : "+"} ${shown(Math.abs(im), 4)}i` : shown(re, 4))
       .join(", ") : "none", o.multipliers.flat().join(" "), "multipliers"])),
   );
-  $("error-definition").textContent
-    = "(q_SD − q)/q of the contact's value q_SD, relative to the model's q, as in Eqs. 37 and 38";
   $("error-rows").replaceChildren(...Object.entries(QUANTITIES).map(([key, name]) => row(name,
     [found.errors[key], found.corrected[key]].map((value, k) =>
       [`${signed(value, question.tolerance)}${Math.abs(value) <= question.tolerance ? ", within" : Number.isFinite(value) ? ", beyond" : ""}`,
@@ -235,45 +198,29 @@ function loadsOf(orbit) {
   return {depth, force};
 }
 
+// Numbers n of periods for which the restitution model has a stable n-T orbit at this Λ.
+const othersOf = ({models: [, simple]}, {amplitude}) => Array.from({length: RANGES.n[1]}, (_, k) => k + 1)
+  .filter(n => simple.saddleNode(n) <= amplitude && amplitude < simple.periodDoubling(n));
+
 // The position of Λ on the range of stable n-T orbits of the restitution model, and what to ask outside.
-function positionOf(found, {n, amplitude}) {
-  const [exact] = found.orbits, simple = found.models[1], orbit = `${n}-T orbit`;
-  const place = k => (amplitude - simple.saddleNode(k)) / (simple.periodDoubling(k) - simple.saddleNode(k));
-  const isInside = k => place(k) >= 0 && place(k) <= 1;
-  const says = `Position of Λ: ${shown(place(n), 3)}, where 0 is the saddle-node of the restitution model, `
-    + `Λ = ${shown(simple.saddleNode(n), 4)}, and 1 its period doubling, Λ = ${shown(simple.periodDoubling(n), 4)}.`;
-  if (isInside(n)) return says;
-  const contact = exact.exists ? `has one, and it is ${exact.is_stable ? "stable" : "unstable"}` : "has none";
-  const others = Array.from({length: RANGES.n[1]}, (_, k) => k + 1).filter(isInside);
-  return `${says} Outside of 0 to 1 the restitution model has no stable ${orbit}: ${place(n) < 0 ? "none exists"
-    : "its period has doubled"}. The contact ${contact}. Then ask for another n: at this Λ the restitution model has `
-    + `${others.length ? `stable orbits for n = ${others.join(", ")}` : `no stable orbit with n up to ${RANGES.n[1]}`}. `
-    + "Or ask on which motion a ball ends: the shares of balls with other starts are below, and the tab Stage follows balls.";
+function positionOf({models: [, simple], states}, {n, amplitude}, others) {
+  const low = simple.saddleNode(n), high = simple.periodDoubling(n);
+  const says = `Position of Λ = ${shown(amplitude, 4)}: ${shown((amplitude - low) / (high - low), 3)}, where 0 is the `
+    + `saddle-node of the restitution model, Λ = ${shown(low, 4)}, and 1 its period doubling, Λ = ${shown(high, 4)}.`;
+  if (others.includes(n)) return says + (others.length > 1 ? " Other n with a stable orbit at this Λ:" : "");
+  return `${says} Outside of 0 to 1 this model has no stable ${n}-T orbit (${states[1]}; the contact: ${states[0]}). `
+    + (others.length ? "Ask for an n with a stable orbit at this Λ:" : "At this Λ it has no stable orbit with n up to "
+      + `${RANGES.n[1]}: the tab Stage follows balls.`);
 }
 
 // What the reader should know of the contact besides.
-function notesOf(found, {n, physical: {time}}, state) {
-  const [orbit] = found.orbits, {release, zeta, omega} = found.contact, name = `${n}-T orbit`;
-  const admissible = sampledAdmissible(orbit);
-  return [
-    ...!orbit.exists ? [`at this Λ the contact has no ${name}`]
-      : orbit.is_stable && admissible ? [] : [`the ${name} is `
-        + `${admissible ? "unstable" : "inadmissible (an earlier impact occurs)"}, so that no ball stays on it`],
-    ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
-    ...release === "displacement" && zeta > 0 ? [otherRelease(found, state, time)] : []];
-}
-
-// What this r and this contact would be if the contact ended as a measured one does.
-function otherRelease(found, state, time) {
-  const without = {...state, release: "force"}, {own, contact} = found;
-  const start = "before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero";
-  if (Number.isNaN(dampingOf(own, "force"))) return `${start}, which no linear contact with this r and ζ below 1 does`;
-  const ratio = frequencyRatioOf(without);
-  return `${start}: with that release ` + (state.touch === "time"
-    ? `this contact time and this r have ϖ = ${shown(ratio, 4)} in place of ${shown(contact.omega, 4)}`
-    : `this stiffness and this r have a contact time of ${prefixed(freeTime(without) / contact.omega * time, "s")} `
-      + `in place of ${prefixed(freeTime(state) / contact.omega * time, "s")}`);
-}
+const notesOf = ({orbits: [orbit], contact: {zeta, omega, release}}, {n}) => [
+  ...orbit.exists && !sampledAdmissible(orbit)
+    ? [`the ${n}-T orbit is inadmissible (an earlier impact occurs), so that no ball stays on it`] : [],
+  ...omega < 1 ? ["the contact is slower than the table: the ball oscillates on a spring"] : [],
+  ...release === "displacement" && zeta > 0
+    ? ["before its release at δ = 0 this contact pulls the ball; a measured contact ends where its force is zero"] : [],
+];
 
 // ---- The animation: it starts by its button alone.
 function frame(now) {

@@ -18,7 +18,7 @@ function refuse(text) {
   count = () => {};
   $("refused").textContent = text;
   document.body.toggleAttribute("data-refused", true);
-  for (const id of ["verdict", "definition", "position", "starts", "call"]) $(id).textContent = "";
+  for (const id of ["verdict", "position", "others", "starts", "call"]) $(id).textContent = "";
   play(false);
 }
 
@@ -49,9 +49,8 @@ function show(hash, kept = DEFAULTS) {
     $(`panel-${tab}`).hidden = !on;
   }
   const onStage = state.tab === "stage";
-  for (const id of ["starts", "definition", "position"]) $(id).hidden = onStage;
+  for (const id of ["starts", "position", "others"]) $(id).hidden = onStage;
   $("sides").hidden = state.tab === "design";
-  $("waveform-view").hidden = state.tab !== "orbit";
   $("design-answer").hidden = state.tab !== "design";
   for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
   for (const id of ["stage-views", "slice-views"]) $(id).hidden = !onStage;
@@ -68,17 +67,21 @@ function show(hash, kept = DEFAULTS) {
   }
   play(false);
   stage = null;
-  const question = questionOf(state), found = answer(question), verdict = verdictOf(found, question);
-  say(verdict);
-  $("definition").textContent = verdict[2] ?? "";
-  $("position").textContent = positionOf(found, question);
+  const question = questionOf(state), found = answer(question);
+  say(verdictOf(found, question));
+  const others = othersOf(found, question);
+  $("position").textContent = positionOf(found, question, others);
+  $("others").replaceChildren(...others.filter(n => n !== state.n).map(n => {
+    const button = document.createElement("button");
+    button.textContent = `n = ${n}`;
+    button.addEventListener("click", () => change("n", n));
+    return button;
+  }));
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
-    const ends = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
-    const known = withStarts(verdict, ends, question.n);
-    say(known);
-    $("starts").textContent = known[2];
-    $("starts").dataset.share = ends.share;
+    const {share, sentence} = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
+    $("starts").textContent = sentence;
+    $("starts").dataset.share = share;
     count = () => {};
   };
   // A slider that is dragged waits for no balls.
@@ -87,7 +90,7 @@ function show(hash, kept = DEFAULTS) {
   if (state.tab === "design") {
     $("design-rows").replaceChildren(...physical(found, question).map(
       ([name, value, unit, key]) => row(name, [[unit ? prefixed(value, unit) : shown(value), value, key ?? name]])));
-    $("notes").replaceChildren(...notesOf(found, question, state).map(note => {
+    $("notes").replaceChildren(...notesOf(found, question).map(note => {
       const item = document.createElement("li");
       item.textContent = `${note}.`;
       return item;
@@ -99,7 +102,6 @@ function show(hash, kept = DEFAULTS) {
     drawBranch(found, question);
     drawMotion(found, question);
     drawMultipliers(found);
-    if (state.tab === "orbit") drawWaveform(found, question);
   };
   drawOrbit();
 }
@@ -124,7 +126,7 @@ function setControl(name, value) {
     if (chosen) chosen.checked = true;
     return;
   }
-  document.querySelectorAll(`input[type=number][data-name=${name}]`).forEach(typed => {
+  document.querySelectorAll(`input[inputmode][data-name=${name}]`).forEach(typed => {
     if (document.activeElement !== typed) typed.value = value;
     typed.removeAttribute("aria-invalid");
   });
@@ -141,7 +143,7 @@ function change(name, value) {
   show(hash, next);
 }
 
-document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventListener("input", () => {
+document.querySelectorAll("input[inputmode]").forEach(typed => typed.addEventListener("input", () => {
   const {refused} = parse(`#tab=${current.tab}&${typed.dataset.name}=${encodeURIComponent(typed.value)}`);
   if (refused.length) {
     typed.setAttribute("aria-invalid", "true");
@@ -149,7 +151,7 @@ document.querySelectorAll("input[type=number]").forEach(typed => typed.addEventL
     const whole = WHOLE.includes(typed.dataset.name) ? "whole " : "";
     const label = document.querySelector(`label[for=${typed.id}]`).textContent;
     refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}.`);
-  } else change(typed.dataset.name, Number(typed.value));
+  } else change(typed.dataset.name, numberOf(typed.value));
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
   const {name} = slider.dataset, value = Number(slider.value);

@@ -1,10 +1,10 @@
 // On which motions balls end that start from an even grid of impacts on the contact, and with which
-// shares. Each verdict has these shares beside it.
+// shares. They stand below the verdict.
 "use strict";
 
-// Starts along each axis, impacts for which a ball is followed, and the share below which few balls
-// reach an orbit. A ball this near to a stable orbit ends there.
-const STARTS = 12, IMPACTS_OF_START = 300, FEW = 0.1, ON_ORBIT = 1e-4;
+// Starts along each axis, and impacts for which a ball is followed. A ball this near to a stable orbit
+// ends there.
+const STARTS = 12, IMPACTS_OF_START = 300, ON_ORBIT = 1e-4;
 
 // A relative speed above which every impact slows the ball: motions.basins.
 function fastest(contact, amplitude) {
@@ -33,18 +33,12 @@ function endsOfStarts(contact, amplitude, orbit) {
       const words = endInWords(followed({contact}, amplitude, phase, velocity, 0, IMPACTS_OF_START, known));
       counts.set(words, (counts.get(words) ?? 0) + 1);
     }
-  const all = STARTS * STARTS, on = stays ? counts.get(`on the ${orbit.n}-T orbit`) ?? 0 : 0;
-  const shares = [...counts].map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
+  const all = STARTS * STARTS, own = `on the ${orbit.n}-T orbit`, on = stays ? counts.get(own) ?? 0 : 0;
+  const shares = [...counts].filter(([words]) => !stays || words !== own)
+    .map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
   const named = shares.slice(0, 3).map(([words, share], k) => `${percent(share)}${k ? "" : " end"} ${words}`);
   const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
   if (left) named.push(`${percent(left)} on others`);
-  return {stays, share: on / all, shares, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
-}
-
-// The verdict with the shares of starts: one on an orbit that few balls reach is not the headline.
-function withStarts([good, sentence], ends, n) {
-  if (!ends.stays || ends.share >= FEW) return [good, sentence, ends.sentence];
-  const few = ends.share ? `only ${percent(ends.share)} of the starts end` : "no start ends";
-  return [false, `Most balls end otherwise than on the stable ${n}-T orbit: ${few} on it.`,
-    `${ends.sentence} Of the orbit alone: ${sentence}`];
+  if (stays) named.unshift(`${on || "none"} ${on > 1 ? "end" : "ends"} ${own}`);
+  return {share: on / all, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
 }

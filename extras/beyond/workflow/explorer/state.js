@@ -6,13 +6,13 @@ const $ = id => document.getElementById(id);
 // The stage's: phase and velocity of the first impact, number of balls, by how much each of them
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
-  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, h: 1, p: -0.87, release: "displacement", side: "stable",
+  tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, release: "force", side: "stable",
   m: 20, f: 20, moves: "acceleration", acc: 0.8, stroke: 1, touch: "stiffness", k: 1e5, time: 1.4, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
   units: "physical",
 };
 const RANGES = {
-  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20], h: [0, 2], p: [-10, 10],
+  r: [0.001, 1], w: [0.1, 1e6], a: [0.001, 100], n: [1, 20],
   m: [1e-9, 1e9], f: [1e-6, 1e9], acc: [0.001, 100], stroke: [1e-9, 1e9], k: [1e-9, 1e18],
   time: [1e-9, 1e9], t: [1e-4, 99],
   phi: [-10, 10], v: [-1000, 1000], balls: [1, 9], dv: [-10, 10], dphi: [-10, 10], from: [0, 1000],
@@ -38,14 +38,18 @@ const modelsOf = ({model, r, w}) => Object.fromEntries(
   [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, "displacement")}]]
     .filter(([name]) => model === "both" || model === name));
 
+// A decimal comma is read as a point. NaN for 1,500, which is 1.5 or 1500.
+const numberOf = text => /^\s*[1-9]\d*,\d{3}\s*$/.test(text) ? NaN : Number(text.replace(",", "."));
+
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
 // hash have the values of `kept`. A scene is a state of the stage by its name. A hash with values and
-// without a tab is a dimensionless case.
+// without a tab is a dimensionless case, whose contact ends as in the paper.
 function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
   const state = {...kept, ...scene?.state}, refused = [];
   if (scene) state.tab = "stage";
   else if (![...given].every(([name]) => name === "scene")) state.tab = "orbit";
+  if (state.tab === "orbit" && !given.has("tab")) state.release = "displacement";
   const tab = given.get("tab") ?? state.tab;
   if (given.has("scene") && !scene)
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
@@ -56,7 +60,7 @@ function parse(hash, kept = DEFAULTS) {
     if (found.length > 1) refused.push(`${names[found[0]]} beside ${names[found[1]]}`);
   }
   for (const [name, text] of given) {
-    const value = Number(text), range = rangeOf(name, tab);
+    const value = numberOf(text), range = rangeOf(name, tab);
     if (name in CHOICES ? CHOICES[name].includes(text)
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (!WHOLE.includes(name) || Number.isInteger(value)))
@@ -150,7 +154,7 @@ function impossible(state) {
 
 const TABS = {
   orbit: state => ["tab", "r", "w", "a", "n", "release", "side",
-    ...["t", "h", "p"].filter(name => state[name] !== DEFAULTS[name])],
+    ...(state.t === DEFAULTS.t ? [] : ["t"])],
   design: state => ["tab", "m", "f", ...givenOf(state), "r", "n", "release",
     ...(state.t === DEFAULTS.t ? [] : ["t"])],
   stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
@@ -159,19 +163,18 @@ const TABS = {
 const hashOf = state => "#" + TABS[state.tab](state).map(
   name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 
-// The arguments of the models: of the physical tab, its dimensionless groups. The tolerance and the
-// third harmonic are given in percent.
+// The arguments of the models: of the physical tab, its dimensionless groups. The tolerance is given
+// in percent.
 function questionOf(state) {
   const {tab, r, n, release, side} = state, amplitude = amplitudeOf(state), tolerance = state.t / 100;
   if (tab === "orbit")
-    return {n, side, amplitude, tolerance, contact: contactOf(r, state.w, release),
-      harmonic: {h: state.h / 100, p: state.p}};
+    return {n, side, amplitude, tolerance, contact: contactOf(r, state.w, release)};
   // The orbit is that which is stable next to the saddle-node.
   const physical = caseOf(state);
   return {n, side: "stable", amplitude, tolerance, contact: physical.contact, physical};
 }
 
-// The call in Python. A release without force is asked for by the damping ratio that has this r.
+// The call in Python.
 function callOf(state) {
   const {tab, r, n, release, side} = state;
   if (tab === "stage") {
@@ -179,14 +182,13 @@ function callOf(state) {
     return Object.keys(modelsOf(state)).map(model => `motion_of(${balls[model]}, amplitude=${state.a}, `
       + `phase=${state.phi}, velocity=${state.v})`).join("\n");
   }
-  if (tab === "orbit" || release === "force") {
-    const loss = release === "force" ? `damping_ratio=${dampingOf(r, release)}, release="force"` : `restitution=${r}`;
-    return `orbit(SpringDamper(${frequencyRatioOf(state)}, ${loss}), amplitude=${amplitudeOf(state)}, n=${n}, `
-      + `side="${tab === "orbit" ? side : "stable"}")`;
-  }
+  if (tab === "orbit")
+    return `orbit(SpringDamper(${state.w}, restitution=${r}, release="${release}"), amplitude=${state.a}, n=${n}, `
+      + `side="${side}")`;
   const table = state.moves === "stroke" ? `displacement=${state.stroke} / 2000`
     : `acceleration=${state.acc} * 9.80665`;
   const contact = state.touch === "time" ? `contact_duration=${state.time} / 1000`
     : `mass=${state.m} / 1000, stiffness=${state.k}`;
-  return `on_shaker(frequency=${state.f}, ${table}, ${contact}, restitution=${r}, n=${n}, tolerance=${state.t} / 100)`;
+  return `on_shaker(frequency=${state.f}, ${table}, ${contact}, restitution=${r}, n=${n}, `
+    + `tolerance=${state.t} / 100, release="${release}")`;
 }

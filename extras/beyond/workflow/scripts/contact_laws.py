@@ -33,7 +33,7 @@ from bouncing_ball_beyond.search import guess_of_instants
 from bouncing_ball_beyond.tables import SINE
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
-from studies.orbits import damping, flight_height, last_zero, solved
+from studies.orbits import flight_height, last_zero, solved
 from studies.variables import described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
@@ -96,8 +96,7 @@ def scaled(ball: Ball, factor, powers: dict) -> Ball:
 def unit_contact(law: str, r: float) -> Ball:
     """The contact of a law with r and D + κ = 1 at the speed 1."""
     if law in LINEAR:
-        zeta = float(damping(np.array([r]), LINEAR[law])[0])
-        ball = SpringDamper(1.0, damping_ratio=zeta, release=LINEAR[law])
+        ball = SpringDamper(1.0, restitution=r, release=LINEAR[law])
     else:
         ball = OF_HERTZ[law](restitution=r, duration=1.0, speed=1.0)
     impact = ball.signature(1.0)

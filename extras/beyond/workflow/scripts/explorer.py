@@ -9,11 +9,10 @@ from numpy.typing import NDArray
 from bouncing_ball import restitution
 from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.error_law import contact_values, law_errors, rows_of_orbits
+from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
 from bouncing_ball_beyond.one_ball import settling
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
 from bouncing_ball_beyond.simulation import simulate
-from bouncing_ball_beyond.tables import Table
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import follow_compliant, random_orbits
@@ -22,8 +21,6 @@ from studies.variables import described
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
 PLACES = (0.02, 1.2)
-# The largest third harmonic of the page, as a share of the displacement.
-HARMONIC = 0.02
 # Balls that end at rest, on an orbit, on a doubled orbit, and on an orbit with rests. None is near
 # chaos, where the results of two computers differ.
 BALL = {"restitution": 0.5, "frequency_ratio": 80.0}
@@ -52,28 +49,19 @@ def orbits_of(ball: Ball, n: NDArray, amplitude: NDArray, saddle_node: NDArray):
 
 def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
     """One random orbit for each ϖ under a release, over `sample`."""
-    n, zeta, amplitude, random = random_orbits(ratios.size, seed, release, PLACES)
-    r = SpringDamper(1.0, damping_ratio=zeta).signature(1.0).restitution
+    n, zeta, amplitude, _ = random_orbits(ratios.size, seed, release, PLACES)
+    r = SpringDamper(1.0, damping_ratio=zeta, release=release).signature(1.0).restitution
     ball = SpringDamper(ratios, restitution=r, release=release)
     limits = ("saddle_node", "period_doubling")
     exact = contact_values(ball, amplitude=amplitude, n=n, quantities=limits)
     follow_compliant(ball, n, exact)
     equations, z = orbits_of(ball, n, amplitude, exact["saddle_node"])
-    own = ball.signature(1.0).restitution
-    lift = np.sqrt(amplitude**2 - restitution.saddle_node(n, own) ** 2)
+    lift = np.sqrt(amplitude**2 - restitution.saddle_node(n, r) ** 2)
     corrected = Corrected(ball)
     instant = contact_values(corrected, amplitude=amplitude, n=n)
     of_instants = OrbitEquations(corrected, 1, n)
     instants = at_orbits(traces, of_instants, rows_of_orbits(of_instants, amplitude))
-    harmonic = random.uniform(0.0, HARMONIC, ratios.size)
-    phase = random.uniform(-np.pi, np.pi, ratios.size)
     values = {
-        "third_harmonic": harmonic,
-        "third_phase": phase,
-        "doubling_law": [
-            doubling_law(equations.rows(row).ball, n[row], harmonic[row], phase[row])
-            for row in range(ratios.size)
-        ],
         "n": n,
         "restitution": r,
         "frequency_ratio": ratios,
@@ -81,10 +69,10 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
         **at_orbits(observables, equations, z),
         "saddle_node_amplitude": exact["saddle_node"],
         "period_doubling_amplitude": exact["period_doubling"],
-        "restitution_phase": restitution.impact_phase(n, own, amplitude),
+        "restitution_phase": restitution.impact_phase(n, r, amplitude),
         # The trace is 1 + r² at the saddle-node, where Y = 0, and -1 - r² at the period doubling.
-        "restitution_trace": 1 + own**2 - (1 + own) ** 2 * lift,
-        "restitution_period_doubling": restitution.period_doubling(n, own),
+        "restitution_trace": 1 + r**2 - (1 + r) ** 2 * lift,
+        "restitution_period_doubling": restitution.period_doubling(n, r),
         "corrected_phase": instant["phase"],
         "corrected_max_height": instant["max_height"],
         "corrected_trace": instants["trace"],
@@ -92,12 +80,6 @@ def under(release: str, ratios: NDArray, seed: int) -> xr.Dataset:
         "corrected_period_doubling": instant["period_doubling"],
     }
     return xr.Dataset({name: ("sample", value) for name, value in values.items()})
-
-
-def doubling_law(ball: Ball, n: int, harmonic: float, phase: float) -> float:
-    """The shift of the period doubling by the error law on a table with a third harmonic."""
-    table = Table([(1, 1.0, 0.0), (3, harmonic, phase)])
-    return float(law_errors(ball, amplitude=1.0, n=n, table=table)["period_doubling"])
 
 
 def at_orbits(quantities, equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
@@ -210,10 +192,9 @@ def balls() -> xr.Dataset:
 def explorer(parameters: dict) -> xr.Dataset:
     """One random orbit for each ϖ of a grid, under each release, and some balls.
 
-    Of each orbit the dataset has the contact (ζ follows from r by Eq. 16), the quantities of the
-    orbit, its bifurcations, height and force in the middle of the contact, values of both simple
-    models, and the shift of the period doubling by the error law on a table with a random third
-    harmonic; NaN where there is no orbit or no bifurcation.
+    Of each orbit the dataset has the contact, the quantities of the orbit, its bifurcations, height
+    and force in the middle of the contact, and values of both simple models; NaN where there is no
+    orbit or no bifurcation.
     """
     ratios = grid(parameters["frequency_ratio"])
     releases = ["displacement", "force"]

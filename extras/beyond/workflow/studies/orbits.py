@@ -5,7 +5,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.optimize.elementwise import find_root
 
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
@@ -24,20 +23,6 @@ NEAREST = -8.0
 """The smallest share of the distance from the saddle-node, as a power of ten."""
 
 
-def damping(restitution: NDArray, release: str) -> NDArray:
-    """ζ of the contacts with a restitution coefficient under a release; with the force release they
-    have more damping than by Eq. 16.
-    """
-    if release == "displacement":
-        return damping_of(restitution)
-
-    def excess(zeta: NDArray, r: NDArray) -> NDArray:
-        ball = SpringDamper(1.0, damping_ratio=zeta, release=release)
-        return ball.signature(1.0).restitution - r
-
-    return find_root(excess, (np.zeros_like(restitution), 0.999), args=(restitution,)).x
-
-
 def random_orbits(
     size: int, seed: int, release: str, places: tuple[float, float] = (0.0, 1.0)
 ) -> tuple[NDArray, NDArray, NDArray, np.random.Generator]:
@@ -52,7 +37,7 @@ def random_orbits(
     n = rng.integers(1, 6, size)
     low = saddle_node(n, r)
     amplitude = low + rng.uniform(*places, size) * (period_doubling(n, r) - low)
-    return n, damping(r, release), amplitude, rng
+    return n, damping_of(r, release), amplitude, rng
 
 
 def half_next_to_saddle_node(

@@ -226,9 +226,6 @@ VARIABLES = SYMBOLS | {
         "amplitude of the period doubling, corrected model", "Λ_PD"
     ),
     "corrected_max_height": Variable("greatest height, corrected model", "max z"),
-    "third_harmonic": Variable("third harmonic of the table, as a share of its displacement"),
-    "third_phase": Variable("phase of this harmonic", units="rad"),
-    "doubling_law": Variable("relative shift of the period doubling on this table, error law"),
     "ball_restitution": Variable("restitution coefficient of a ball that is followed", "r"),
     "ball_frequency_ratio": Variable(
         "frequency ratio of the contact of a ball that is followed", "ϖ"

@@ -37,7 +37,7 @@ def numbers_of_readme() -> set[str]:
     found = data["validity_map"]
     failing = found.failing_up_to.values
     # A quantity that fails at every r has no end.
-    failing = failing[failing < found.restitution.max().item()]
+    failing = failing[(failing > 0) & (failing < found.restitution.max().item())]
     return {
         texts.fixed(data["fig14"].error_threshold, 2),
         texts.fixed(data["fig16"].error_threshold, 2),

@@ -47,11 +47,6 @@ def stage(name: str) -> ModuleType:
     return found
 
 
-def printed_rows(table1: xr.Dataset) -> xr.Dataset:
-    """The rows of Table 1 that the paper prints."""
-    return table1.dropna("frequency_ratio", subset=["printed"])
-
-
 @cache
 def table_with_another_row() -> xr.Dataset:
     """Table 1 computed with a row that the paper does not print, between those that it prints."""
@@ -74,7 +69,10 @@ def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
             along = value.dimension
             first = data.isel({along: [0]})
             wrong = {
-                name: (each.dims, np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values)
+                name: (
+                    each.dims,
+                    np.array(["more"]) if each.dtype.kind in "OU" else 7 * each.values,
+                )
                 for name, each in first.variables.items()
                 if along in each.dims and (name in first.coords or each.dtype.kind == "f")
             }

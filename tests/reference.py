@@ -47,11 +47,6 @@ def stage(name: str) -> ModuleType:
     return found
 
 
-def printed_rows(table1: xr.Dataset) -> xr.Dataset:
-    """The rows of Table 1 that the paper prints."""
-    return table1.dropna("frequency_ratio", subset=["printed"])
-
-
 @cache
 def table_with_another_row() -> xr.Dataset:
     """Table 1 computed with a row that the paper does not print, between those that it prints."""

@@ -275,6 +275,8 @@ def others(name: str, given, needed) -> Iterator[str]:
     ['fig14.n is 2 instead of 1']
     >>> list(others("tolerances", [0.1], Among("tolerance", [0.02, 0.1, 0.01])))
     ['tolerances lacks 0.02, 0.01']
+    >>> list(others("frequency_ratio", None, {"min": 1.0}))
+    ['frequency_ratio is None instead of (min 1.0)']
     """
     if isinstance(needed, Mapping) and isinstance(given, Mapping):
         for key, value in needed.items():

@@ -269,16 +269,12 @@ def numbers(
     """
     judged = counted(datasets["claims"])
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
-    others = [each for name in texts for each in without_dataset(texts[name], origin[name])]
     template = environment(TEMPLATES).get_template("numbers.html.j2")
     contents = [
         ("", "Where the numbers come from"),
         *((name, name.title()) for name in texts),
-        ("others", "Without a dataset"),
     ]
-    return framed(
-        template.render(texts=sentences, others=dict.fromkeys(others)), "numbers", contents
-    )
+    return framed(template.render(texts=sentences), "numbers", contents)
 
 
 def sentences_of(
@@ -308,15 +304,6 @@ def sentences_of(
         if rows:
             found.append((parser().renderInline(origins.bare(line).strip("| ")), rows))
     return found
-
-
-def without_dataset(text: str, origin: Sequence[origins.Origin]) -> list[tuple[str, str]]:
-    """Return what the expressions without a dataset print, and these expressions."""
-    return [
-        (", ".join(dict.fromkeys(words)), origin[number].expression)
-        for number, words in origins.printed(text).items()
-        if not origin[number].datasets
-    ]
 
 
 # Both

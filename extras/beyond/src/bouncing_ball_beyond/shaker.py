@@ -239,8 +239,8 @@ def on_shaker(
         Frequency of the table in Hz.
     restitution : float or list of (v, r)
         Restitution coefficient r of a free impact, above 0 and up to 1; or measured pairs of a
-        closing speed in m/s and r, as a recording of contacts has them. The contact then has the damping
-        of the r of each closing speed; see :func:`.restitution_of`.
+        closing speed in m/s and r, as a recording of contacts has them. The contact then has the
+        damping of the r of each closing speed; see :func:`.restitution_of`.
     displacement, acceleration : float
         Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
         between the lowest and highest positions of the table. The acceleration, in m/s², is the

@@ -73,6 +73,7 @@ PARTS = {
         "extras/beyond/docs/thesis",
         "extras/beyond/docs/gallery",
         "extras/beyond/docs/impact-as-an-instant",
+        "extras/beyond/docs/equations",
         "extras/beyond/docs/impacts",
         "extras/beyond/docs/panels",
         "extras/beyond/docs/error-law",

@@ -12,10 +12,10 @@ from bouncing_ball_beyond import continuation
 from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.branches import FollowedBranch
 from bouncing_ball_beyond.continuation import cascade, follow, limits
-from bouncing_ball_beyond.equations import OrbitEquations
+from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.march import LARGEST_TURN
 from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbit_near, orbits
+from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbits, solved
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.
 LOCATED = 1e-10
@@ -257,8 +257,8 @@ def test_limits_are_shown_in_a_line():
 
 def test_a_limit_that_is_missing_has_a_reason():
     elastic = repr(limits(Rigid(1.0)))
-    reason = "no saddle-node before the branch ends: amplitude = 1e-06 is reached"
-    assert elastic == f"Limits: {reason}; period doubling at Λ = 1"
+    reason = "there is no saddle-node: the branch of orbits ends before it, where amplitude = 1e-06"
+    assert elastic == f"Limits: {reason} is reached; period doubling at Λ = 1"
     strongly_damped = limits(SpringDamper(5.0, damping_ratio=1.3)).saddle_node
     assert isinstance(strongly_damped, OrbitNotFound)
     assert "vanishing flight at amplitude = 1.0917875" in str(strongly_damped)
@@ -468,10 +468,10 @@ def test_a_period_halving_is_the_doubling_from_the_other_side():
 
 def test_a_closed_branch_ends_at_its_start():
     """A loop along r with twelve special orbits, each of which is listed once."""
-    phases = [0.2819, 0.21319, -2.64328, -1.15994, -0.29137]
-    velocities = [-3.16097, -6.2661, -8.13626, -1.70041, 1.91449]
-    ball = Rigid(0.49711198038140114)
-    start = orbit_near(ball, amplitude=3.2407106247114794, phases=phases, velocities=velocities)
+    times = np.array([0.2819, 12.77956, 28.77264, 30.25599, 31.12455])
+    speeds = np.array([6.27377, 9.43345, 5.28965, 2.99474, 1.18962])
+    equations = OrbitEquations(Rigid(0.49711198038140114), 5, 6)
+    start = solved(equations, row_of(equations.ball, times, speeds, None, 3.24071062471), "it")
     branch = follow(start, along="restitution", to=0.62)
     assert branch.end == "the branch is closed: it is back at its start"
     assert branch.orbits[-1].distance(branch.orbits[0]) == 0
@@ -662,3 +662,22 @@ def test_limits_start_from_the_first_orbit_that_a_ball_follows_or_else_the_first
     assert found[0] == "c" and found[2] == "a"
     assert isinstance(found[1], OrbitNotFound)
     assert asked[0] == 4
+
+
+@pytest.mark.parametrize(
+    ("ball", "end"),
+    [
+        (tsuji(restitution=0.03, duration=0.15, speed=6.0), 2.877420),
+        (
+            kuwabara_kono(stiffness=500.0, damping=0.5),
+            "grazing of an impact near amplitude = 1.0055",
+        ),
+    ],
+)
+def test_limits_of_laws_at_the_edge_of_rebounding(ball, end):
+    """A saddle-node of a shooting by another integrator, or what ends the branch."""
+    node = limits(ball).saddle_node
+    if isinstance(end, float):
+        assert node.amplitude == pytest.approx(end, abs=1e-6)
+    else:
+        assert str(node).startswith("there is no saddle-node: the branch") and end in str(node)

@@ -767,6 +767,25 @@ def smooth_sphere(p, v, k, c):
     return hertz * (1 + 1.5 * c * v) * (1 + np.tanh(50 * (v + 2 / (3 * c)))) / 2
 
 
+class Deepest:
+    """A force that unloads by the largest depth so far, as plastic contacts do."""
+
+    depth = 0.0
+
+    def __call__(self, p, v, k):
+        self.depth = max(self.depth, np.max(p.real))
+        return np.where(v.real > 0, k * p, k * p * p / self.depth)
+
+
+def test_a_range_is_right_although_a_faster_ball_is_not():
+    """Below the depth d the damping opposes the rate; by another integrator r(12) = 0.893500149."""
+    values = {"k": 80.0, "c": 1.0, "d": 1.5}
+    law = ForceLaw(lambda p, v, k, c, d: k * p + c * v * (1 - p / d), values)
+    assert float(law.signature(12.0).restitution) == pytest.approx(0.893500149, abs=1e-9)
+    with pytest.raises(ValueError, match="adds energy"):
+        law.signature(40.0)
+
+
 TABLE = np.polynomial.Polynomial([0.0, 150.0, 900.0, -400.0, 3000.0])
 
 # Laws as they are written in particle codes, engines and notebooks, with their arguments.
@@ -883,6 +902,18 @@ REFUSED = {
         {},
         "a ball with the closing speed 4.24 leaves with 5.681: check the sign of the damping",
     ),
+    "start speeds at which it drives": (
+        lambda p, v, k, c, start_speed: k * p + c * (2 - start_speed) * v,
+        {"k": 400.0, "c": 2.0},
+        {"needs": ("start_speed",)},
+        "adds energy: a ball with the closing speed 2.12",
+    ),
+    "memory": (
+        Deepest(),
+        {"k": 400.0},
+        {},
+        "has another value when it is asked again, but must not remember",
+    ),
     "attraction": (
         lambda p, v, k, c, a, g: k * p + c * v - a / (g + p) ** 2,
         {"k": 400.0, "c": 3.0, "a": 0.02, "g": 0.15},
@@ -907,8 +938,8 @@ REFUSED = {
         {},
         "polynomials in p do not converge to it at p = 0; give root=6",
     ),
-    "list": (lambda p, v, k: [k * x for x in p], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
-    "first entry": (lambda p, v, k: k * p[0], {"k": 1.0}, {}, r"shape of p and v, \(2,\), not"),
+    "list": (lambda p, v, k: [k * x for x in p], {"k": 1.0}, {}, r"shape of p and v, \(4,\), not"),
+    "first entry": (lambda p, v, k: k * p[0], {"k": 1.0}, {}, r"shape of p and v, \(4,\), not"),
     "pole that nothing feels": (
         lambda p, v, k, h, d: k * p + h * (p / (d - p)) ** 2,
         {"k": 20.0, "h": 1e-3, "d": 0.3},

@@ -1,24 +1,16 @@
 """Datasets and their files: the same orbits come back; and what a picture shows."""
 
-import json
-
 import numpy as np
 import pytest
-import xarray as xr
 
 from bouncing_ball_beyond import (
-    Corrected,
-    ForceLaw,
     Rigid,
     SpringDamper,
     Table,
     cascade,
     follow,
-    named_laws,
     orbit,
-    orbit_with_rest,
     plot,
-    read_orbits,
     special_curve,
     to_dataset,
 )
@@ -26,90 +18,11 @@ from bouncing_ball_beyond.equations import KINDS
 from bouncing_ball_beyond.periodic import orbits
 from bouncing_ball_beyond.pictures import MARKS
 
-BALLS = [
-    Rigid(0.5),
-    SpringDamper(10.0, restitution=0.85),
-    SpringDamper(20.0, damping_ratio=0.1, release="force"),
-    Corrected(SpringDamper(30.0, restitution=0.6)),
-    named_laws.tsuji(stiffness=1e4, damping=0.1),
-    named_laws.linear(20.0, 0.1, release="approach"),
-]
-
 
 @pytest.fixture(scope="module")
 def rigid():
     """A branch from a saddle-node to a period doubling, both ways."""
     return follow(orbit(Rigid(0.5), amplitude=1.4), to=(0.9, 1.8))
-
-
-def same(first, second):
-    """Whether two orbits have the same bits."""
-    return np.array_equal(first.z, second.z) and first.parameters == second.parameters
-
-
-@pytest.mark.parametrize("ball", BALLS, ids=lambda ball: type(ball).__name__)
-def test_a_branch_comes_back_from_its_file(ball, tmp_path):
-    branch = follow(orbit(ball, amplitude=1.2), to=1.6)
-    file = tmp_path / "branch.nc"
-    to_dataset(branch).to_netcdf(file)
-    again = read_orbits(file)
-    assert repr(again) == repr(branch)
-    assert np.array_equal(again.z, branch.z)
-    assert again.equations.ball.parameters == branch.equations.ball.parameters
-    assert type(again.equations.ball) is type(ball)
-    assert len(again.special) == len(branch.special)
-    for one, other in zip(again.special, branch.special, strict=True):
-        assert one.kind == other.kind
-        assert same(one, other)
-    longer = follow(again.orbits[-1], to=1.7)
-    assert longer.orbits[-1].distance(follow(branch.orbits[-1], to=1.7).orbits[-1]) < 1e-12
-
-
-def test_orbits_alone_and_in_lists_come_back():
-    ball = Rigid(0.5)
-    several = orbits(ball, impacts=3, periods=3, amplitude=1.6)
-    data = to_dataset(several)
-    assert data.sizes["impact"] == 3
-    assert all(map(same, read_orbits(data), several))
-    assert same(read_orbits(to_dataset(several[0])), several[0])
-    row = orbit(
-        SpringDamper(10.0, restitution=np.array([0.6, 0.7, 0.8])), amplitude=[1.0, 0.1, 1.0]
-    )
-    data = to_dataset(row)
-    assert data.restitution.values.tolist() == [0.6, 0.8]
-    again = read_orbits(data)
-    assert [each.ball.restitution for each in again] == [0.6, 0.8]
-    assert same(again[1], row[2])
-
-
-def test_a_part_of_a_dataset_has_its_orbits(rigid):
-    data = to_dataset(rigid)
-    part = read_orbits(data.isel(point=[0, 1, 2]))
-    assert same(part.orbits[1], rigid.orbits[1])
-    doubling = data.isel(point=np.flatnonzero(data.kind == "period doubling"))
-    assert same(read_orbits(doubling.assign_attrs(form="list"))[0], rigid.first("period doubling"))
-
-
-def test_a_curve_comes_back(rigid, tmp_path):
-    ranges = {"amplitude": (0.5, 3.0), "restitution": (0.1, 1.0)}
-    curve = special_curve(rigid.first("period doubling"), ranges=ranges)
-    file = tmp_path / "curve.nc"
-    to_dataset(curve).to_netcdf(file)
-    again = read_orbits(file)
-    assert repr(again) == repr(curve)
-    assert np.array_equal(again.z, curve.z)
-
-
-def test_a_function_of_a_user_is_given_again():
-    def slower(u):
-        return 0.5 + 0.1 / (1 + u)
-
-    ball = Rigid(slower)
-    one = orbit(ball, amplitude=1.4)
-    data = to_dataset(one)
-    with pytest.raises(ValueError, match="the function slower of the ball: give the ball as ball="):
-        read_orbits(data)
-    assert read_orbits(data, ball=ball).distance(one) == 0
 
 
 def test_quantities_are_those_of_the_orbits(rigid):
@@ -133,11 +46,7 @@ def test_quantities_are_those_of_the_orbits(rigid):
     assert modulus.prod("multiplier").values == pytest.approx(0.25, rel=1e-12)
 
 
-def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
-    file = tmp_path / "other.nc"
-    xr.Dataset({"x": 1.0}).to_netcdf(file)
-    with pytest.raises(ValueError, match=r"other\.nc: not a dataset of orbits"):
-        read_orbits(file)
+def test_what_is_no_list_of_orbits_is_refused():
     one = orbit(Rigid(0.5), amplitude=1.6)
     several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
     with pytest.raises(ValueError, match="the same number of impacts"):
@@ -146,14 +55,6 @@ def test_what_is_no_dataset_of_orbits_is_refused(tmp_path):
         to_dataset([one, orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.6)])
     with pytest.raises(ValueError, match="there is no orbit"):
         to_dataset(orbit(Rigid(0.5), amplitude=[0.1]))
-
-
-def test_a_ball_is_stored_by_its_class_and_parameters():
-    one = orbit(Corrected(SpringDamper(30.0, restitution=0.6)), amplitude=1.2)
-    text = json.loads(to_dataset(one).attrs["ball"])
-    assert text["class"] == "Corrected"
-    assert text["of"]["class"] == "SpringDamper"
-    assert text["of"]["frequency_ratio"] == 30.0
 
 
 # Pictures
@@ -196,13 +97,6 @@ def test_an_orbit_alone_before_a_special_one_has_its_own_line():
     lines = plot(branch).axes[0].get_lines()
     looks = {round(float(line.get_xdata()[0]), 2): line.get_linestyle() for line in lines}
     assert looks[1.52] == "-"
-
-
-def test_an_orbit_with_a_rest_comes_back_as_one():
-    one = orbit_with_rest(Rigid(0.3), amplitude=1.93)
-    back = read_orbits(to_dataset(one))
-    assert type(back) is type(one) and back.rest == one.rest
-    assert repr(one).startswith("RestOrbit") and "lift_off" in repr(one) and "  rest " in repr(one)
 
 
 def test_lines_are_solid_where_orbits_are_stable(rigid):
@@ -271,22 +165,3 @@ def test_a_stable_cascade_has_no_unstable_lines():
         "4 impacts in 4 T",
         "8 impacts in 8 T",
     ]
-
-
-def test_a_branch_of_another_force_is_refused_by_its_defect():
-    """The parameters of both forces have the same names."""
-
-    def force(p, v, k, c):
-        return k * p * (1 + c * v)
-
-    def other(p, v, k, c):
-        return k * p + 20 * c * v
-
-    values = {"k": 400.0, "c": 0.05}
-    data = to_dataset(follow(orbit(ForceLaw(force, values), amplitude=1.0), to=1.01))
-    assert len(read_orbits(data, ball=ForceLaw(force, values)).z) > 1
-    with pytest.raises(
-        ValueError, match=r"does not follow the orbits.*residual.*is 0\.\d"
-    ) as error:
-        read_orbits(data, ball=ForceLaw(other, values))
-    assert "\n" not in str(error.value)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import bouncing_ball_beyond as bb
 from bouncing_ball_beyond import shaker
 from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.shaker import on_shaker
@@ -125,3 +126,22 @@ def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_f
     given = {"frequency": 50.0, "restitution": 0.85, "contact_duration": 1e-4}
     found = on_shaker(acceleration=0.05 * G, **given)
     assert np.isnan([found.max_height.exact, found.longest_contact]).all()
+
+
+def test_measured_pairs_of_speed_and_restitution():
+    """Pairs of one r have its answer; with r(v) the doubling is that of the r(v) at v₀."""
+    given = {"frequency": 15.0, "acceleration": 0.996 * 9.80665, "contact_duration": 3e-4}
+    number = bb.on_shaker(restitution=0.65, **given)
+    equal = bb.on_shaker(restitution=[(0.1, 0.65), (0.4, 0.65), (1.0, 0.65)], **given)
+    for name in ("saddle_node", "period_doubling", "max_height"):
+        assert getattr(equal, name) == pytest.approx(getattr(number, name), rel=1e-6)
+    pairs = [(0.1, 0.69), (0.3, 0.65), (1.0, 0.61)]
+    falls = bb.on_shaker(restitution=pairs, **given)
+    of_speed = bb.restitution_of(pairs)
+    rigid = bb.Rigid(lambda u: of_speed(u * 9.80665 / (2 * np.pi * 15)))
+    expected = bb.limits(rigid).period_doubling.amplitude
+    assert falls.period_doubling.by_restitution == pytest.approx(expected, rel=1e-9)
+    with pytest.raises(ValueError, match=r"closes at 0\.332 m/s: measure it there"):
+        bb.on_shaker(restitution=[(3.0, 0.6), (4.0, 0.5)], **given)
+    with pytest.raises(ValueError, match="restitution_of"):
+        bb.Rigid(lambda u: np.interp(u, [0.0, 10.0], [0.9, 0.5]))

@@ -1,5 +1,7 @@
 """Tables of other waveforms against differences, the sine, and an integration of their motions."""
 
+import re
+
 import numpy as np
 import pytest
 from integrated import around, leg
@@ -148,18 +150,70 @@ def test_noisy_heights_give_their_table_with_as_many_harmonics_as_are_meant():
 
 
 def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
+    """Also if the clock of the recorder is off."""
     table = Table([(1, 1.0, 0.4), (3, 0.05, 0.7)])
     time = np.sort(np.random.default_rng(2).uniform(0, 0.416, 900))
     signal = 9.81 + 0.9 * 9.80665 * table(2 * np.pi * 25 * time, 2)
-    found, amplitude = Table.of_record(time, signal, frequency=25.0, harmonics=5)
-    assert amplitude == pytest.approx(0.9 * table.acceleration, rel=1e-9)
+    found = Table.of_record(time, signal, frequency=25.2, harmonics=5)
+    assert found.amplitude == pytest.approx(0.9 * table.acceleration, rel=1e-9)
+    assert found.frequency == pytest.approx(25.0, rel=1e-9)
+    assert found.residual < 1e-9
     tau = np.linspace(0, 7, 50)
-    np.testing.assert_allclose(amplitude * found(tau), 0.9 * table(tau), atol=1e-10)
+    np.testing.assert_allclose(found.amplitude * found.table(tau), 0.9 * table(tau), atol=1e-8)
     two = Table([(12, 0.01, 0.3), (17, 0.006, 1.0)])
     signal = 9.80665 * two(2 * np.pi * 8 * time, 2)
-    found, amplitude = Table.of_record(time, signal, frequency=8.0, harmonics=[12, 17])
-    assert found.orders == (12, 17)
-    assert amplitude == pytest.approx(two.acceleration, rel=1e-9)
+    found = Table.of_record(time, signal, frequency=8.0, harmonics=[12, 17])
+    assert found.table.orders == (12, 17)
+    assert found.amplitude == pytest.approx(two.acceleration, rel=1e-9)
+
+
+def made_record(generator, seconds, change=None):
+    """A record with a clock that is off, noise, a drift and a gap, its Λ and its frequency."""
+    frequency = generator.uniform(20, 40)
+    true = frequency * (1 + generator.uniform(-0.01, 0.01))
+    time = np.arange(0, seconds, 1 / 400)
+    time = time[(time < 0.4 * seconds) | (time > 0.6 * seconds)]
+    size = generator.uniform(5, 15)
+    stretched = time if change != "frequency" else time * (1 + 1e-3 * time / seconds)
+    signal = size * np.sin(2 * np.pi * true * stretched)
+    if change == "tone":
+        signal += 0.05 * size * np.sin(2 * np.pi * 1.4 * true * time)
+    if change == "amplitude":
+        signal *= 1 + 0.1 * time / seconds
+    signal += 9.81 + 0.5 * time / seconds + generator.normal(0, 0.3, time.size)
+    return {"time": time, "acceleration": signal, "frequency": frequency}, size / 9.80665, true
+
+
+def test_measured_tables_are_right_within_their_errors():
+    """In 95 of 100 records within twice the standard error: at least 32 of 40."""
+    generator = np.random.default_rng(5)
+    within = []
+    for seconds in np.geomspace(1, 60, 40):
+        record, amplitude, frequency = made_record(generator, seconds)
+        found = Table.of_record(**record, harmonics=2)
+        off = [found.amplitude - amplitude, found.frequency - frequency]
+        errors = np.array([found.amplitude_error, found.frequency_error])
+        within.append(np.abs(off) < 2 * errors)
+        assert found.residual == pytest.approx(0.3, rel=0.25)
+    assert np.sum(within, axis=0).min() >= 32
+
+
+@pytest.mark.parametrize("change", ["tone", "frequency", "amplitude"])
+def test_a_residual_that_noise_does_not_explain_is_refused(change):
+    record, _, _ = made_record(np.random.default_rng(3), 20.0, change)
+    with pytest.raises(ValueError, match="noise does not explain a tone of"):
+        Table.of_record(**record, harmonics=2)
+
+
+def test_a_jump_of_the_acceleration_is_named_with_its_factor():
+    """Parabolas, whose acceleration is ±1: by hand the saddle-node is at Λ = 2C/π with r = 0.8."""
+    tau = 2 * np.pi * np.arange(256) / 256
+    heights = np.where(tau < np.pi, tau * (np.pi - tau), (tau - np.pi) * (tau - 2 * np.pi))
+    with pytest.warns(UserWarning, match=r"Λ is here 1\.\d+ times the largest") as warned:
+        table = Table.of_samples(heights)
+    factor = float(re.search(r"here ([\d.]+) times", str(warned[0].message))[1])
+    node = bb.limits(bb.Rigid(0.8), table=table).saddle_node.amplitude
+    assert node / factor == pytest.approx(np.pi * (0.2 / 1.8) / (np.pi / 2), rel=0.02)
 
 
 @pytest.mark.parametrize(
@@ -171,7 +225,7 @@ def test_a_record_of_any_length_gives_the_table_and_its_amplitude():
         ({"harmonics": 40}, "are too few for 40 harmonics"),
         ({"frequency": 64.0}, "cannot distinguish all harmonics"),
         ({"harmonics": []}, "harmonics: is empty: give at least one order"),
-        ({"harmonics": [5]}, "is the frequency right"),
+        ({"harmonics": [5]}, "noise does not explain a tone of"),
         ({"acceleration": np.ones(64)}, "acceleration: is constant"),
     ],
 )
@@ -356,20 +410,6 @@ def test_along_a_phase_one_turn_is_the_default():
     doubling = bb.limits(ball, table=negative).period_doubling
     curve = bb.special_curve(doubling, along=("amplitude", "harmonic_3"), points=3)
     assert len(curve.z) > 3
-
-
-def test_datasets_carry_the_table(tmp_path):
-    table = Table([(1, 1.0, 0.0), (2, 0.1, 0.8)])
-    branch = bb.follow(bb.orbit(bb.Rigid(0.7), amplitude=0.8, table=table), along="phase_2", to=1.5)
-    file = tmp_path / "branch.nc"
-    bb.to_dataset(branch).to_netcdf(file)
-    back = bb.read_orbits(file)
-    assert back.orbits[-1].table == branch.orbits[-1].table
-    assert back.orbits[-1].distance(branch.orbits[-1]) == 0
-    assert back.along == "phase_2"
-    one = bb.orbit(bb.Rigid(0.7), amplitude=0.8)
-    with pytest.raises(ValueError, match="vary the same parameter"):
-        bb.to_dataset([one, branch.orbits[0]])
 
 
 # Motions on which balls end

@@ -22,6 +22,7 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from bouncing_ball_beyond import one_ball, oscillator
 from bouncing_ball_beyond.one_ball import EPS, PATIENCE, REACH, SLOWEST
@@ -356,12 +357,18 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
         across = (function(at + step) - function(at - step)) / (2 * step)
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise ValueError(f"{what} must accept arrays, also complex ones ({reason})") from None
+        raise ValueError(
+            f"{what} must accept arrays, also complex ones, which tables and splines do not: give"
+            f" a polynomial, or restitution_of(pairs) ({reason})"
+        ) from None
     # The difference has a rounding error of eps/step, and an error of step² times the third
     # derivative.
     size = np.abs(along) + np.abs(across)
     if np.any(np.abs(along - across) > 1e-4 * size.max() + 1e-9 * np.abs(values).max() / reach):
-        raise ValueError(f"{what} must be analytic: write it without abs, real, sign and the like")
+        raise ValueError(
+            f"{what} must be analytic: write it without abs, real, sign and the like, and instead"
+            " of a table or spline as a polynomial, or as restitution_of(pairs)"
+        )
     return values
 
 
@@ -372,7 +379,8 @@ class Rigid(Ball):
     Parameters
     ----------
     restitution : array_like or callable
-        r in [0, 1], or an analytic function r(u) of the closing speed.
+        r in [0, 1], or an analytic function r(u) of the closing speed, such as
+        ``restitution_of(pairs)``.
 
     Examples
     --------
@@ -430,6 +438,54 @@ class Rigid(Ball):
         """Signature with r and with D = t_c = σ = 0."""
         nothing = 0.0 * u
         return Signature(self._restitution(u) + nothing, nothing, nothing, nothing)
+
+
+def restitution_of(pairs: Values) -> Callable:
+    """Fit r(v) = 1/(1 + C v^q) to measured pairs of a closing speed v and r by least squares.
+
+    This r is in (0, 1) at every speed, and is a power of the speed where it is small. Other shapes
+    are approximated over the measured speeds.
+
+    Parameters
+    ----------
+    pairs : array_like, shape (impacts, 2)
+        Closing speeds > 0 in any unit, which is then the unit of v, and r in (0, 1].
+
+    Returns
+    -------
+    callable
+        Analytic function r(v), for ``Rigid``.
+
+    Raises
+    ------
+    ValueError
+        If the pairs are not of this kind, or if all speeds are equal.
+
+    Examples
+    --------
+    >>> r = restitution_of([(1.0, 0.90), (2.0, 0.86), (4.0, 0.81)])
+    >>> r(np.array([1.0, 3.0])).round(3).tolist()
+    [0.9, 0.833]
+    """
+    try:
+        speeds, measured = np.asarray(pairs, float).T
+    except (TypeError, ValueError):
+        raise ValueError(
+            "restitution: must be a number, or pairs of a speed and r, such as"
+            " [(1.0, 0.90), (2.0, 0.86)]"
+        ) from None
+    if not np.all((speeds > 0) & (speeds < np.inf) & (measured > 0) & (measured <= 1)):
+        raise ValueError("restitution: pairs (speed, r) must have speeds > 0 and r in (0, 1]")
+    logarithms = np.log(speeds)
+    if np.ptp(logarithms) < 1e-6:
+        raise ValueError("restitution: all pairs have one speed: give their mean r as a number")
+
+    def of(parameters: NDArray, logarithm: Values) -> Values:
+        return 1 / (1 + np.exp(parameters[0] + parameters[1] * logarithm))
+
+    start = -np.log(1 / min(measured.mean(), 0.999) - 1)
+    fitted = least_squares(lambda given: of(given, logarithms) - measured, [-start, 0.0]).x
+    return lambda v: of(fitted, np.log(v))
 
 
 def damping_of(restitution: Values, release: str = "displacement") -> Values:
@@ -569,35 +625,6 @@ class SpringDamper(Ball):
     ) -> tuple[Values, Values]:
         """δ and δ′ at the given time after the start of a contact."""
         return self.contact(tau, u, time * self.frequency_ratio, amplitude, table=table)[1:3]
-
-    def end_slopes(
-        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
-    ) -> NDArray:
-        """Derivatives as in :meth:`Ball.end_slopes`, in closed form if there is one.
-
-        The motion depends linearly on the table and on the initial state, so its derivatives are
-        responses of the same oscillator.
-        """
-        if not self.has_closed_form(table):
-            return slopes_at_release(self, tau, u, T, amplitude, table)
-        ratio = self.frequency_ratio
-        zeta = self.zeta
-        kappa = self.kappa
-        duration = T / ratio
-        start = np.where(u < 0, kappa, 0.0)
-        waves = table.turned(table.waves(tau, amplitude))
-        # With respect to τ: response to the derivative of the table motion.
-        # With respect to u: response to the initial state alone, on a table at rest.
-        by_tau = oscillator.closed_motion(duration, 0.0, 0.0, table, waves, 0.0, ratio, zeta)
-        by_u = oscillator.closed_motion(
-            duration, start, 1.0, table, [0.0] * len(waves), 0.0, ratio, zeta
-        )
-        gap = np.array([by_tau[0], by_u[0]])
-        rate = np.array([by_tau[1], by_u[1]])
-        push = -amplitude * table(tau + duration, 2) - 1
-        second = push - 2 * zeta * ratio * w + ratio * ratio * kappa * w
-        later = -(gap + kappa * rate) / (w + kappa * second)
-        return np.array([later, gap + w * later, rate + second * later])
 
     def free(self, u: Values) -> Values:
         """T of a free impact: 2 arccos ζ/√(1 - ζ²) for the release "force", else π/√(1 - ζ²)."""

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond import one_ball
-from bouncing_ball_beyond.balls import FEW_BALLS, Ball, H, root_of_parabola, safe_steps
+from bouncing_ball_beyond.balls import FEW_BALLS, Ball, brief, safe_steps
 from bouncing_ball_beyond.impact_map import ImpactMap
-from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD, STEPS
+from bouncing_ball_beyond.one_ball import COLUMNS, PERIOD, STEPS
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 # Importing numba takes a second, so it is imported when the first ball is followed.
@@ -34,9 +34,6 @@ class Leaving(NamedTuple):
         Whole turns and phase of the table at the end of the impact.
     gap, speed : array
         δ and δ′ at the end of the impact.
-    emerges : array
-        Time from the end of the impact until the ball rises through the level of the table. It is 0
-        if no search was needed.
     """
 
     scaled_duration: np.ndarray
@@ -45,7 +42,6 @@ class Leaving(NamedTuple):
     phase: np.ndarray
     gap: np.ndarray
     speed: np.ndarray
-    emerges: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -75,6 +71,13 @@ class Balls:
     speed: np.ndarray
     table: Table = SINE
     map: ImpactMap | None = None
+
+    def __post_init__(self) -> None:
+        if self.ball.below_table:
+            raise ValueError(
+                f"ball = {brief(self.ball)}: replaces contacts of orbits, and is not followed from"
+                " impact to impact: follow the ball `of`"
+            )
 
     def take(self, which: Any) -> "Balls":
         arrays = ("amplitude", "turns", "phase", "speed")
@@ -131,27 +134,6 @@ def landings(
     return time
 
 
-def emergences(
-    table: Table, start: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
-) -> NDArray:
-    """For each ball, find the first time, not before ``start``, at or above the level of the table.
-
-    The time is infinite if a ball falls back before it reaches this level.
-    """
-
-    def look(t: NDArray, bend: NDArray, jerk: NDArray, *state: NDArray) -> tuple:
-        gap, w, *waves = state
-        position, rate, second = table.flights(t, gap, w, waves)
-        # f = 0 ends the search if the ball falls back or is above the level.
-        goes_on = (rate > 0) & (position < 0)
-        return t, np.where(goes_on, -position, 0.0), -np.abs(rate), -second, bend, jerk
-
-    _, _, bend, jerk, *_ = table.bounds
-    limits = [1 + bend * amplitude, jerk * amplitude]
-    time = first_zeros(look, start, [*limits, gap, w, *waves])
-    return np.where(table.flights(time, gap, w, waves)[1] > 0, time, np.inf)
-
-
 def resumptions(
     table: Table, kappa: NDArray, amplitude: NDArray, gap: NDArray, w: NDArray, *waves: NDArray
 ) -> tuple:
@@ -172,42 +154,6 @@ def resumptions(
     return time, table.flights(time, gap, w, waves)[0] < 0
 
 
-def instants(
-    ball: Ball,
-    table: Table,
-    landed: NDArray,
-    gap: Values,
-    w: Values,
-    waves: list,
-    amplitude: Values,
-) -> tuple[NDArray, NDArray]:
-    r"""Find the first impacts after landings, if the gap of an impact depends on its closing speed.
-
-    ``landed`` contains the times of the landings. Returns the times at which δ = ``ball.start(u)``,
-    and the closing speeds u.
-    """
-    t = landed.copy()
-    speed = np.empty_like(t)
-    strongest = 1 + table.bounds[2] * amplitude
-    for _ in range(STEPS):
-        position, rate, second = table.flights(t, gap, w, waves)
-        start = ball.start(-rate + 1j * H)
-        slope_of_start = start.imag / H
-        f = position - start.real
-        slope = rate + slope_of_start * second
-        lag = np.abs(slope_of_start)
-        bend = strongest * (1 + lag)
-        step = root_of_parabola(np.maximum(f, 0.0), slope, bend)
-        size = np.abs(gap) + (t + lag) * (np.abs(w) + strongest * (1 + t))
-        passed = f < -16 * EPS * size  # more than rounding
-        step = np.where(passed, -f / slope, step)
-        speed = -rate
-        if not np.any(np.abs(step) > 4 * EPS * t):
-            break
-        t += step
-    return t, speed
-
-
 def leave(balls: Balls) -> Leaving:
     """Compute the states of balls at the end of their impacts."""
     if balls.map:
@@ -218,7 +164,7 @@ def leave(balls: Balls) -> Leaving:
     if not balls.ball.has_duration:
         return settle_instants(balls, gap, w)
     turns, phase = reduced(np.where(duration < np.inf, balls.phase + duration, 0.0))
-    return Leaving(scaled_duration, duration, balls.turns + turns, phase, gap, w, emerges=0 * w)
+    return Leaving(scaled_duration, duration, balls.turns + turns, phase, gap, w)
 
 
 def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
@@ -229,25 +175,17 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
     table = balls.table
     amplitude = balls.amplitude
     phase = balls.phase
-    remaining = balls.ball.remaining_contact(balls.speed)
     restitution = w / np.maximum(balls.speed, 1e-300)
     # This limit is larger than the limit in :func:`.one_ball.settling`, which makes the decision.
     gravity = 1 + amplitude * table(phase, 2)
     limit = 0.51 * one_ball.CHATTER * gravity * gravity * (1 - restitution)
     fourth = amplitude * table.bounds[4]
     stay = np.full(w.shape, -1.0)
-    emerges = np.zeros(w.shape)
-    (slow,) = ((gap == 0) & (w * np.maximum(fourth, 1.0) <= limit)).nonzero()
+    (slow,) = (w * np.maximum(fourth, 1.0) <= limit).nonzero()
     if slow.size:
         _, y, x = table.pulls(table.waves(phase[slow], amplitude[slow]))
         given = (each.tolist() for each in (w[slow], restitution[slow], x, y, fourth[slow]))
         stay[slow] = [*map(one_ball.settling, *given)]
-    (low,) = may_sink(gap, w, 1 + table.bounds[2] * amplitude, remaining).nonzero()
-    if low.size:
-        waves = table.waves(phase, amplitude)
-        given = (each[low] for each in (remaining, amplitude, gap, w, *waves))
-        emerges[low] = emergences(table, *given)
-        stay[low] = np.where(emerges[low] < np.inf, -1.0, remaining[low])
     rests = stay >= 0
     duration = np.maximum(stay, 0.0)
     leaves = phase + duration
@@ -258,13 +196,8 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
         duration[waits] += wait
     ends = phase + np.where(duration < np.inf, duration, 0.0)
     turns = balls.turns + np.round((ends - leaves) / PERIOD)
-    gap, w, emerges = (np.where(rests, 0.0, each) for each in (gap, w, emerges))
-    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w, emerges=emerges)
-
-
-def may_sink(gap: Values, w: Values, strongest: NDArray, time: NDArray) -> NDArray:
-    """Whether balls below the level of the table may fall within ``time``, or never reach it."""
-    return (gap < 0) & ((w <= strongest * time) | (w * w + 2 * strongest * gap <= 0))
+    w = np.where(rests, 0.0, w)
+    return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
 
 
 def reduced(phase: Values) -> tuple[NDArray, NDArray]:
@@ -290,21 +223,19 @@ def fly(balls: Balls, leaving: Leaving) -> tuple[NDArray, NDArray]:
     fourth = table.bounds[4] * amplitude
     left_behind = (2 * x + np.sqrt(4 * x * x + 12 * fourth * np.maximum(y - 1, 0.0))) / fourth
     start = np.where((y >= 1) & (gap == 0), np.maximum(start, left_behind), start)
-    start = np.where(leaving.emerges > 0, leaving.emerges, start)
     resumes = np.zeros(w.shape, bool)
     states = amplitude, gap, w, *waves
     if np.any(ball.kappa):
         kappa = np.broadcast_to(ball.kappa, w.shape)
         # Let g be the strongest gravity. A ball with w ≥ (1 + √2) κ g reaches the level of the
         # table with a speed of at least κ g. Until then δ + κδ′ rises, so no contact resumes.
-        (low,) = may_sink(gap, w, strongest, (1 + np.sqrt(2)) * kappa).nonzero()
+        slow = (w <= strongest * (1 + np.sqrt(2)) * kappa) | (w * w + 2 * strongest * gap <= 0)
+        (low,) = ((gap < 0) & slow).nonzero()
         given = (each[low] for each in (kappa, *states))
         start[low], resumes[low] = resumptions(table, *given)
     time = np.where(start < np.inf, start, np.nan)
     (lands,) = (~resumes & (start < np.inf)).nonzero()
     time[lands] = landings(table, start[lands], *(each[lands] for each in states))
-    if ball.below_table:
-        return instants(ball, table, time, gap, w, waves, amplitude)
     speed = -table.flights(time, gap, w, waves)[1]
     return time, np.where(resumes, speed, np.maximum(speed, 0.0))
 

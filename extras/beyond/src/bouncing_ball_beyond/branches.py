@@ -231,18 +231,23 @@ class _Passed(NamedTuple):
 
 
 def followed(
-    start: Start, window: NDArray, until: Sequence[str | None] | NDArray, points: int, own: str
+    start: Start,
+    window: NDArray,
+    until: Sequence[str | None] | NDArray,
+    points: int,
+    own: str,
+    grazings: bool = True,
 ) -> list[Any]:
     """Follow branches, and locate the special orbits on them.
 
     A special orbit of the kind ``own`` in the first step is the start of the branch, and is left
-    out.
+    out. Grazings of flights and releases take most of the time, and may be left out.
     """
     steps = march(start, window, until, points)
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
     z, slopes, tests, _ = (np.concatenate(each) for each in every)
-    crossings = crossings_of(start.equations, row, z, slopes, tests)
+    crossings = crossings_of(start.equations, row, z, slopes, tests, grazings)
     z, found = np.empty((2, 0))
     if len(crossings.row):
         z, found = located(start.equations, crossings)
@@ -270,8 +275,9 @@ def followed(
             end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
         elif end in KINDS:
             # The special orbit is between the last two points, but Newton's method does not find
-            # it.
-            end = f"{end} near {_place(equations, orbits[-1], 4)}: {KINDS[end].end}"
+            # it, or the branch approaches it for ever.
+            why = KINDS[end].end and f": {KINDS[end].end}"
+            end = f"{end} near {_place(equations, orbits[-1], 7)}{why}"
             orbits = orbits[:-1]
             passed = [each for each in passed if each.number + 1 < len(orbits)]
         else:

@@ -11,7 +11,13 @@ from numpy.typing import ArrayLike
 
 from bouncing_ball_beyond.balls import Ball, brief, check_whole_numbers, whole_number
 from bouncing_ball_beyond.branches import FollowedBranch, followed, joined
-from bouncing_ball_beyond.equations import OrbitEquations, OrbitNotFound, PeriodicOrbit, alone
+from bouncing_ball_beyond.equations import (
+    KINDS,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    alone,
+)
 from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts
@@ -151,7 +157,9 @@ def _listed(given: Any, name: str, wanted: str) -> list:
     return found
 
 
-def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: list) -> list:
+def _follow_all(
+    orbits: list, along: str | None, to: Any, points: int, until: list, grazings: bool = True
+) -> list:
     """Follow orbits. For each orbit, return its branch, or the reason why there is none.
 
     Consecutive orbits with the same equations are followed at once.
@@ -168,12 +176,12 @@ def _follow_all(orbits: list, along: str | None, to: Any, points: int, until: li
         path = each.equations.along[-1] if along is None else path_of(along, each.ball, each.table)
         goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
         alike = (x.at(**dict.fromkeys(x.parameters, 0.0)) for x in (each.ball, each.table))
-        common = each.kind, type(each.equations), path, each.impacts, *alike
+        common = each.kind, path, each.impacts, *alike
         ways += [(common, i, task) for task in _tasks(each, path, goal, until[i])]
     parts: list[list] = [[] for _ in orbits]
     for (kind, *_), rows in groupby(ways, key=itemgetter(0)):
         _, numbers, tasks = zip(*rows, strict=True)
-        branches = _from_special(_stacked(tasks), kind, points)
+        branches = _from_special(_stacked(tasks), kind, points, grazings)
         for i, branch in zip(numbers, branches, strict=True):
             parts[i].append(branch)
     return [_whole(some) if some else each for some, each in zip(parts, orbits, strict=True)]
@@ -237,7 +245,7 @@ def _in_rows(several: list) -> Any:
     return first.at(**values) if values else first
 
 
-def _from_special(task: Task, kind: str, points: int) -> list:
+def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
     """Return branches that start at orbits of one kind, or the reasons why there are none."""
     if kind not in STARTS:
         return [OrbitNotFound(f"{kind}: branches end at orbits of this kind")] * len(task.z)
@@ -249,7 +257,7 @@ def _from_special(task: Task, kind: str, points: int) -> list:
     # The parameter stays between the goal and its mirror image on the other side of the start.
     behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
     window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
-    branches = followed(start.take(going), window, task.until[going], points, kind)
+    branches = followed(start.take(going), window, task.until[going], points, kind, grazings)
     name = task.equations.along[-1].name
     for i, branch in zip(going, branches, strict=True):
         path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
@@ -303,11 +311,6 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
         A list if n or a parameter of the ball is an array. If a branch ends before a limit, for
         example because an impact grazes, the limit is an OrbitNotFound with this reason.
 
-    Notes
-    -----
-    A law without a rebound, r = 0, may take minutes, because its contacts last longer and longer as
-    Λ falls.
-
     Examples
     --------
     >>> from bouncing_ball_beyond import Rigid
@@ -320,7 +323,8 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
     between = _between_limits(OrbitEquations(row, 1, periods, table=table))
     rows = len(between)
     until = ["saddle-node"] * rows + ["period doubling"] * rows
-    branches = _follow_all(between * 2, "amplitude", [1e-6] * rows + [None] * rows, 500, until)
+    to = [1e-6] * rows + [None] * rows
+    branches = _follow_all(between * 2, "amplitude", to, 500, until, grazings=False)
     found = []
     for below, above in zip(branches[:rows], branches[rows:], strict=True):
         if isinstance(below, OrbitNotFound):
@@ -335,7 +339,9 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
     """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
     of_kind = (each for each in special if each.kind == kind)
-    return next(of_kind, OrbitNotFound(f"no {kind} before the branch ends: {end}"))
+    where = f"at the {end}" if end.startswith(tuple(KINDS)) else f"where {end}"
+    why = f"there is no {kind}: the branch of orbits ends before it, {where}"
+    return next(of_kind, OrbitNotFound(why))
 
 
 def _between_limits(equations: OrbitEquations) -> list:

@@ -1,7 +1,7 @@
 """Curves of special orbits in two parameters.
 
 A curve solves the equations of an orbit and one more equation, which sets the test function of the
-kind to zero (docs/orbits.md).
+kind to zero (docs/equations.md).
 
 Source: Y. A. Kuznetsov, *Elements of Applied Bifurcation Theory*, chapter 9.
 """
@@ -17,7 +17,6 @@ from bouncing_ball_beyond.balls import brief
 from bouncing_ball_beyond.branches import SpecialCurve, both_ways
 from bouncing_ball_beyond.equations import (
     KINDS,
-    OF_RESTS,
     OrbitEquations,
     OrbitNotFound,
     PeriodicOrbit,
@@ -91,7 +90,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
             f"along = {brief(along)}: must be the names of two different parameters, such as"
             " ('amplitude', 'restitution')"
         )
-    allowed = KINDS.keys() - {"lost release", "vanishing flight", *OF_RESTS}
+    allowed = KINDS.keys() - {"lost release", "vanishing flight"}
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"

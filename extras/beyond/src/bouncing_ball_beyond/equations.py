@@ -6,7 +6,7 @@ values of the p parameters that may change. Functions take many orbits at once, 
 
 A *leg* is a contact and the flight after it. The q equations of a leg require that the contact ends
 at a release (:mod:`.balls`), and the flight at the next impact. ``legs`` are their residuals. The
-mathematics is in docs/orbits.md.
+mathematics is in docs/equations.md.
 """
 
 from collections.abc import Callable
@@ -63,7 +63,7 @@ class LinearizedLegs:
     def rows(self, which: Any) -> "LinearizedLegs":
         """Select rows."""
         taken = self.legs[which], self.derivatives[which], self.flights[which]
-        return type(self)(*taken)
+        return LinearizedLegs(*taken)
 
     @cached_property
     def maps(self) -> NDArray:
@@ -324,7 +324,7 @@ class OrbitEquations:
 
         For a multiplier μ the equation is χ = 1 - μ tr + det = 0. Its gradient is computed from
         differences of the products χ ∏ρ and ∏ρ, where ρ is the rate of the release function of a
-        contact. These products have no poles, but χ has poles (docs/orbits.md).
+        contact. These products have no poles, but χ has poles (docs/equations.md).
         """
         rows, length = z.shape
         nodes, weights, step = CURVE if len(self.along) > 1 else POINT
@@ -483,19 +483,13 @@ class OrbitEquations:
         It is the minimum over all impacts of one of these quantities:
 
         1. for contacts, the rate of the release function;
-        2. for instantaneous impacts on the table, δ′, which needs no derivatives;
-        3. for instantaneous impacts below the table, the first maximum of the gap.
+        2. for instantaneous impacts, δ′, which needs no derivatives.
         """
         if self.ball.has_duration:
             linear = self.linearized(z) if linear is None else linear
             return linear.derivatives[..., 0, 2].min(axis=-1)
         flights = flights or self.ends(z)
-        if np.all(flights.gap >= 0):
-            return flights.speed.min(axis=-1)
-        depth = turns_back(
-            lambda t: -flights.at(t)[1], lambda t: -flights.at(t)[0], flights.flight, first=True
-        )
-        return -depth.max(axis=-1)
+        return flights.speed.min(axis=-1)
 
     def halves(self, z: NDArray) -> NDArray:
         """First half of each orbit minus its second half, shape (rows, kq/2).
@@ -586,7 +580,6 @@ def turns_back(
     value: Callable,
     ends: NDArray,
     *,
-    first: bool = False,
     among: NDArray | None = None,
     waves: int = 1,
     slopes: NDArray | None = None,
@@ -603,8 +596,6 @@ def turns_back(
         The function.
     ends : array
         Ends of the intervals.
-    first : bool
-        Whether to return the first local minimum instead of the smallest.
     among : array, shape (..., m), optional
         Additional times at which the slope is sampled.
     waves : int
@@ -620,7 +611,7 @@ def turns_back(
     if not turns.any():
         return np.full(ends.shape, FAR)
     lowest = np.where(turns, value(times)[..., 1:], np.inf).argmin(axis=-1)
-    which = (turns.argmax(axis=-1) if first else lowest)[..., np.newaxis]
+    which = lowest[..., np.newaxis]
     low = np.take_along_axis(times, which, axis=-1)
     high = np.take_along_axis(times, which + 1, axis=-1)
     middle = (low + high) / 2
@@ -676,7 +667,6 @@ class PeriodicOrbit:
             "periods": self.periods,
             **{name: x for name, x in self.parameters.items() if FUNDAMENTAL.get(name) != x},
             **({"release": "force"} if getattr(self.ball, "release", "") == "force" else {}),
-            **self._further,
             "phase": self.phase,
             "contact_duration": self.contact_duration,
             "impact_velocity": self.impact_velocity,
@@ -694,11 +684,6 @@ class PeriodicOrbit:
                 *(f"  {name:{width}}  {_short(row)}" for name, row in rows.items()),
             ]
         )
-
-    @property
-    def _further(self) -> dict:
-        """Additional rows of the text, from subclasses."""
-        return {}
 
     @property
     def impacts(self) -> int:
@@ -888,22 +873,6 @@ class PeriodicOrbit:
         """Largest modulus of the residuals of the equations."""
         return float(np.abs(self._linear.legs).max())
 
-    @cached_property
-    def digits_left(self) -> float:
-        """Number of certain decimal places of the times and speeds of the impacts.
-
-        Let J be the Jacobian. Rounding errors of z and of the terms of the equations are eps |J|
-        |z|. They move the solution by at most |J⁻¹| times these errors (R. D. Skeel, J. ACM 26,
-        494, 1979).
-        """
-        _, jacobian = self.equations.residuals(self.z[np.newaxis])
-        size = self.equations.size
-        # The error of a phase is the error of the time from which it is computed.
-        z = np.abs(self.z)
-        rounding = np.finfo(float).eps * np.abs(jacobian[0]) @ z
-        error = np.abs(np.linalg.pinv(jacobian[0, :, :size])) @ rounding
-        return float(-np.log10(error.max()))
-
     def distance(self, other: "PeriodicOrbit") -> float:
         """Largest difference between the phases, speeds or T of two orbits.
 
@@ -962,20 +931,8 @@ KINDS = {
         lambda equations, z, linear: np.linalg.norm(equations.halves(z), axis=1),
         "the orbit merges with one of half its period",
     ),
-    "end of a rest": Kind(
-        lambda equations, z, linear: equations.rest(z),
-        "the ball no longer comes to rest before it leaves the table",
-    ),
-    "lost lift-off": Kind(
-        lambda equations, z, linear: equations.fall(z),
-        "the table no longer falls faster than a ball",
-    ),
 }
 """Kinds of special orbits of a branch, by name."""
-
-
-OF_RESTS = ("end of a rest", "lost lift-off")
-"""Kinds of special orbits of orbits with a rest."""
 
 
 SINGULAR = slice(2, 5)

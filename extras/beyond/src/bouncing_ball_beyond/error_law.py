@@ -9,7 +9,6 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
@@ -30,17 +29,6 @@ QUANTITIES = (
     "period_doubling",
 )
 """Quantities of the n-T orbit at an amplitude, and the amplitudes of its two bifurcations."""
-
-POINTS = chebyshev.chebpts2(13)
-ROUNDS = 12
-"""Positions of samples in a bracket, and maximum number of times a bracket gets smaller."""
-SMALL = 1e-11
-"""Size of the last coefficients below which a polynomial is exact within rounding.
-
-An error of 1e-2 has rounding errors of 1e-14.
-
-At half and at twice: thresholds change by 1e-10.
-"""
 
 
 class FreeImpact(NamedTuple):
@@ -291,66 +279,6 @@ def law_coefficients(
     return {name: np.imag(error) / H for name, error in errors.items()}
 
 
-def law_remainders(
-    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
-) -> dict:
-    """Estimate upper limits of the remainders of the error law.
-
-    A remainder is the exact error minus the error of the law. The upper limit is Sη. The
-    scale S is computed from the moduli of the terms of the law, and
-    η = D max(1, Λ max |W″|) + D (1 + |1 - Y₀|)/(r v₀). For the period doubling, Λ is the Λ of the
-    doubling, and Y₀ is Y_D. The theorem gives the order of the limit in D. The factor 1 of Sη is
-    fitted to random orbits and tables (docs/error-law.md).
-
-    Parameters
-    ----------
-    impact : Ball or FreeImpact
-        The ball, or its free impact.
-    amplitude : array_like
-        Λ.
-    n : int
-        Number of periods of the table from impact to impact, if a ball is given.
-    table : Table
-        Waveform of the table.
-
-    Returns
-    -------
-    dict of array
-        Upper limits of the relative errors by quantity.
-    """
-    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    amplitude = off_rounding(impact, amplitude, table)
-    reference = restitution_values(impact, amplitude, table)
-    delay = impact.centroid
-    shift = np.abs(impact.shift)
-    push = table.instant(impact.line, amplitude)[2]
-
-    def loaded(push: NDArray) -> NDArray:
-        return impact.duration * (1 + np.abs(1 - push)) / (impact.restitution * impact.speed)
-
-    def small(amplitude: NDArray, push: NDArray) -> NDArray:
-        return impact.duration * np.maximum(1, amplitude * table.bounds[2]) + loaded(push)
-
-    eta = small(amplitude, push)
-    doubled, phase = table.amplitude_at(impact.line, impact.doubling)
-    divisor = impact.doubling**2 - impact.line * doubled * table(phase, 3)
-    steepness = doubled**2 * table.bounds[2] * table.bounds[3] / divisor
-    with np.errstate(invalid="ignore", divide="ignore"):
-        later = shift * (1 + np.abs(1 - push)) / table.instant(impact.line - shift, amplitude)[2]
-        node = shift / impact.line
-        doubling = (node + delay / impact.half) * steepness**2 * small(doubled, impact.doubling)
-        return {
-            "max_height": eta
-            * (impact.line * later + impact.speed * delay)
-            / reference["max_height"],
-            "bounce_velocity": eta * (impact.duration - delay) / reference["bounce_velocity"],
-            "phase": eta * (later + delay) / reference["phase"],
-            "apparent_restitution": eta * loaded(push),
-            "saddle_node": eta * node,
-            "period_doubling": doubling + 0 * reference["period_doubling"],
-        }
-
-
 def law_thresholds(
     contacts: SpringDamper | ForceLaw | Callable,
     *,
@@ -442,36 +370,6 @@ def _first_stretch(
         args=(np.copysign(tolerance, value), amplitude, *impact),
     )
     return np.where(beyond.any(axis=0), found.x, end + 0 * errors[-1])
-
-
-@np.errstate(invalid="ignore", divide="ignore")
-def _last_zero(excess: Callable, bracket: tuple, places: NDArray) -> NDArray:
-    """Find the last point in each bracket at which a function falls to zero.
-
-    The function may be NaN before this point.
-    """
-    low, high = bracket
-    columns = np.arange(low.size)
-    for _ in range(ROUNDS):
-        middle = (low + high) / 2
-        half = (high - low) / 2
-        values = excess(middle + half * POINTS[:, np.newaxis], places)
-        beyond = ~(values[1:-1] <= 0)
-        after = np.where(beyond.any(axis=0), POINTS.size - 1 - beyond[::-1].argmax(axis=0), 1)
-        above = values[after - 1, columns]
-        below = values[after, columns]
-        ends = POINTS[after - 1], POINTS[after]
-        polynomial = np.linalg.solve(chebyshev.chebvander(POINTS, POINTS.size - 1), values)
-        slopes = chebyshev.chebder(polynomial)
-        x = ends[0] + (ends[1] - ends[0]) * above / (above - below)
-        for _ in range(4):
-            slope = chebyshev.chebval(x, slopes, tensor=False)
-            x = np.clip(x - chebyshev.chebval(x, polynomial, tensor=False) / slope, *ends)
-        error = np.abs(polynomial[-2:]).max(axis=0) / np.abs(slope)
-        low, high = (middle + half * end for end in ends)
-        if np.all(half * error <= SMALL):
-            break
-    return middle + half * x
 
 
 def ball_at_ratio(
@@ -809,7 +707,8 @@ def error_thresholds(
         ratio = np.full(last.size, np.nan)
         if places.size:
             bracket = np.log(grid[last[places]]), np.log(grid[last[places] + 1])
-            ratio[places] = np.exp(_last_zero(excess, bracket, places))
+            at = find_root(lambda x, at: excess(x[np.newaxis], at)[0], bracket, args=(places,))
+            ratio[places] = np.exp(at.x)
         for j, name in enumerate(names):
             of_name = ratio.reshape(len(names), *shape)[j]
             unstable = np.zeros(shape, int)

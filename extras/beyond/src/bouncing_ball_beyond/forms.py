@@ -1,6 +1,6 @@
 """Normal forms of saddle-nodes and period doublings, and orbits next to a grazing flight.
 
-The derivation is in docs/orbits.md. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation
+The derivation is in docs/equations.md. Sources: Y. A. Kuznetsov, *Elements of Applied Bifurcation
 Theory*, sections 4.3, 4.5 and 5.4; Y. A. Kuznetsov, W. Govaerts, E. J. Doedel and A. Dhooge, SIAM
 J. Numer. Anal. 43, 1407 (2005).
 """
@@ -58,7 +58,7 @@ class Curvature(NamedTuple):
     derivatives : array
         As in `LinearizedLegs`, without rows.
     first, second : array
-        B(v, ·) and C(v, v, ·) of docs/orbits.md.
+        B(v, ·) and C(v, v, ·) of docs/equations.md.
     """
 
     derivatives: NDArray
@@ -100,7 +100,7 @@ def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> flo
 
 
 def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
-    """Vectors v and w of docs/orbits.md. Their scales follow from |v_0| = 1 and p v_0 = 1."""
+    """Vectors v and w of docs/equations.md. Their scales follow from |v_0| = 1 and p v_0 = 1."""
     q = derivatives.shape[-2]
     left, _, right = np.linalg.svd(closed(derivatives, multiplier))
     v = right[-1]
@@ -385,7 +385,7 @@ def grazing_form(orbit: PeriodicOrbit) -> GrazingForm:
 
     If the flight would be at the depth d below the table, an additional impact changes the velocity
     by S √d. S is (1 + r) √(2a), where r belongs to the speed 0. For contacts of finite duration S
-    is 0 (docs/orbits.md).
+    is 0 (docs/equations.md).
 
     Parameters
     ----------

@@ -14,16 +14,14 @@ Points are (p, v, load), arrays of the shape (3, ...).
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import H, broadcast_named
-
-if TYPE_CHECKING:
-    from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.forces import Force
 
 FIRST_SPEED, FIRST_LOAD = 12.0, 6.0
 """Closing speed and load up to which a new law is judged.
@@ -39,6 +37,10 @@ LADDER = 2.0 ** (np.arange(-23, 1) / 2)
 They are so close that r changes little from one to the next. A force with c v (1 - v²/9) gains
 energy above 3.5, and its free impacts do not end above 4.9.
 """
+
+START_SHARES = 4.0 ** np.arange(-3, 1)
+"""Speeds at the start of contacts at which a force that depends on them is judged, divided by the
+largest. At each, the ball is as fast. Its energy is asked for on the whole `LADDER`."""
 
 NO_GAIN = 1 + 1e-6
 """Largest ratio of the speeds after and before a free impact that is a rounding error.
@@ -86,7 +88,7 @@ TOO_FAST = (
 )
 
 
-def check_force(law: "ForceLaw") -> None:
+def check_force(law: Force) -> None:
     """Raise ValueError unless the force of a new law meets the requirements.
 
     In a row of balls, the balls with an extreme value of a parameter are judged.
@@ -101,15 +103,27 @@ def check_force(law: "ForceLaw") -> None:
 
 
 @np.errstate(all="ignore")
-def judge(law: "ForceLaw", speed: float, load: float) -> None:
+def judge(law: Force, speed: float, load: float) -> None:
     """Raise ValueError unless a force is right for balls up to a closing speed and a load."""
-    highest = law._energies[1].max()
+    highest = law.energies[1].max()
     if highest <= 0:
         raise ValueError(
             "force: stops no ball; f(p, 0) must be positive at positive p: check its sign"
         )
     speed = min(speed, 0.999 * np.sqrt(2 * highest))
-    given = {**law.values, "u": 1.0}
+    if "start_speed" in law.needs:
+        for start in speed * START_SHARES:
+            _check_force(law, start, load, start)
+        _check_energy(law, speed)
+        return
+    damping, v = _check_force(law, speed, load, 1.0)
+    if not np.all(damping * v >= -ROUNDED * np.abs(v) * (1 + np.abs(damping))):
+        _check_energy(law, speed)
+
+
+def _check_force(law: Force, speed: float, load: float, start_speed: float) -> tuple:
+    """Check the force for balls up to a closing speed. Return damping forces, and their rates."""
+    given = {**law.values, "u": start_speed}
 
     def force(points: Any) -> NDArray:
         p, v, a = points
@@ -136,18 +150,20 @@ def judge(law: "ForceLaw", speed: float, load: float) -> None:
     _check_root(law, force, law.depth(min(1.0, speed)))
     if law.release == "force":
         _check_release(force, along_v)
-    _check_energy(law, force, along_v, speed)
+    p, v, a = along_v
+    return force(along_v) - force((p, 0 * v, a)), v
 
 
-def _check_call(law: "ForceLaw") -> None:
+def _check_call(law: Force) -> None:
     """Raise ValueError unless the force and its kinks accept arrays of complex numbers."""
-    p = np.array([0.5, 1.0]) + 1j * H
+    p = np.array([0.5, 1.0, 0.5, 1.0]) + 1j * H
+    v = np.array([0.5, 1.0, -0.5, -1.0]) + 1j * H
     functions = {"force": lambda p, v, **own: law.force_at(p, v, 1.0, {**own, "u": 1.0})}
     functions |= {f"kinks[{i}]": kink for i, kink in enumerate(law.kinks)}
     for name, function in functions.items():
         try:
             with np.errstate(all="ignore"):
-                value = function(p, p, **law.values)
+                value = function(p, v, **law.values)
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
             raise ValueError(
@@ -161,11 +177,18 @@ def _check_call(law: "ForceLaw") -> None:
             raise ValueError(
                 f"{name}: must return an array of the shape of p and v, {p.shape}, not {found}"
             )
+        # A deeper point, and the same points in reverse, between two equal calls.
+        with np.errstate(all="ignore"):
+            function(1e3 * p, v, **law.values)
+            again = function(p[::-1], v[::-1], **law.values)[::-1]
+        if not np.array_equal(value, again, equal_nan=True):
+            raise ValueError(
+                f"{name}: has another value when it is asked again, but must not remember other"
+                " depths or rates; replace a memory as docs/laws.md shows"
+            )
 
 
-def _check_lines(
-    law: "ForceLaw", force: Callable, name: str, points: NDArray, usual: float
-) -> None:
+def _check_lines(law: Force, force: Callable, name: str, points: NDArray, usual: float) -> None:
     """Check the force on lines of points, shape (3, lines, points), along which ``name`` changes.
 
     The change of the force on a segment between neighbouring points must be the integral of its
@@ -215,9 +238,7 @@ def _check_lines(
     _check_kinks(law, force, name, *broken)
 
 
-def _check_kinks(
-    law: "ForceLaw", force: Callable, name: str, whole: NDArray, segments: NDArray
-) -> None:
+def _check_kinks(law: Force, force: Callable, name: str, whole: NDArray, segments: NDArray) -> None:
     """Raise ValueError if there is a kink on segments, and the law does not declare it.
 
     The segments are parts of the ``whole`` segments.
@@ -248,7 +269,7 @@ def _where(p: float, v: float, load: float) -> str:
     return at if load == 1 else f"{at}, load = {round(load, 4) + 0.0:.2g}"
 
 
-def _check_root(law: "ForceLaw", force: Callable, depth: float) -> None:
+def _check_root(law: Force, force: Callable, depth: float) -> None:
     """Raise ValueError unless polynomials in q = p^{1/m} converge to the force at q = 0.
 
     If they do, its Legendre coefficients on a short range of q decay geometrically.
@@ -286,17 +307,13 @@ def _check_release(force: Callable, points: NDArray) -> None:
         )
 
 
-def _check_energy(law: "ForceLaw", force: Callable, points: NDArray, speed: float) -> None:
-    """Raise ValueError if the force adds energy to free impacts.
+def _check_energy(law: Force, speed: float) -> None:
+    """Raise ValueError if the force adds energy to free impacts up to a closing speed.
 
-    A force that opposes the rate everywhere cannot. Of other forces, free impacts are computed.
+    A force that opposes the rate everywhere cannot, and need not be asked.
     """
-    p, v, load = points
-    damping = force(points) - force((p, 0 * v, load))
-    if np.all(damping * v >= -ROUNDED * np.abs(v) * (1 + np.abs(damping))):
-        return
     speeds = speed * LADDER
-    ends = law._followed(0.0, speeds, 0.0, 0.0)[1].speed
+    ends = law.after_free_impacts(speeds)
     keeps = ends <= NO_GAIN * speeds
     if not keeps.all():
         k = np.argmin(keeps)

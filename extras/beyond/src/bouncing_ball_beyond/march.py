@@ -89,6 +89,11 @@ LARGEST_TURN = 0.3
 At half: 30 % more points. At twice: 11 % fewer.
 """
 
+STALLED = 1e-6
+"""Share of the steps in all unknowns but T below which a branch ends: contacts last ever longer,
+and nothing else changes. The ball then no longer leaves the table, or no longer hits it.
+"""
+
 BEFORE_END = 1e-3
 """Distance between the end of a branch and the extra point before this end.
 
@@ -402,6 +407,10 @@ def march(
         easy = (cosine > 0.99) & (turned < LARGEST_TURN / 2)
         moved = zip(here, there, strict=True)
         here = Points(*(np.where(good[:, np.newaxis], new, old) for old, new in moved))
+        ahead = np.abs(unit(here.tangents / units))
+        if equations.ball.has_duration:
+            ahead[:, 2 : equations.size : equations.unknowns] = 0.0
+        stalled = ahead.max(axis=1) < STALLED
         longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
         step = np.where(good, longer, length / 2)
         away = _from_start(equations, first, here, units)
@@ -416,6 +425,9 @@ def march(
             kind = until[rows[j]]
             passed = np.array(equations.kinds)[crossed[j]]
             ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
+            if stalled[j] and not ends[rows[j]]:
+                nearest = np.abs(here.tests[j, SINGULAR]).argmin()
+                ends[rows[j]] = equations.kinds[SINGULAR][nearest]
             if not ends[rows[j]] and len(paths[rows[j]]) >= points:
                 ends[rows[j]] = f"the maximum of {points} points is reached"
         for j in np.flatnonzero(step < SHORTEST_STEP):

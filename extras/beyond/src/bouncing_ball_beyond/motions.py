@@ -25,7 +25,6 @@ from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.impact_map import impact_map
 from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, solved
-from bouncing_ball_beyond.rests import orbit_with_rest
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     axis,
@@ -981,9 +980,6 @@ def orbit_of_motion(
 ) -> PeriodicOrbit:
     """Find the periodic orbit on which a ball ends, and correct it by Newton's method.
 
-    If the ball has instantaneous impacts and its motion is locked, the orbit is a
-    :class:`.RestOrbit`.
-
     Parameters
     ----------
     ball, amplitude, phase, velocity, relative_velocity, impacts, table
@@ -996,8 +992,7 @@ def orbit_of_motion(
     Raises
     ------
     OrbitNotFound
-        If the motion does not repeat, if the ball rests several times before it repeats, or if a
-        :class:`.Corrected` ball rests on the table.
+        If the motion does not repeat, or if the ball comes to rest in its motion.
     ValueError
         As :func:`.simulate`.
 
@@ -1021,10 +1016,7 @@ def orbit_of_motion(
     on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)
     turns, tau, u, T, duration, *_ = bounce(on_orbit, k)[0][:, :, 0].T
     if are_rests(T, duration).any():
-        found = orbit_with_rest(ball, amplitude=amplitude, table=table)
-        if found.periods != m:
-            raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
-        return found
+        raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
     z = row_of(ball, PERIOD * turns + tau, u, T, balls.amplitude)
     equations = OrbitEquations(ball, k, m, table=table)
     return solved(equations, z, "the orbit on which the ball ends")

@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from bouncing_ball_beyond.balls import (
     Ball,
     brief,
-    check_ball,
     check_one_ball,
     check_whole_numbers,
     checked,
@@ -24,7 +23,6 @@ from bouncing_ball_beyond.equations import (
     OrbitNotFound,
     PeriodicOrbit,
     alone,
-    row_of,
 )
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import (
@@ -34,7 +32,7 @@ from bouncing_ball_beyond.search import (
     rows_of,
     shortest_contacts,
 )
-from bouncing_ball_beyond.tables import SINE, Table, check_table, finite_row
+from bouncing_ball_beyond.tables import SINE, Table, check_table
 
 
 def solved(equations: OrbitEquations, z: NDArray, what: str) -> PeriodicOrbit:
@@ -203,68 +201,3 @@ def orbits(
         return []
     found = [equations.orbit(row) for row in z[equations.admissible(z)]]
     return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))
-
-
-def orbit_near(
-    ball: Ball,
-    *,
-    amplitude: float,
-    phases: ArrayLike,
-    velocities: ArrayLike,
-    table: Table = SINE,
-) -> PeriodicOrbit:
-    """Find the periodic orbit near a guess.
-
-    The number of periods follows from the velocities.
-
-    Parameters
-    ----------
-    ball : Ball
-        A single ball.
-    amplitude : float
-        Λ > 0.
-    phases : array, shape (impacts,)
-        Guess of the phases of the table at the impacts.
-    velocities : array, shape (impacts,)
-        Guess of the absolute velocities of the ball before the impacts.
-    table : Table
-        Waveform of the table, by default a sine.
-
-    Returns
-    -------
-    PeriodicOrbit
-
-    Raises
-    ------
-    OrbitNotFound
-        If Newton's method does not converge, if an impact of the guess does not end, or if the
-        guess takes less than half a period.
-    ValueError
-        If an argument is out of range, or if the shapes differ.
-    """
-    check_ball(ball)
-    amplitude = one_amplitude(amplitude)
-    tau = finite_row("phases", np.atleast_1d(phases))
-    before = finite_row("velocities", np.atleast_1d(velocities))
-    if tau.shape != before.shape:
-        raise ValueError("phases, velocities: must have the same length, the number of impacts")
-    check_table(table)
-    u = amplitude * table(tau, 1) - before
-    T = ball.first_release(tau, u, amplitude, table=table)
-    if not np.isfinite(T).all():
-        raise OrbitNotFound("an impact of the guess does not end: the ball stays on the table")
-    impact = ball.contact(tau, u, T, amplitude, table=table)
-    bounce = impact.speed + amplitude * table(tau + impact.duration, 1)
-    lengths = impact.duration + bounce - np.roll(before, -1)
-    turns = np.round((tau + lengths - np.roll(tau, -1)) / (2 * np.pi))
-    times = tau[0] + np.append(0.0, np.cumsum(np.roll(tau, -1) - tau + 2 * np.pi * turns))
-    periods = int(np.round((times[-1] - times[0]) / (2 * np.pi)))
-    if periods < 1:
-        raise OrbitNotFound(
-            "the guess lasts less than half a period: check the velocities of the ball before its"
-            " impacts; a falling ball has a negative velocity"
-        )
-    z = row_of(ball, times[:-1], u, T, amplitude)
-    equations = OrbitEquations(ball, len(u), periods, table=table)
-    what = f"an orbit with {len(u)} impacts in {periods} periods near this guess"
-    return solved(equations, z, what)

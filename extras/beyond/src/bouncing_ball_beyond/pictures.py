@@ -30,8 +30,6 @@ MARKS = {
     "grazing of an impact": "<",
     "vanishing flight": ">",
     "lost release": "X",
-    "end of a rest": "d",
-    "lost lift-off": "x",
 }
 """Marker of each kind of special orbit."""
 

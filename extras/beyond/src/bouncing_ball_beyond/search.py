@@ -137,17 +137,6 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
     )
 
 
-def shown(parts: list, what: str) -> Any:
-    """Iterate over parts of a search. A terminal or notebook shows how many are done."""
-    # Importing rich takes 0.1 s.
-    from rich.console import Console
-    from rich.progress import track
-
-    console = Console(stderr=True)
-    seen = console.is_terminal or console.is_jupyter
-    return track(parts, what, transient=True, console=console, disable=not seen)
-
-
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
     z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
@@ -177,7 +166,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     within: dict[str, Any] = {"periods": equations.periods, "table": table}
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
     gap, rate = np.empty((2, *tau.shape))
-    for rows in shown(np.array_split(np.arange(phases.size), phases.size // 32), "orbits"):
+    for rows in np.array_split(np.arange(phases.size), phases.size // 32):
         _, impact = ball.first_impact(tau[rows], u[rows], amplitude, **within)
         time = length - impact.duration
         leaves = tau[rows] + impact.duration, impact.gap, impact.speed

@@ -4,12 +4,13 @@ It is good enough if the ball bounces and its orbit is stable in both models, an
 both models differ by at most a tolerance.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond.balls import Ball, SpringDamper
+from bouncing_ball_beyond.balls import Ball, Rigid, SpringDamper, damping_of, restitution_of
 from bouncing_ball_beyond.error_law import (
     contact_values,
     error_thresholds,
@@ -17,7 +18,8 @@ from bouncing_ball_beyond.error_law import (
     law_errors,
     restitution_values,
 )
-from bouncing_ball_beyond.named_laws import tsuji
+from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.named_laws import linear, tsuji
 from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
@@ -212,7 +214,7 @@ STABLE = ("stable", "stable in one of the two models only", "unstable, its perio
 def on_shaker(
     *,
     frequency: float,
-    restitution: float,
+    restitution: float | Any,
     displacement: float | None = None,
     acceleration: float | None = None,
     mass: float | None = None,
@@ -235,8 +237,10 @@ def on_shaker(
     ----------
     frequency : float
         Frequency of the table in Hz.
-    restitution : float
-        Restitution coefficient r of a free impact, above 0 and up to 1.
+    restitution : float or list of (v, r)
+        Restitution coefficient r of a free impact, above 0 and up to 1; or measured pairs of a
+        closing speed in m/s and r, as a recording of contacts has them. The contact then has the
+        damping of the r of each closing speed; see :func:`.restitution_of`.
     displacement, acceleration : float
         Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
         between the lowest and highest positions of the table. The acceleration, in m/s², is the
@@ -284,12 +288,14 @@ def on_shaker(
     >>> answer.is_good_enough, round(answer.error, 4)
     (False, -0.0121)
     """
-    restitution = positive("restitution", restitution, "")
-    if restitution > 1:
-        raise ValueError(f"restitution = {restitution!r}: must be above 0, up to 1")
     rate = 2 * np.pi * positive("frequency", frequency, "Hz")
     fall = positive("gravity", gravity, "m/s²")
     tolerance = positive("tolerance", tolerance, "")
+    measured = None
+    if np.ndim(restitution):
+        measured = _measured(restitution, fall / rate, n)
+    elif positive("restitution", restitution, "") > 1:
+        raise ValueError(f"restitution = {restitution!r}: must be above 0, up to 1")
     check_table(table)
     if _one_of(displacement=displacement, acceleration=acceleration) == "displacement":
         amplitude = (
@@ -309,24 +315,66 @@ def on_shaker(
         force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
         force *= np.sqrt(fall) / rate**3 / positive("mass", mass, "kg")
         # The duration and the speed are arbitrary, because the damping depends only on r.
-        hertz = tsuji(restitution=restitution, duration=0.1, speed=1.0)
+        hertz = tsuji(restitution=0.5 if measured else restitution, duration=0.1, speed=1.0)
+        if measured:
+            hertz = _damped_by(
+                hertz, lambda u: {"damping": np.sqrt(5) * damping_of(measured(u))}, "stiffness"
+            )
 
         def contacts(times: Values) -> Any:
             return hertz.at(stiffness=force * times**2.5)
 
     else:
-        spring = SpringDamper(1.0, restitution=restitution, release=release)
+        spring: Any = SpringDamper(
+            1.0, restitution=restitution if not measured else 0.5, release=release
+        )
+        if measured:
+            spring = _damped_by(
+                linear(1.0, 0.1, release=release),
+                lambda u: {"damping_ratio": damping_of(measured(u), release)},
+                "frequency_ratio",
+            )
         if contact == "stiffness":
             square = positive("stiffness", stiffness, "N/m") / positive("mass", mass, "kg")
             ratio = np.sqrt(square) / rate
         else:
             contact_time = rate * positive("contact_duration", contact_duration, "s")
-            ratio = float(spring.free(1.0)) / contact_time
+            ratio = float(free_impact(spring, n).duration) / contact_time
 
         def contacts(times: Values) -> Any:
             return spring.at(frequency_ratio=ratio * times)
 
     return _answer(contacts, amplitude, n, tolerance, rate, fall, table)
+
+
+def _measured(pairs: Values, unit: float, n: int) -> Callable:
+    """r(u) of measured pairs, whose speeds are in m/s, if u is in this unit.
+
+    Raises ValueError if the ball of the n-T orbit does not close at a measured speed.
+    """
+    of_speed = restitution_of(pairs)
+
+    def restitution(u: Values) -> Values:
+        return of_speed(u * unit)
+
+    closing = float(free_impact(Rigid(restitution), n).speed) * unit
+    low, high = np.min(pairs, axis=0)[0], np.max(pairs, axis=0)[0]
+    if not low <= closing <= high:
+        raise ValueError(
+            f"restitution: was measured from {low:.3g} to {high:.3g} m/s, but the ball of this"
+            f" orbit closes at {closing:.3g} m/s: measure it there, or give a number"
+        )
+    return restitution
+
+
+def _damped_by(law: ForceLaw, damping: Callable, other: str) -> ForceLaw:
+    """Return a law whose damping depends on the closing speed. ``other`` is its other parameter."""
+
+    def force(p: Values, v: Values, start_speed: Values, **values: Values) -> Values:
+        return law.force(p, v, **values, **damping(start_speed))
+
+    values = {other: law.values[other]}
+    return ForceLaw(force, values, law.root, law.release, needs=("start_speed",))
 
 
 def _half_range(table: Table) -> float:

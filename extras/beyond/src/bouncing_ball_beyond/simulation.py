@@ -312,7 +312,7 @@ def drop(
     nothing = np.zeros(gap.shape)
     w = -amplitude * table(phase, 1)
     balls = Balls(ball, amplitude, nothing, phase, nothing, table)
-    dropped = Leaving(nothing, nothing, nothing, phase, gap, w, emerges=nothing)
+    dropped = Leaving(nothing, nothing, nothing, phase, gap, w)
     time, speed = fly(balls, dropped)
     # A ball on the table starts with an impact, unless the table falls away faster than the ball.
     gravity = 1 + amplitude * table(phase, 2)

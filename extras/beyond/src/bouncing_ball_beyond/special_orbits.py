@@ -36,16 +36,22 @@ class Crossings(NamedTuple):
 
 
 def crossings_of(
-    equations: OrbitEquations, row: NDArray, z: NDArray, slopes: NDArray, tests: NDArray
+    equations: OrbitEquations,
+    row: NDArray,
+    z: NDArray,
+    slopes: NDArray,
+    tests: NDArray,
+    grazings: bool,
 ) -> Crossings:
     """Find all steps in which a test function changes its sign.
 
     ``z`` contains the orbits of all branches, shape (points, N). ``row`` is the branch of each
-    orbit.
+    orbit. If ``grazings`` is False, grazings of flights and releases are not looked for.
     """
     number = np.arange(len(row)) - np.searchsorted(row, row)
     every = equations.rows(row)
-    others = sorted({"grazing of a flight", "grazing of a release"} - {equations.kind})
+    touches = {"grazing of a flight", "grazing of a release"} if grazings else set()
+    others = sorted(touches - {equations.kind})
     names = [*equations.kinds, *others]
     values = np.array([*tests.T, *(KINDS[name].test(every, z, None) for name in others)])
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
@@ -138,9 +144,7 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
         if ((np.abs(value) < 1e-13) | (moved < 1e-14) | ~found).all():
             break
     # Use the iterate with the smallest test function, because rounding errors may move later
-    # iterates away: at the ends of curves the equations are singular, and the length of a rest has
-    # an infinite slope at its end.
-    # Where gravity on the table vanishes, the length of a rest has errors of 1e-8, the root of EPS.
+    # iterates away: at the ends of curves the equations are singular.
     largest = np.abs(crossings.values).max(axis=0)
     return nearest, found & (least < 1e-6 * np.maximum(largest, 0.1))
 

@@ -5,15 +5,17 @@ analytic in τ and in its parameters, the sizes and phases of the harmonics. Com
 give all derivatives.
 """
 
+import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bouncing_ball_beyond.one_ball import CHATTER, EPS, PERIOD
+from bouncing_ball_beyond.records import fit_harmonics, overshoot
 
 SAMPLES = 64
 """Number of samples of W in a period of its highest harmonic.
@@ -102,6 +104,29 @@ def highest(value: Any) -> int:
     return int(value)
 
 
+class MeasuredTable(NamedTuple):
+    """Result of :meth:`Table.of_record`.
+
+    Attributes
+    ----------
+    table : Table
+        Waveform W, scaled so that the maximum of |W″| is 1.
+    amplitude, amplitude_error : float
+        Amplitude Λ of the table, and its standard error.
+    frequency, frequency_error : float
+        Frequency of the table in Hz, and its standard error.
+    residual : float
+        Root mean square of what the table does not explain, in m/s².
+    """
+
+    table: "Table"
+    amplitude: float
+    amplitude_error: float
+    frequency: float
+    frequency_error: float
+    residual: float
+
+
 @dataclass(frozen=True, init=False, eq=True)
 class Table:
     """A periodic waveform W(τ) = Σ a sin(kτ + p).
@@ -168,7 +193,8 @@ class Table:
             highest harmonic for measured heights, because the acceleration amplifies noise by k².
             A bifurcation may depend on this choice: for a triangle and r = 0.8, the Λ of the period
             doubling is 1.38, 1.16, 1.07 and 1.03 times the Λ of the saddle-node, with 5, 9, 15 and
-            25 harmonics. Compare bifurcations with those of twice as many harmonics.
+            25 harmonics. Compare bifurcations with those of twice as many harmonics. If the
+            acceleration jumps, this does not help, and a warning gives the factor of Λ.
         acceleration : bool
             Whether the values are accelerations.
 
@@ -221,6 +247,14 @@ class Table:
                 " because of noise, a jump, or equal samples at both ends of a period; give the"
                 " highest harmonic to keep, such as harmonics=5"
             )
+        factor = overshoot(pulls)
+        if factor > 1:
+            warnings.warn(
+                "values: the acceleration jumps, and its harmonics overshoot a jump, however many"
+                f" they are: Λ is here {factor:.3g} times the largest acceleration without the"
+                " overshoot, divided by gravity; give samples with a smooth step to avoid this",
+                stacklevel=2,
+            )
         return cls._of_accelerations(k, pulls)[0]
 
     @classmethod
@@ -232,18 +266,22 @@ class Table:
         frequency: float,
         harmonics: Any,
         gravity: float = 9.80665,
-    ) -> tuple["Table", float]:
+    ) -> "MeasuredTable":
         """Fit a table to a measured acceleration by least squares.
+
+        The frequency is fitted, too, because an error of 0.01 % makes Λ of a minute's record too
+        small by a tenth.
 
         Parameters
         ----------
         time : array_like, shape (samples,)
-            Times in s. At the time 0 the phase of the table is 0.
+            Times in s. At the time 0 the phase of the table is 0. The times may have gaps.
         acceleration : array_like, shape (samples,)
-            Upward acceleration in m/s². A constant part, such as gravity, is ignored.
+            Upward acceleration in m/s². A constant part, such as gravity, and a slow drift are
+            ignored.
         frequency : float
-            Frequency of the table in Hz. If the table has two frequencies, give their greatest
-            common divisor.
+            Frequency of the table in Hz, within 3 %. If the table has two frequencies, give their
+            greatest common divisor.
         harmonics : int or list of int
             Highest harmonic, or the orders of all harmonics to fit, such as [12, 17].
         gravity : float
@@ -251,25 +289,25 @@ class Table:
 
         Returns
         -------
-        table : Table
-            Waveform W, scaled so that the maximum of |W″| is 1.
-        amplitude : float
-            Amplitude Λ of the table.
+        MeasuredTable
+            The table, Λ and the frequency, with standard errors.
 
         Raises
         ------
         ValueError
-            If an argument is out of range, if the record is too short for the harmonics, or if more
-            than half of the variance of the acceleration is not fitted.
+            If an argument is out of range, or if the record is too short for the harmonics. If the
+            fit leaves a tone that noise does not explain: a harmonic is missing, the frequency is
+            wrong, or the motion of the table changed during the record.
 
         Examples
         --------
         >>> time = np.arange(0.0, 0.83, 1e-3)
         >>> signal = 9.81 + 7.0 * np.sin(157.08 * time) + 2.0 * np.sin(471.24 * time)
-        >>> known = {"frequency": 157.08 / PERIOD, "harmonics": [1, 3]}
-        >>> table, amplitude = Table.of_record(time, signal, **known)
-        >>> round(amplitude * 9.80665 * table.sizes[0], 4), table.orders
+        >>> found = Table.of_record(time, signal, frequency=25.1, harmonics=[1, 3])
+        >>> round(found.amplitude * 9.80665 * found.table.sizes[0], 4), found.table.orders
         (7.0, (1, 3))
+        >>> round(found.frequency, 6)
+        25.000058
         """
         time = finite_row("time", time)
         acceleration = finite_row("acceleration", acceleration)
@@ -287,29 +325,34 @@ class Table:
                 f"time, acceleration: have {len(time)} and {len(acceleration)} samples, but must"
                 " have equally many"
             )
-        if len(time) < 2 * len(k) + 2 or np.ptp(time) * frequency < 1 - 1 / len(time):
+        if len(time) < 2 * len(k) + 4 or np.ptp(time) * frequency < 1 - 1 / len(time):
             raise ValueError(
                 f"time: {len(time)} samples of {np.ptp(time) * frequency:.3g} periods are too few"
                 f" for {len(k)} harmonics"
             )
-        angles = PERIOD * frequency * np.multiply.outer(time, k)
-        columns = np.hstack([np.ones((len(time), 1)), np.cos(angles), np.sin(angles)])
-        fitted, _, rank, _ = np.linalg.lstsq(columns, acceleration, rcond=1e-6)
-        if rank < columns.shape[1]:
-            raise ValueError(
-                "time: the samples cannot distinguish all harmonics: give fewer harmonics or more"
-                " samples"
-            )
-        cosines, sines = np.split(fitted[1:] / gravity, 2)
         if np.ptp(acceleration) <= 1e-12 * np.abs(acceleration).max():
             raise ValueError("acceleration: is constant: the table would be at rest")
-        unexplained = np.var(acceleration - columns @ fitted) / np.var(acceleration)
-        if unexplained > 0.5:
-            raise ValueError(
-                f"frequency, harmonics: {unexplained:.0%} of the variance of the acceleration is"
-                " not fitted: is the frequency right, and are all harmonics given?"
-            )
-        return cls._of_accelerations(k, cosines - 1j * sines)
+        order = np.argsort(time, kind="stable")
+        fit = fit_harmonics(time[order], acceleration[order], frequency, k)
+        table, largest = cls._of_accelerations(k, fit.waves)
+        # The error of the largest acceleration is that of the sum at its phase.
+        tau = np.linspace(0, PERIOD, SAMPLES * k[-1], endpoint=False)
+        at = tau[np.abs((np.exp(1j * np.multiply.outer(tau, k)) @ fit.waves).real).argmax()]
+        slopes = np.concatenate([np.cos(k * at), np.sin(k * at)])
+        error = np.sqrt(slopes @ fit.covariance @ slopes)
+        turn = PERIOD * fit.frequency * fit.origin
+        shifted = {
+            f"phase_{n}": float((p - n * turn + np.pi) % PERIOD - np.pi)
+            for n, _, p in table.harmonics
+        }
+        return MeasuredTable(
+            table.at(**shifted),
+            float(largest / gravity),
+            float(error / gravity),
+            fit.frequency,
+            fit.frequency_error,
+            fit.residual,
+        )
 
     @classmethod
     def _of_accelerations(cls, k: Values, pulls: Values) -> tuple["Table", float]:

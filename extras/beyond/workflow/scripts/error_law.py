@@ -15,13 +15,11 @@ from bouncing_ball_beyond.error_law import (
     free_impact,
     law_coefficients,
     law_errors,
-    law_remainders,
     law_thresholds,
-    restitution_values,
 )
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
-from studies.orbits import exact_values, half_next_to_saddle_node, last_zero, random_orbits
+from studies.orbits import last_zero, random_orbits
 from studies.variables import described
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
@@ -145,7 +143,7 @@ def of_permanent_contact(parameters: dict, release: str) -> dict[str, float]:
 
 
 def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
-    """Orders of both models' errors in 1/ϖ, and the remainder of the error law."""
+    """Orders of both models' errors in 1/ϖ, and of what the error law leaves."""
     seed = parameters["seed"]
     n, zeta, amplitude, _ = random_orbits(parameters["samples"], seed, release, (0.2, 0.95))
     stiff = SpringDamper(TWO_STIFF, damping_ratio=zeta, release=release)
@@ -153,15 +151,6 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
     left, _ = left_by_law(stiff, amplitude, n)
     stiffer = stiff.at(frequency_ratio=TWO_STIFF_AT_NODE)
     left_at_node, error = left_at_saddle_node(stiffer, n)
-    n, zeta, amplitude, rng = random_orbits(parameters["law_samples"], seed + 1, release)
-    span = parameters["frequency_ratio"]
-    ratio = np.exp(rng.uniform(np.log(span["min"]), np.log(span["max"]), amplitude.size))
-    ball = SpringDamper(ratio, damping_ratio=zeta, release=release)
-    impact = free_impact(ball, n)
-    amplitude = half_next_to_saddle_node(impact.speed - n * np.pi, amplitude, rng)
-    exact = stacked(exact_values(ball, amplitude, n))
-    departure = exact / stacked(restitution_values(impact, amplitude)) - 1
-    remains = np.abs(departure - stacked(law_errors(impact, amplitude=amplitude, n=n)))
     return {
         "order": (("model", "quantity", "sample"), np.log2(once / twice)),
         "law_order": (
@@ -171,10 +160,6 @@ def of_random_orbits(parameters: dict, release: str) -> dict[str, tuple]:
         "node_order": (("quantity", "sample"), np.log2(error[:, 0] / error[:, 1])),
         "order_frequency_ratio": ("pair", TWO_STIFF.ravel()),
         "node_order_frequency_ratio": ("pair", TWO_STIFF_AT_NODE.ravel()),
-        "law_remainder": (
-            ("quantity", "law_sample"),
-            remains / stacked(law_remainders(impact, amplitude=amplitude, n=n)),
-        ),
     }
 
 

@@ -10,17 +10,10 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
 from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.error_law import contact_values
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
-
-OF_ORBITS = ("max_height", "bounce_velocity", "phase", "apparent_restitution")
-"""The quantities of orbits; the others are amplitudes of bifurcations."""
 
 COMPLIANT = 1.4
 """Contacts with a smaller ϖ are too compliant for the error law to tell where their orbits are."""
-
-NEAREST = -8.0
-"""The smallest share of the distance from the saddle-node, as a power of ten."""
 
 
 def random_orbits(
@@ -40,19 +33,6 @@ def random_orbits(
     return n, damping_of(r, release), amplitude, rng
 
 
-def half_next_to_saddle_node(
-    low: NDArray, amplitude: NDArray, generator: np.random.Generator
-) -> NDArray:
-    """Amplitudes of which a random half is moved next to the saddle-nodes, at `low`.
-
-    What is left of the distance is a share between 10⁻⁸ and 1, uniform in its logarithm. Even draws
-    from the stable range hardly meet the saddle-node, where errors of the height change their
-    order.
-    """
-    near = low + 10 ** generator.uniform(NEAREST, 0, amplitude.shape) * (amplitude - low)
-    return np.where(generator.random(amplitude.shape) < 0.5, amplitude, near)
-
-
 def follow_compliant(ball: SpringDamper, n: NDArray, exact: dict[str, NDArray]) -> None:
     """Replace the saddle-nodes of compliant contacts by those on the branches down from the period
     doublings.
@@ -65,26 +45,6 @@ def follow_compliant(ball: SpringDamper, n: NDArray, exact: dict[str, NDArray]) 
         special = [] if isinstance(branch, OrbitNotFound) else branch.special
         nodes.append(next((each for each in special if each.kind == "saddle-node"), None))
     exact["saddle_node"][some] = [node.amplitude if node else np.nan for node in nodes]
-
-
-def exact_values(ball: SpringDamper, amplitude: NDArray, n: NDArray) -> dict[str, NDArray]:
-    """Quantities of n-T orbits and their bifurcations, as `contact_values`, also on compliant
-    contacts, whose orbits are searched for.
-    """
-    exact = contact_values(ball, amplitude=amplitude, n=n)
-    follow_compliant(ball, n, exact)
-    doubtful = (ball.frequency_ratio < COMPLIANT) | np.isnan(exact["max_height"])
-    below = amplitude < exact["saddle_node"]
-    for name in OF_ORBITS:
-        exact[name][doubtful] = np.nan
-    rows = np.flatnonzero(doubtful & ~below)
-    values = {name: value[rows] for name, value in ball.parameters.items()}
-    found = orbit(ball.at(**values), amplitude=amplitude[rows], n=n[rows])
-    for row, one in zip(rows, found, strict=True):
-        if not isinstance(one, OrbitNotFound):
-            for name in OF_ORBITS:
-                exact[name][row] = getattr(one, name)
-    return exact
 
 
 def flight_height(equations: OrbitEquations, z: NDArray) -> NDArray:

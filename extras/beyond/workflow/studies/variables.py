@@ -127,12 +127,6 @@ VARIABLES = SYMBOLS | {
         "two frequency ratios between which the orders are measured", "ϖ"
     ),
     "node_order_frequency_ratio": Variable("the same at the saddle-node", "ϖ"),
-    "law_remainder": Variable(
-        "remainder of the error law over its scale and small parameter",
-        "|e - E|/(S η)",
-        tolerance=1e-4,
-        floor=1.0,
-    ),
     # Map
     "level": Variable("frequency ratio of a line of the map", "ϖ"),
     "threshold_by_law": Variable(

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.answers import MOST_WARNINGS
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.flights import drag_of, impact_of
 from bouncing_ball_contacts.intervals import (
@@ -25,6 +23,7 @@ from bouncing_ball_contacts.intervals import (
 )
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import (
+    MOST_WARNINGS,
     STANDARD_GRAVITY,
     Refused,
     holding,
@@ -90,9 +89,9 @@ class Fit:
 
     @property
     def _groups(self) -> int:
-        """Number of groups of several impacts, or 0."""
-        count = len(np.unique(self.impacts.groups))
-        return count * (count < len(self.impacts.groups))
+        """Number of groups of several impacts."""
+        _, counts = np.unique(self.impacts.groups, return_counts=True)
+        return int(np.sum(counts > 1))
 
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
@@ -147,30 +146,6 @@ class Fit:
             # √(k/m) times the contact time, which would be π without damping.
             body["contact_time"] = math.pi * self.contact_time / _phase(self.restitution)
         return Bounce(**body)
-
-
-_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-
-
-def together(fits: Mapping[str, Fit]) -> tuple[dict[str, Fit], list[str]]:
-    """Return fits without the notes that all of them have, and these notes once.
-
-    The numbers of such a note are the smallest and the largest of all fits.
-    """
-    by_words = [{_NUMBER.sub("0", note): note for note in each.notes} for each in fits.values()]
-    shared = [words for words in by_words[0] if all(words in each for each in by_words)]
-    notes = []
-    for words in shared:
-        columns = zip(*(_NUMBER.findall(each[words]) for each in by_words), strict=True)
-        ends = ((min(each, key=float), max(each, key=float)) for each in columns)
-        numbers = [low if low == high else f"{low}–{high}" for low, high in ends]
-        pairs = itertools.zip_longest(words.split("0"), numbers, fillvalue="")
-        notes.append("".join(itertools.chain(*pairs)))
-    left = {
-        name: replace(each, notes=tuple(note for words, note in own.items() if words not in shared))
-        for (name, each), own in zip(fits.items(), by_words, strict=True)
-    }
-    return left, notes
 
 
 def _phase(restitution: float) -> float:

@@ -12,13 +12,11 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_contacts.flights import impact_of
-from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import (
     LAYOUTS,
     TEXTS,
@@ -28,8 +26,10 @@ from bouncing_ball_contacts.tables import (
     headings_for,
     table_of,
 )
+from bouncing_ball_contacts.tracks import FEWEST, Impact, copies, impacts_of_track, outliers
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
+    Array,
     Refused,
     holding,
     positive,
@@ -54,8 +54,6 @@ _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
-# Flights of a track have at least so many positions, without those beside an impact.
-_FEWEST = 4
 
 
 @dataclass(frozen=True)
@@ -156,7 +154,9 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     ]
 
 
-def _groups(table: Table, lines: Sequence[int], default: Array | None) -> NDArray[Any] | None:
+def _groups(
+    table: Table, lines: Sequence[int], default: NDArray[Any] | None
+) -> NDArray[Any] | None:
     """Return the group of the impact in each line, if there is a column of groups."""
     names = dict(zip(table.lines.tolist(), table.names("group"), strict=True))
     return np.array([names[line] for line in lines]) if table.of("group") else default
@@ -238,7 +238,7 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         tuple(values for values, _ in runs if len(values)),
         are_times=kind == "times",
         # The errors of intervals that were rounded one by one do not cancel, as those of times.
-        digit=0.0 if kind == "flights" else min(each.digit for each in columns),
+        digit=0.0 if kind == "flights" else min(each.scale * each.digit for each in columns),
         head=table.head,
         groups=_groups(table, [i for _, lines in runs for i in lines[1:].tolist()], None),
     )
@@ -301,11 +301,21 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
         grows = 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
         _refuse_growth(table, kind, pairs, lines, grows)
     read_off = columns if kind == "speeds" else columns[1:]
-    digit = min(each.digit for each in read_off)
+    digit = min(each.scale * each.digit for each in read_off)
     uncertainty = numbers[is_there, 2] if errors else None
     # A height of a drop and a speed of a coefficient are set once for all trials.
-    groups = _groups(table, lines.tolist(), None if kind == "speeds" else pairs[:, 0])
+    shared = {"drops": _heights_that_are_one(pairs[:, 0]), "coefficients": pairs[:, 0]}
+    groups = _groups(table, lines.tolist(), shared.get(kind))
     return Recording(table.name, kind, (pairs,), uncertainty, digit=digit, groups=groups)
+
+
+def _heights_that_are_one(heights: Array) -> Array:
+    """Return the lowest of the heights of a group, which differ by 1 % at most."""
+    lowest = heights.copy()
+    for i, j in itertools.pairwise(np.argsort(heights)):
+        if heights[j] <= 1.01 * lowest[i]:
+            lowest[j] = lowest[i]
+    return lowest
 
 
 def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float = 0.0) -> None:
@@ -320,49 +330,39 @@ def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: f
 # Samples to series.
 
 
-def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
-    """Return the indices of each flight, without positions next to impacts, and the impacts."""
-    # Importing it takes longer than all else here.
-    from scipy.signal import find_peaks
+class _Film(NamedTuple):
+    """Times in s, positions and lines of a film, and which positions are left out."""
 
-    # Third differences of a parabola vanish; those of noise of size 1 have a median of 3.
-    noise = float(np.median(np.abs(np.diff(up, 3)))) / 3
-    bottoms = find_peaks(-up, prominence=max(0.02 * float(np.ptp(up)), 6 * noise))[0].tolist()
-    edges = [-2, *bottoms, len(up) + 1]
-    flights = [np.arange(a + 2, b - 1) for a, b in itertools.pairwise(edges)]
-    if bottoms:
-        # A hand may hold the ball at first, and at last it may lie still: the first flight begins
-        # below 0.9 of its height, and the last one ends below 0.1 of it.
-        fall = up[: bottoms[0]] - up[bottoms[0]]
-        held = np.flatnonzero(fall > 0.9 * fall.max()).max()
-        flights[0] = flights[0][flights[0] > held]
-        rise = up[bottoms[-1] :] - up[bottoms[-1]]
-        top = int(np.argmax(rise))
-        down = np.flatnonzero(rise[top:] < 0.1 * rise[top]).min(initial=len(rise))
-        flights[-1] = flights[-1][flights[-1] < bottoms[-1] + top + down]
-    return flights, bottoms
+    t: Array
+    y: Array
+    lines: Lines
+    is_copy: NDArray[np.bool_]
+    is_out: NDArray[np.bool_]
+
+    def impacts(self, way: int) -> list[tuple[int, Impact]]:
+        """Return each impact with its line; `way` is -1 if positions grow downwards."""
+        used = np.flatnonzero(~(self.is_copy | self.is_out))
+        found = impacts_of_track(self.t[used], way * self.y[used])
+        return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
 
 
-def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, float, float]]:
-    """Return the track of each impact, its speeds before and after, and gravity."""
-    flights, bottoms = _flights_of_track(up)
-    impacts = {}
-    for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
-        if min(len(before), len(after)) < _FEWEST:
-            continue
-        both = np.concatenate([before, after])
-        track = np.column_stack([t[both], up[both], np.isin(both, after)])
-        v_before, v_after, gravity, misfit = impact_of(track)
-        # What misses the positions by more than a twentieth of the height is no flight.
-        slowest = min(v_before, v_after)
-        if min(slowest, gravity) > 0 and misfit < 0.05 * slowest**2 / (2 * gravity):
-            impacts[bottom] = track, v_before, v_after, gravity
-    return impacts
+def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
+    """Return a film of positions; its rounded times are replaced by those of even frames."""
+    frames = np.arange(len(t))
+    even = np.polyval(np.polyfit(frames, t, 1), frames)
+    is_even = np.abs(t - even).max() <= columns[0].scale * columns[0].digit
+    t = np.where(is_even, even, t)
+    digit = columns[1].digit
+    is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
+    is_out = np.zeros(len(t), bool)
+    is_out[~is_copy] = outliers(t[~is_copy], y[~is_copy], digit)
+    return _Film(t, y, lines, is_copy, is_out)
 
 
-def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Lines]]:
-    """Return the times, positions and lines of each film; an empty line or a name divides films."""
+def _films(table: Table, columns: list[Column]) -> list[_Film]:
+    """Return the films; an empty line or a name divides films."""
     films = []
+    most = 0
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
@@ -370,57 +370,59 @@ def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Line
         is_end = np.isnan(both).all(axis=1)
         for rows in np.split(np.arange(len(both)), np.flatnonzero(is_end)):
             frames = rows[~np.isnan(both[rows, 0])]
-            _refuse_gaps(table, both[frames, 0], part.lines[frames])
+            table.refuse(
+                np.diff(both[frames, 0]) < 0,
+                "the time is not after the one before: sort the lines, or leave an empty line "
+                "before another film",
+                lines=part.lines[frames[1:]],
+            )
             found = frames[~np.isnan(both[frames, 1])]
-            if len(found):
+            most = max(most, len(found))
+            if len(found) > 2 * FEWEST:
                 t, y = both[found].T
-                films.append((t - t[0], y, part.lines[found]))
+                films.append(_film(columns, t - t[0], y, part.lines[found]))
+    if not films:
+        raise Refused(
+            f"{table.name}: too few lines of a track, {most}; tops are one column, height"
+        )
     return films
 
 
-def _refuse_gaps(table: Table, t: Array, lines: Lines) -> None:
-    """Refuse times of frames that are not those of one film."""
-    steps = np.diff(t)
-    table.refuse(
-        steps < 0,
-        "the time is not after the one before: sort the lines, or leave an empty line before "
-        "another film",
-        lines=lines[1:],
+def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> list[str]:
+    """Return what is left out of films between their first and their last flight."""
+    copied = 0
+    out: list[int] = []
+    gaps: list[int] = []
+    for (t, _, lines, is_copy, is_out), found in zip(films, impacts, strict=True):
+        tracks = np.concatenate([np.zeros((0, 3)), *(impact.track for _, impact in found)])[:, 0]
+        during = (t >= tracks.min(initial=math.inf)) & (t <= tracks.max(initial=-math.inf))
+        copied += int(np.sum(is_copy & during))
+        out += lines[is_out & during].tolist()
+        steps = np.diff(t, prepend=t[0])
+        gaps += lines[during & (steps > 2.5 * np.median(steps))].tolist()
+    named, before = (
+        ", ".join(map(str, each[:5])) + f" and {len(each) - 5} more" * (len(each) > 5)
+        for each in (out, gaps)
     )
-    gap = steps * len(steps) > 20 * np.sum(steps)
-    table.refuse(gap, "a gap in the time: leave an empty line before another film", lines=lines[1:])
-
-
-def _even(table: Table, t: Array, digit: float) -> Array:
-    """Return the times of a film; rounded times are those of even frames."""
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(
-            f"{table.name}: too few lines of a track, {len(t)}; tops are one column, height"
-        )
-    frames = np.arange(len(t))
-    even = np.polyval(np.polyfit(frames, t, 1), frames)
-    return np.where(np.abs(t - even).max() <= digit, even, t)
+    return holding(
+        [
+            (copied, f"{copied} positions repeat the one before, as copied frames: left out"),
+            (out, f"positions that no ball has are left out: line {named}"),
+            (gaps, f"positions are missing before line {before}"),
+        ]
+    )
 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
-    films = [
-        (_even(table, t, columns[0].digit), y, lines) for t, y, lines in _films(table, columns)
-    ]
+    films = _films(table, columns)
     # Upside down no flight is a parabola.
-    ways = [
-        [
-            (lines[i], film, impact)
-            for film, (t, y, lines) in enumerate(films)
-            for i, impact in _impacts_of_track(t, way * y).items()
-        ]
-        for way in (1, -1)
-    ]
-    impacts = max(ways, key=len)
+    ways = [[film.impacts(way) for film in films] for way in (1, -1)]
+    of_films = max(ways, key=lambda each: sum(map(len, each)))
+    numbers, impacts = zip(*itertools.chain(*of_films), strict=True) if any(of_films) else ((), ())
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    numbers, film_of, found = zip(*impacts, strict=True)
-    tracks, *speeds, gravities = zip(*found, strict=True)
+    tracks, *speeds, gravities = zip(*impacts, strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
     lines = np.array(numbers)
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
@@ -440,15 +442,17 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         ),
         (
             True,
-            f"{len(impacts)} impacts were found between flights that can be fitted; gravity, "
+            f"{len(tracks)} impacts were found between flights that can be fitted; gravity, "
             f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale",
         ),
+        *((True, note) for note in _left_out(films, of_films)),
         (
-            impacts is ways[1],
+            of_films is ways[1],
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]
-    groups = _groups(table, numbers, np.array(film_of) if len(films) > 1 else None)
+    film_of = np.repeat(np.arange(len(films)), [len(each) for each in of_films])
+    groups = _groups(table, numbers, film_of if len(films) > 1 else None)
     return Recording(table.name, "track", tracks, groups=groups, notes=tuple(holding(notes)))
 
 
@@ -554,6 +558,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     notes = [
         *((True, note) for note in recording.notes),
         (unused, f"columns not used: {unused}"),
+        (table.head.get("heard"), f"heard: {table.head.get('heard')}"),
         (gaps, f"a number is missing in line {gaps}, which is left out{divides}"),
         *(
             (

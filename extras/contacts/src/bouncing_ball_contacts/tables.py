@@ -6,6 +6,7 @@ the head, in which ``# mass: 46 g`` is a quantity of the ball.
 """
 
 import csv
+import io
 import itertools
 import math
 import re
@@ -18,8 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refuse, units_of
+from bouncing_ball_contacts.units import LARGEST, Array, Refused, in_si, positive, refuse, units_of
 
 Lines = NDArray[np.intp]
 
@@ -41,8 +41,8 @@ NAMES = {
     "restitution": "restitution, restitution coefficient, coefficient of restitution, COR, e, r",
     "uncertainty": "uncertainty, standard deviation, std, error",
     "duration": "contact time, duration",
-    "position": "y, z, y position, position, distance",
-    "frame": "frame, frames, frame number",
+    "position": "y, z, ym, y position, position, distance",
+    "frame": "frame, frames, frame number, slice",
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
@@ -100,6 +100,7 @@ _SPELLED = {
     "milliseconds": "ms",
 }
 """Units in words."""
+_KNOWN_UNITS = {*_SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
 _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
 # Programs write the name of a series before a heading or behind it.
 _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
@@ -137,6 +138,8 @@ _LARGEST = {
     "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
 _SMALLEST = 1e-9
+# How files of spreadsheets begin.
+_SHEETS = (b"PK\3\4", b"\xd0\xcf\x11\xe0")
 # What programs and people write for a missing number.
 _MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 
@@ -197,10 +200,10 @@ class Column:
 
     @property
     def digit(self) -> float:
-        """Last digit of the numbers, in SI units."""
+        """Last digit of the numbers, in the unit of the column."""
         written = [re.search(r"[.,](\d+)(?:[eE]([-+]?\d+))?", cell) for cell in self.cells]
         powers = [int(each[2] or 0) - len(each[1]) for each in written if each]
-        return self.scale * 10.0 ** min(powers, default=0)
+        return 10.0 ** min(powers, default=0)
 
 
 @dataclass(frozen=True)
@@ -288,13 +291,32 @@ def _text_of(source: Any) -> tuple[str, str]:
         ]
     )
     data = path.read_bytes()
-    is_text = b"\0" not in data and not data.startswith(b"PK")
-    sound = f"a sound as WAV, as by ffmpeg -i {path.name} {path.stem}.wav"
-    refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8, {sound}")])
+    if data.startswith(b"RIFF"):
+        return path.name, _heard(data)
+    refuse(
+        [
+            (data[:4] in _SHEETS, f"{path.name} is a spreadsheet: save its sheet as csv"),
+            (
+                b"\0" in data,
+                f"{path.name} is no text: save it as csv in UTF-8, or a sound as WAV, as by ffmpeg "
+                f"-i {path.name} {path.stem}.wav",
+            ),
+        ]
+    )
     text = data.decode("utf-8-sig", errors="replace")
     # A single line of numbers is read as the arguments of the command.
     is_typed = re.fullmatch(r"[-+−.\d][^\n:;#\t]*\s*", text)
     return path.name, _columns_as_text(typed_readings(text.split())) if is_typed else text
+
+
+def _heard(data: bytes) -> str:
+    """Return the labels of the impacts that are heard in a WAV file, and its head below them."""
+    # Sounds need SciPy, whose import takes longer than a table.
+    from bouncing_ball_contacts.sounds import listen, sound_of
+
+    heard = listen(sound_of(io.BytesIO(data)))
+    said = "; ".join([str(heard), *heard.notes])
+    return f"{heard.labels}# resolution: {heard.resolution:.2g} s\n# heard: {said}"
 
 
 def typed_readings(words: Sequence[str]) -> dict[str, Any]:
@@ -377,13 +399,19 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     lines: dict[int, str] = {}
     for i, written in enumerate(text.rstrip().splitlines(), 1):
         line = re.sub(f"^{_STAMP}", "", written)
+        if re.match(r"Tracks \d|[-|:+ ]*---[-|:+ ]*$", line):
+            # ImageJ counts its tracks, and a line divides the headings of Markdown.
+            continue
+        if lines and line.startswith("Track"):
+            # Below its table ImageJ has the lengths of the tracks.
+            break
         if line.startswith("#"):
             key, _, said = line.lstrip("# ").partition(":")
             key = key.strip().lower()
             head[key] = f"{head.get(key, '')} {said.strip()}".strip()
         elif lines or line.strip():
             lines[i] = line
-    titles = {i: re.split(r'[\t;,"]+', lines[i]) for i in list(lines)[:4]}
+    titles = {i: re.split(r'[\t;|,"]+', lines[i]) for i in list(lines)[:4]}
     known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
@@ -397,12 +425,31 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
         begin, table = 0, {0: "time (s)", **begins}
     if len(table) < 2:
         raise Refused(f"{name} has no line of numbers below a heading")
-    sign = next((each for each in "\t;," if each in table[begin]), "\t")
+    sign = next((each for each in "\t;|," if each in table[begin]), "")
+    below = [_number(cell, True) for cell in list(table.values())[1].split()]
+    if not sign and len(below) > 1 and None not in below:
+        return head, _divided_by_spaces(name, table), True
     rows = {}
     for i, line in table.items():
-        (cells,) = csv.reader([line], delimiter=sign, skipinitialspace=True)
+        (cells,) = csv.reader([line.strip("| ")], delimiter=sign or "\t", skipinitialspace=True)
         rows[i] = [cell.strip() for cell in cells]
     return head, rows, sign != ","
+
+
+def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]:
+    """Return the cells by line of a table whose columns are divided by spaces."""
+    begin, *lines = table
+    # A unit belongs to the name before it, and names with spaces are divided by two.
+    headings = re.sub(r" (?=[(\[])", "", table[begin].strip())
+    rows = {begin: re.split(r"\s{2,}|\t" if re.search(r"\s{2,}|\t", headings) else " ", headings)}
+    rows |= {i: table[i].split() for i in lines}
+    for i in lines:
+        if rows[i] and len(rows[i]) != len(rows[begin]):
+            raise Refused(
+                f"{name}, line {i}: {len(rows[i])} cells below {len(rows[begin])} headings: divide "
+                "columns by commas, because spaces divide names, and hide a missing number"
+            )
+    return rows
 
 
 def _name_in(heading: str) -> tuple[str, str]:
@@ -410,6 +457,9 @@ def _name_in(heading: str) -> tuple[str, str]:
     program = re.search(_SERIES, heading, re.IGNORECASE)
     if program:
         return program[0].strip(": "), heading.replace(program[0], "")
+    track = re.fullmatch(r"(x|y|flag)(\d+)", heading, re.IGNORECASE)
+    if track:
+        return track[2], track[1]
     title, unit, role = _heading(heading)
     for pattern in (
         f"(?P<plain>{_READINGS}) (?P<ball>.+)",
@@ -501,6 +551,18 @@ def headings_for(columns: Sequence[Column]) -> str:
     return ",".join(f"{role} ({unit or other})".replace(" ()", "") for role, unit, other in written)
 
 
+def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
+    """Take the headings out of the rows, and a row of units below them; return the headings."""
+    begin, first, *_ = rows
+    headings = rows.pop(begin)
+    units = [re.sub(r"[()\[\]]", "", cell).strip("-") for cell in rows[first]]
+    if not any(units) or not {*map(str.lower, filter(None, units))} <= _KNOWN_UNITS:
+        return headings
+    del rows[first]
+    padded = itertools.zip_longest(headings, units, fillvalue="")
+    return [f"{heading} ({unit})" if unit else heading for heading, unit in padded]
+
+
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     """Return the table of a source.
 
@@ -513,8 +575,9 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     """
     name, text = _text_of(source)
     head, rows, is_decimal_comma = _rows_of(name, text)
-    begin, *lines = rows
-    headings = rows.pop(begin)
+    begin = next(iter(rows))
+    headings = _with_row_of_units(rows)
+    lines = list(rows)
     unknown = set(leave_out) - set(lines)
     refuse(
         [

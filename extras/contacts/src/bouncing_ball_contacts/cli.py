@@ -254,9 +254,6 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
         click.Option(["--from", "begin"], help="Begin of the fall in a sound, such as '1.4 s'."),
         click.Option(["--to", "end"], help="End of the fall in a sound."),
         click.Option(
-            ["--read-at"], help="Where rebound heights are read on the ball: bottom or top."
-        ),
-        click.Option(
             ["--engine"], help="For which the contact is written.", shell_complete=_engines
         ),
         _STEP,

@@ -42,8 +42,8 @@ above is made to the means, whose scatter s contains bⱼ: impacts of one group 
 (S. G. Donald, K. Lang, Review of Economics and Statistics 89 (2007) 221; J. M. Wooldridge, American
 Economic Review 93 (2003) 133). Few means alone do not bound s: by three of them and a slope r would
 be known seven times worse than by single impacts. What a group shares is seldom much larger than
-the scatter within the groups, so this scatter is the middle of the prior of s. At least three
-groups of several impacts are needed (`group_means`).
+the scatter within the groups, so the middle of the prior of s is 1.5 times this scatter, with a
+factor of 3.3 above it. At least three groups of several impacts are needed (`group_means`).
 
 The speed of an impact that follows another one is larger for a larger r, so bⱼ would make a slope
 of the means ȳⱼ over x̄ⱼ, which hides it. Such means are taken at one speed: only the prior of c then
@@ -81,6 +81,9 @@ _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
+# The same of means of groups: the middle in units of the scatter within groups, and the width. Both
+# are the smallest with which intervals hold r in about 95 % (``interval_coverage.py``).
+_SCATTER_OF_GROUPS, _WIDTH_OF_GROUPS = 1.5, 1.2
 # Scatter within groups that are all alike, as by rounding.
 _SMALLEST_WITHIN = 1e-3
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
@@ -110,8 +113,8 @@ class Impacts:
         Usual standard deviation of a reading.
     groups
         What impacts that share an error have in common: a height, a film, or a name.
-    scatter
-        Middle of the prior of scatter.
+    scatter, width
+        Middle of the prior of scatter, and the width of its logarithm above the middle.
     is_set
         Whether speeds were set, and do not follow from the impact before.
     """
@@ -123,6 +126,7 @@ class Impacts:
     usual: float
     groups: NDArray[Any]
     scatter: float = _SCATTER
+    width: float = _WIDTH_OF_SCATTER
     is_set: bool = True
 
     @property
@@ -262,8 +266,8 @@ def group_means(
         log_v[:] = np.mean(np.log(impacts.speed))
     log_r = np.bincount(of, impacts.log_r) / sizes
     within = math.sqrt(np.sum((impacts.log_r - log_r[of]) ** 2) / (len(of) - len(names)))
-    scatter = math.hypot(within, _SMALLEST_WITHIN)
-    means = Impacts(np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, scatter)
+    prior = _SCATTER_OF_GROUPS * math.hypot(within, _SMALLEST_WITHIN), _WIDTH_OF_GROUPS
+    means = Impacts(np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, *prior)
     return means, 1.0 if isinstance(known, np.ndarray) else known
 
 
@@ -391,14 +395,16 @@ def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
     return special.chdtrc(degrees[:, None], statistic[:, None] / sizes[:, None] ** 2)
 
 
-def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
-    """Return the weights by the confidence distribution of the scatter, in units of its middle."""
+def _confidence(posterior: Array, below: Array, above: Array) -> Array:
+    """Return the weights by the confidence distribution of the scatter.
+
+    ``above`` is ln s less the middle of its prior, in widths of the prior.
+    """
     # No scatter has a weight of its own, and each other one what is nearest to it.
     ends = (below[1:-1] + below[2:]) / 2
     ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
     weights = np.diff(ends, axis=0)
-    above = np.maximum(np.log(scatter) / _WIDTH_OF_SCATTER, 0.0)
-    weights[1:] *= np.exp(-(above**2) / 2)[..., None]
+    weights[1:] *= np.exp(-(np.maximum(above, 0.0) ** 2) / 2)[..., None]
     return weights / weights.sum(axis=0) * posterior.sum(axis=0)
 
 
@@ -480,8 +486,8 @@ def curves_of(
     scatter = np.outer(ratio, sizes)
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
-    usual_scatter = scatter / impacts.scatter
-    prior[1:] -= (np.log(usual_scatter) / _WIDTH_OF_SCATTER) ** 2 / 2
+    above = np.log(scatter / impacts.scatter)
+    prior[1:] -= (above / _WIDTH_OF_SCATTER) ** 2 / 2
     # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading.
     # Bends less their mean, times the ones, are orthogonal to these, so that c is found first. The
     # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
@@ -526,7 +532,8 @@ def curves_of(
     if n > 2:
         # One exponent at a time, because these arrays are the largest ones.
         below = [_below(weights, each[None], y, sizes) for each in columns]
-        confidence = _confidence(confidence, np.concatenate(below, axis=-1), usual_scatter)
+        shares_below = np.concatenate(below, axis=-1)
+        confidence = _confidence(confidence, shares_below, above / impacts.width)
     return Curves(
         scatter_sizes=np.concatenate([np.zeros_like(scatter[:1]), scatter]),
         confidence=confidence,

@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.tables import (
+    HEADINGS,
     LAYOUTS,
     TEXTS,
     Column,
     Lines,
     Table,
-    headings_for,
     table_of,
 )
 from bouncing_ball_contacts.tracks import FEWEST, Impact, copies, impacts_of_track, outliers
@@ -82,8 +82,6 @@ class Recording:
     digit : float
         Last digit of the readings in SI units, or 0. Heights of drops and speeds of coefficients
         are set, and not read.
-    has_scale : bool
-        Whether lengths are known; of heights in px only the ratios are.
     head : dict
         Quantities in the head of the file.
     groups : array
@@ -101,7 +99,6 @@ class Recording:
     is_free: bool = False
     are_times: bool = False
     digit: float = 0.0
-    has_scale: bool = True
     head: dict[str, str] = field(default_factory=dict)
     groups: NDArray[Any] | None = None
     notes: tuple[str, ...] = ()
@@ -227,8 +224,8 @@ def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) 
 def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     runs = _runs(table, columns)
-    # Times of one line that get shorter are those between touches.
-    if len(columns) > 1 and all(np.all(np.diff(values) < 0) for values, _ in runs):
+    # Times of one line that decrease are those between touches.
+    if len(columns) > 1 and sum(values[-1] - values[0] for values, _ in runs) < 0:
         kind = kind.replace("times", "flights")
     if kind == "times":
         runs = [(np.diff(times), lines[1:]) for times, lines in runs]
@@ -318,7 +315,7 @@ def _heights_that_are_one(heights: Array) -> Array:
     return lowest
 
 
-def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float = 0.0) -> None:
+def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float) -> None:
     """Refuse pairs of heights or speeds with an r above 1.05."""
     before, after = pairs.T
     unit = "m" if kind == "drops" else "m/s"
@@ -389,28 +386,26 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
 
 
 def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> list[str]:
-    """Return what is left out of films between their first and their last flight."""
-    copied = 0
-    out: list[int] = []
-    gaps: list[int] = []
-    for (t, _, lines, is_copy, is_out), found in zip(films, impacts, strict=True):
-        tracks = np.concatenate([np.zeros((0, 3)), *(impact.track for _, impact in found)])[:, 0]
-        during = (t >= tracks.min(initial=math.inf)) & (t <= tracks.max(initial=-math.inf))
-        copied += int(np.sum(is_copy & during))
-        out += lines[is_out & during].tolist()
-        steps = np.diff(t, prepend=t[0])
-        gaps += lines[during & (steps > 2.5 * np.median(steps))].tolist()
-    named, before = (
-        ", ".join(map(str, each[:5])) + f" and {len(each) - 5} more" * (len(each) > 5)
-        for each in (out, gaps)
-    )
-    return holding(
-        [
-            (copied, f"{copied} positions repeat the one before, as copied frames: left out"),
-            (out, f"positions that no ball has are left out: line {named}"),
-            (gaps, f"positions are missing before line {before}"),
-        ]
-    )
+    """Return what is left out of films between the begin of their first and end of last flight."""
+    left: dict[str, list[int]] = {
+        "copies of the frame before": [],
+        "positions that no ball has": [],
+        "frames that are missing before": [],
+    }
+    for film, found in zip(films, impacts, strict=True):
+        during = np.zeros(len(film.t), bool)
+        for _, impact in found:
+            during |= (film.t >= impact.track[0, 0]) & (film.t <= impact.track[-1, 0])
+        steps = np.diff(film.t, prepend=film.t[0])
+        of_kinds = film.is_copy, film.is_out, steps > 2.5 * np.median(steps)
+        for lines, is_left in zip(left.values(), of_kinds, strict=True):
+            lines += film.lines[during & is_left].tolist()
+    return [
+        f"left out are {what}: line {', '.join(map(str, lines[:3]))}"
+        + f" and {len(lines) - 3} more" * (len(lines) > 3)
+        for what, lines in left.items()
+        if lines
+    ]
 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
@@ -428,7 +423,6 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
     long = "a flight of {} s is too long: is it in ms, or of slow motion?"
     table.refuse(lasts > 9, long, lasts, lines=lines)
-    _refuse_growth(table, "speeds", pairs, lines)
     mean = float(np.mean(gravities))
     unit = columns[1].unit
     # Without a scale, as of pixels, nothing contradicts gravity.
@@ -452,7 +446,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         ),
     ]
     film_of = np.repeat(np.arange(len(films)), [len(each) for each in of_films])
-    groups = _groups(table, numbers, film_of if len(films) > 1 else None)
+    groups = _groups(table, numbers, film_of if len(set(film_of)) > 1 else None)
     return Recording(table.name, "track", tracks, groups=groups, notes=tuple(holding(notes)))
 
 
@@ -476,8 +470,8 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         by_rate = "frames are times with a line above the headings, # frame rate: 30; "
         film = by_rate if "frame" in roles else ""
         raise Refused(
-            f"{table.name}: no bounces, as {there}: {film}write {headings_for(table.columns)}; a "
-            "title or a comment begins with #"
+            f"{table.name}: no bounces, as {there}: {film}{HEADINGS}; a title or a comment begins "
+            "with #"
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
@@ -504,24 +498,6 @@ def _is_reading(column: Column, kind: str) -> bool:
     return bool(is_of_bounce or (named and not column.is_count))
 
 
-def _is_group(column: Column, kind: str) -> bool:
-    """Return whether a column that is not known has numbers that each return, as groups have."""
-    _, counts = np.unique(column.numbers, return_counts=True)
-    is_derived = re.search(_ERRORS, column.name.lower())
-    return (
-        kind != "track" and not (column.role or is_derived) and len(counts) > 1 and all(counts > 1)
-    )
-
-
-def _contact_time(table: Table) -> float:
-    """Return the contact time in s, from the head or as the mean of a column; 0 without one."""
-    if "contact time" in table.head:
-        return positive("contact time", table.head["contact time"], "s")
-    times = [value for each in table.of("duration") for value in table.values(each).tolist()]
-    known = [value for value in times if not math.isnan(value)]
-    return sum(known) / max(len(known), 1)
-
-
 def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     """Return the recording of one ball."""
     kind, columns = _layout(table)
@@ -536,7 +512,8 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     if not sum(map(len, recording.chains)):
         named = ", ".join(each.name for each in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
-    used = [*columns, *errors, *table.of("duration")]
+    used = [*columns, *errors]
+    lasts = table.head.get("contact time")
     ignored = [
         each for each in table.columns if each.name and each not in used and each.role not in TEXTS
     ]
@@ -546,11 +523,6 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
                 f"{table.name}: column {each.name!r} looks like a measurement, but "
                 f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
                 "delete it, or name it 'remark'"
-            )
-        if _is_group(each, kind):
-            raise Refused(
-                f"{table.name}: column {each.name!r} looks like groups: name it 'ball' for one "
-                "result each, or 'group' for one of all"
             )
     unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
@@ -571,9 +543,8 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     return replace(
         recording,
         head=table.head,
-        contact_time=_contact_time(table),
+        contact_time=positive("contact time", lasts, "s") if lasts else 0.0,
         is_free=columns[0].role == "flight",
-        has_scale=kind == "track" or all(each.unit != "px" for each in columns),
         notes=tuple(holding(notes)),
     )
 

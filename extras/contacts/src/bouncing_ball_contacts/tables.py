@@ -40,7 +40,6 @@ NAMES = {
     "speed": "speed, velocity, v, impact speed, impact velocity",
     "restitution": "restitution, restitution coefficient, coefficient of restitution, COR, e, r",
     "uncertainty": "uncertainty, standard deviation, std, error",
-    "duration": "contact time, duration",
     "position": "y, z, ym, y position, position, distance",
     "frame": "frame, frames, frame number, slice",
     "ball": "ball, name, body, sample",
@@ -69,23 +68,19 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("heights", ("height",)),
 )
 """What was measured is the first row whose columns are all there."""
+HEADINGS = (
+    "write 'time (s)' over times of impacts, 'interval (s)', 'height (cm)' over successive tops, "
+    "'drop height (cm),rebound height (cm)' over drops, or 't (s),y (cm)' over a film"
+)
+"""What messages say of headings that are not known."""
 _ROLES = {
     re.sub(r"[ .]", "", name.lower()): role
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
 _INHERITED = ("m", "m/s")
-_USUAL = {"m": "cm", "s": "s", "m/s": "m/s", "": ""}
-# Words next to the name of a column that are not the name of a ball.
-_NO_BALL = (
-    "first|second|third|fourth|last|next|total|energy|mean|average|max|maximum|min|minimum|std|"
-    "error|theoretical|ratio|x|in"
-)
 TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
-_READINGS = "|".join(
-    name for role, names in NAMES.items() if role not in TEXTS for name in names.split(", ")
-)
 _SPELLED = {
     "inches": "in",
     "feet": "ft",
@@ -113,7 +108,6 @@ _EXPORTED = r"\d+\.\d{6}\t"
 _UNITS = {
     "interval": "s",
     "flight": "s",
-    "duration": "s",
     "time": "s",
     "touch": "s",
     "drop height": "m",
@@ -162,8 +156,6 @@ class Column:
         What the column contains, a key of :data:`NAMES`; empty if the name is not known.
     cells, numbers
         Texts of the cells, and numbers in the unit of the column; NaN for an empty cell.
-    pixel
-        Size of a pixel in m if heights are in px: the largest height is 1 m.
     """
 
     name: str
@@ -171,13 +163,10 @@ class Column:
     role: str
     cells: list[str]
     numbers: Array
-    pixel: float = math.nan
 
     @property
     def scale(self) -> float:
         """Unit of the column in SI units."""
-        if self.unit == "px" and self.pixel > 0:
-            return self.pixel
         return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
 
     @property
@@ -185,18 +174,6 @@ class Column:
         """Whether the numbers are whole and increase by 0 or 1, as numbers of trials do."""
         steps = np.diff(self.numbers)
         return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
-
-    def may_be(self, role: str) -> bool:
-        """Return whether a column that is not known may have this role; times increase."""
-        is_time = role != "time" or bool(np.all(np.diff(self.numbers) > 0))
-        return is_time and not self.role and self.unit in ("", *units_of(_UNITS.get(role, "m")))
-
-    @property
-    def is_ambiguous(self) -> bool:
-        """Whether 1.500 may be 1500, because no instrument writes thousandths of the unit."""
-        cells = list(filter(None, self.cells))
-        is_thousands = all(re.fullmatch(r"[1-9]\d{0,2}[.,]\d{3}", cell) for cell in cells)
-        return self.unit in ("mm", "mm/s", "px") and bool(cells) and is_thousands
 
     @property
     def digit(self) -> float:
@@ -397,14 +374,13 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     """
     head: dict[str, str] = {}
     lines: dict[int, str] = {}
+    # Below its table ImageJ has another one, with the lengths of the tracks.
+    (text, *_) = re.split(r"\nTrack\W", text)
     for i, written in enumerate(text.rstrip().splitlines(), 1):
         line = re.sub(f"^{_STAMP}", "", written)
         if re.match(r"Tracks \d|[-|:+ ]*---[-|:+ ]*$", line):
             # ImageJ counts its tracks, and a line divides the headings of Markdown.
             continue
-        if lines and line.startswith("Track"):
-            # Below its table ImageJ has the lengths of the tracks.
-            break
         if line.startswith("#"):
             key, _, said = line.lstrip("# ").partition(":")
             key = key.strip().lower()
@@ -423,7 +399,7 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
         # Impacts have no end.
         begins = {i: line.partition("\t")[0] for i, line in labels.items()}
         begin, table = 0, {0: "time (s)", **begins}
-    if len(table) < 2:
+    if len(table) < 2 or not table[begin].strip("| "):
         raise Refused(f"{name} has no line of numbers below a heading")
     sign = next((each for each in "\t;|," if each in table[begin]), "")
     below = [_number(cell, True) for cell in list(table.values())[1].split()]
@@ -453,47 +429,26 @@ def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]
 
 
 def _name_in(heading: str) -> tuple[str, str]:
-    """Return the name of a run or a ball in a heading, and the heading without it."""
+    """Return the name of a run or a track in a heading, and the heading without it."""
     program = re.search(_SERIES, heading, re.IGNORECASE)
     if program:
         return program[0].strip(": "), heading.replace(program[0], "")
     track = re.fullmatch(r"(x|y|flag)(\d+)", heading, re.IGNORECASE)
     if track:
         return track[2], track[1]
-    title, unit, role = _heading(heading)
-    for pattern in (
-        f"(?P<plain>{_READINGS}) (?P<ball>.+)",
-        f"(?P<ball>.+?):? (?P<plain>{_READINGS})",
-    ):
-        found = re.fullmatch(pattern, title, re.IGNORECASE)
-        if found and not role and not re.fullmatch(_NO_BALL, found["ball"], re.IGNORECASE):
-            return found["ball"], found["plain"] + f" ({unit})" * bool(unit)
     return "", heading
 
 
-def _series_in(headings: list[str], rows: list[list[str]]) -> list[tuple[str, str]]:
+def _series_in(headings: list[str]) -> list[tuple[str, str]]:
     """Return the name of each column's series, and the heading without it.
 
-    A heading that returns begins another run, and the name of a ball may be the heading of its
-    rebounds.
+    A heading that returns begins another run.
     """
     found = [_name_in(each) for each in headings]
-    columns = [_heading(plain) for _, plain in found]
-    is_drop = {role for _, _, role in columns} - {"", *TEXTS} == {"drop height"}
-    for i, (title, unit, role) in enumerate(columns):
-        plain = found[i][1]
-        is_other = re.match(rf"({_NO_BALL})\b", title, re.IGNORECASE)
-        has_numbers = rows and all(re.match(r"[.\d]|$", row[i]) for row in rows)
-        if role and headings.count(plain) > 1:
-            found[i] = str(headings[: i + 1].count(plain)), plain
-        elif (
-            is_drop
-            and title
-            and not (role or is_other)
-            and unit in ("", *units_of("m"))
-            and has_numbers
-        ):
-            found[i] = title, f"rebound height ({unit})" if unit else "rebound height"
+    plain = [each for _, each in found]
+    for i, each in enumerate(plain):
+        if _heading(each)[2] and headings.count(each) > 1:
+            found[i] = str(headings[: i + 1].count(each)), each
     return found
 
 
@@ -504,7 +459,7 @@ def _below_each_other(
 
     A column without the name of a series, such as one time of all, belongs to each series.
     """
-    names, plain = zip(*_series_in(headings, rows), strict=True)
+    names, plain = zip(*_series_in(headings), strict=True)
     series = {
         each: [i for i, other in enumerate(names) if other in ("", each)]
         for each in dict.fromkeys(filter(None, names))
@@ -526,29 +481,7 @@ def _below_each_other(
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    is_program = any(re.search(_SERIES, each, re.IGNORECASE) for each in headings)
-    divides = "recording" if is_program or "1" in series else "ball"
-    return [divides, *kinds.pop()], numbers, stacked
-
-
-def headings_for(columns: Sequence[Column]) -> str:
-    """Return how the headings would be written: by the layout that fits most of the columns."""
-    readings = [each for each in columns if each.role not in TEXTS]
-
-    def fitting(roles: Sequence[str]) -> int:
-        """Return how well the columns fit, in order; a name counts more than a unit."""
-        both = zip(readings, roles, strict=False)
-        return sum(3 * (each.role == role) or each.may_be(role) for each, role in both) - len(roles)
-
-    # A touch is written as start, stop 1 or T0.
-    best = max((roles for _, roles in LAYOUTS if "touch" not in roles), key=fitting)
-    units = [
-        each.unit * (each.may_be(role) or each.role == role)
-        for each, role in zip(readings, best, strict=False)
-    ]
-    usual = (_USUAL[_UNITS.get(role, "m")] for role in best)
-    written = itertools.zip_longest(best, units[: len(best)], usual)
-    return ",".join(f"{role} ({unit or other})".replace(" ()", "") for role, unit, other in written)
+    return ["recording", *kinds.pop()], numbers, stacked
 
 
 def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
@@ -605,24 +538,12 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
                 f"stands in the heading, as in {title} (cm)"
             )
         column = Column(title, unit, role, cells, np.array(numbers, float))
-        if role and column.is_ambiguous:
-            cell = next(filter(None, cells))
-            raise Refused(
-                f"{name}: {cell!r} below {title!r} can be read as {re.sub('[.,]', '', cell)} or "
-                f"as {cell.replace(',', '.').rstrip('0').rstrip('.')} {unit}: write it without "
-                "this sign, or with fewer digits"
-            )
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)
     if _number(headings[0] or "no", is_decimal_comma) is not None:
-        said = f"a table begins with headings: write {headings_for(columns)}"
-        raise Refused(f"{name}, line {begin}: {said}")
+        raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
     columns = _with_units(columns)
-    pixels = [each for each in columns if each.unit == "px" and _UNITS.get(each.role) == "m"]
-    largest = max((np.nanmax(each.numbers, initial=0.0) for each in pixels), default=0.0)
-    if largest > 0:
-        columns = [replace(each, pixel=1 / largest) if each in pixels else each for each in columns]
     return Table(name, head, _with_times(head, columns), np.array(lines))
 
 

@@ -121,8 +121,10 @@ def impacts_of_track(t: Array, up: Array) -> dict[int, Impact]:
         both = np.concatenate([before, after])
         track = np.column_stack([t[both], up[both], np.isin(both, after)])
         v_before, v_after, gravity, misfit = impact_of(track)
-        # What misses the positions by more than a twentieth of the height is no flight.
+        # What misses the positions by more than a twentieth of the height is no flight, and what
+        # leaves faster than it came is hit.
         slowest = min(v_before, v_after)
-        if min(slowest, gravity) > 0 and misfit < 0.05 * slowest**2 / (2 * gravity):
+        is_flight = gravity > 0 and misfit < 0.05 * slowest**2 / (2 * gravity)
+        if is_flight and 0 < v_after < 1.05 * v_before:
             impacts[bottom] = Impact(track, v_before, v_after, gravity)
     return impacts

@@ -332,14 +332,6 @@ def test_no_reading_of_the_experiments_is_called_wrong():
         assert not any("far from all others" in note for note in fit(name).notes)
 
 
-def test_what_a_table_lacks_is_explained(tmp_path):
-    """A title with commas was a column that is not known."""
-    path = tmp_path / "film.csv"
-    path.write_text("Heights of a ball, third run, indoors\n1000,640,410\n")
-    with pytest.raises(Refused, match="a title or a comment begins with #"):
-        fit(path)
-
-
 def test_errors_of_pooled_pairs_make_no_slope(typed):
     """Twenty pairs of intervals with one r had v^-0.4, and intervals that held r in 90 %."""
     rng = np.random.default_rng(8)

@@ -168,12 +168,21 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) 
             f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
             "and y"
         )
-    past = f"the time is not after the one before: sort the lines, or {another}"
-    short = "a flight of {} s is too short: is the unit right?"
-    long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide "
-    table.refuse(flights <= 0, past, lines=lines)
-    table.refuse(flights < 1e-3, short, flights, lines=lines)
-    table.refuse(flights > 9, f"{long}times of slow motion", flights, lines=lines)
+    table.refuse(
+        flights <= 0,
+        f"the time is not after the one before: sort the lines, or {another}",
+        lines=lines,
+    )
+    table.refuse(
+        flights < 1e-3, "a flight of {} s is too short: is the unit right?", flights, lines=lines
+    )
+    table.refuse(
+        flights > 9,
+        "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide times "
+        "of slow motion",
+        flights,
+        lines=lines,
+    )
 
 
 def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, remedy: str) -> None:
@@ -191,8 +200,12 @@ def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, rem
     is_echo[:-1] = is_short & (after > _GROWTH * flights[:-1] + grows)
     if len(flights) > 2 and flights[-2] <= _GROWTH * flights[-3] + grows:
         is_echo[-1] = 4 * flights[-1] * flights[-3] < flights[-2] ** 2
-    said = f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}"
-    table.refuse(is_echo, said, flights, lines=lines)
+    table.refuse(
+        is_echo,
+        f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}",
+        flights,
+        lines=lines,
+    )
 
 
 def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) -> None:
@@ -419,10 +432,13 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
     tracks, *speeds, gravities = zip(*impacts, strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    lines = np.array(numbers)
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
-    long = "a flight of {} s is too long: is it in ms, or of slow motion?"
-    table.refuse(lasts > 9, long, lasts, lines=lines)
+    table.refuse(
+        lasts > 9,
+        "a flight of {} s is too long: is it in ms, or of slow motion?",
+        lasts,
+        lines=np.array(numbers),
+    )
     mean = float(np.mean(gravities))
     unit = columns[1].unit
     # Without a scale, as of pixels, nothing contradicts gravity.

@@ -83,10 +83,13 @@ PARTS = {
     "Contacts with units": [
         "extras/contacts/README",
         "extras/contacts/docs/design",
-        "extras/contacts/docs/engines",
-        "extras/contacts/docs/bounces",
         "extras/contacts/docs/measured",
         "extras/contacts/docs/python",
+        "extras/contacts/docs/add-an-engine",
+        "extras/contacts/docs/engines",
+        "extras/contacts/docs/files",
+        "extras/contacts/docs/bounces",
+        "extras/contacts/docs/interval",
         "extras/contacts/docs/validation",
     ],
     "Changes": [

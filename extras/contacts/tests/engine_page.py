@@ -40,20 +40,18 @@ def save(name, head, rows):
 
 
 def _count():
-    """Write how many promises are kept, by table and engine, into the page."""
-    lines = ["| table | engine | rows | promised | kept |", "| --- | --- | --- | --- | --- |"]
+    """Write how many promises are kept, by table, into the page."""
+    lines = ["| table | engines | rows | promised | kept |", "| --- | --- | --- | --- | --- |"]
+    missing = []
     for path in sorted(TABLES.glob("*.csv")):
         rows = rows_of(path.stem)
-        for engine in dict.fromkeys(row[0] for row in rows):
-            last = [row[-1] for row in rows if row[0] == engine]
-            link = f"[{path.stem}](validation/{path.name})"
-            if last == [NOT_RUN]:
-                (reason,) = (row[1] for row in rows if row[0] == engine)
-                lines.append(f"| {link} | {engine} | not run: {reason} | | |")
-                continue
-            promised = len(last) - last.count("not promised")
-            counts = f"{len(last)} | {promised} | {last.count('kept')}"
-            lines.append(f"| {link} | {engine} | {counts} |")
+        named = ", ".join(row[0] for row in rows if row[-1] == NOT_RUN)
+        missing += [f"{path.stem}: {named}"] * bool(named)
+        last = [row[-1] for row in rows if row[-1] != NOT_RUN]
+        engines = len({row[0] for row in rows if row[-1] != NOT_RUN})
+        counts = f"{len(last)} | {len(last) - last.count('not promised')} | {last.count('kept')}"
+        lines.append(f"| [{path.stem}](validation/{path.name}) | {engines} | {counts} |")
+    lines += ["", f"Not run, for a reason that the table has: {'; '.join(missing)}."]
     write_part("counts", lines)
 
 

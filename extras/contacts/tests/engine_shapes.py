@@ -18,7 +18,7 @@ import engine_drops
 import engine_runs
 import numpy as np
 from engine_drops import Body
-from engine_page import KEPT, rows_of, save, write_part
+from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
@@ -159,30 +159,6 @@ def table(engine):
     return rows
 
 
-def beyond(promised, does):
-    """Return how far the range of r leaves the promised one, with the sign of the deviation."""
-    (low, high), (least, most) = (map(float, text.split(" to ")) for text in (promised, does))
-    return min(least - low, 0.0) if low - least > most - high else max(most - high, 0.0)
-
-
-def page():
-    """Write the table of the page: the largest distance beyond the promise, of all designs."""
-    found = {}
-    for engine, version, _, _, shape, promised, does, _ in rows_of("shapes"):
-        of = found.setdefault((engine, version), {})
-        of.setdefault(shape, []).append(beyond(promised, does))
-    lines = [
-        f"| engine | run in | {' | '.join(SHAPES)} |",
-        f"| --- | --- |{' --- |' * len(SHAPES)}",
-    ]
-    for (engine, version), of in found.items():
-        most = [max(of[shape], key=abs) if shape in of else math.nan for shape in SHAPES]
-        # The printed ends are rounded.
-        cells = ["–" if math.isnan(x) else f"{x:+.3f}" if abs(x) > 1.1e-3 else "0" for x in most]
-        lines.append(f"| {engine} | {version} | {' | '.join(cells)} |")
-    write_part("shapes", lines)
-
-
 def main():
     differ = 0
     for name in sys.argv[1:] or RUNS:
@@ -193,7 +169,6 @@ def main():
             continue
         save("shapes", HEAD, rows)
         differ += sum(row[-1] == KEPT[False] for row in rows)
-    page()
     print(f"{differ} promises are not kept.")
     sys.exit(differ > 0)
 

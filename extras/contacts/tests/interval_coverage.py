@@ -637,6 +637,16 @@ KINDS = [
         flat(0.75),
         partial(several_balls, balls=5, impacts=6, error=5e-4, scatter=0.01, shared=0.02),
     ),
+    (
+        "3 drops from each of 3 heights read to 1 mm, scatter 0.005",
+        soft(0.8),
+        partial(drops, heights=np.array([0.35, 0.8, 1.4]), each=3, error=1e-3, scatter=0.005),
+    ),
+    (
+        "9 drops from 9 heights read to 1 mm, scatter 0.005",
+        soft(0.8),
+        partial(drops, heights=np.geomspace(0.35, 1.4, 9), each=1, error=1e-3, scatter=0.005),
+    ),
 ]
 
 

@@ -129,7 +129,7 @@ def test_a_recording_becomes_a_contact_in_one_command(typed):
 MISTAKES = {
     "design": "the restitution is missing",
     'design --mass "50 g"': "restitution is missing",
-    "design --density steel": "measured ones are printed by bounce fit and one of blue_marble",
+    "design --density steel": "'bounce fit' measures it",
     "design --restitution 0.8": "mass is missing",
     'design --mass "50 g" --restitution 1.2': "not between 0 and 1",
     'design --mass "50 g" --restitution -0.1': "not between 0 and 1",

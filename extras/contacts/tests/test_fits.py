@@ -63,8 +63,33 @@ def test_more_trials_of_the_same_heights_do_not_narrow_the_interval():
         fit(one | {f"trial {i} (cm)": one["trial 1 (cm)"] for i in range(1, n + 1)})
         for n in (2, 20)
     )
-    assert often.restitution == pytest.approx(once.restitution, abs=1e-4)
-    assert 0.85 < np.ptp(often.interval) / np.ptp(once.interval) < 1
+    assert often.restitution == pytest.approx(once.restitution, abs=5e-4)
+    assert 0.8 < np.ptp(often.interval) / np.ptp(once.interval) < 1
+
+
+def test_heights_that_are_moved_by_1_mm_are_the_same_heights():
+    """Half the interval was 0.025 for nine drops from three heights, and 0.0036 if they moved."""
+    widths = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        h = np.repeat([0.35, 0.8, 1.4], 3)
+        up = h * (0.8 * np.exp(0.005 * rng.normal(size=9))) ** 2
+        moved = h + rng.choice([-1e-3, 0, 1e-3], 9)
+        three, nine = (fit({"drop (m)": each, "rebound (m)": up}) for each in (h, moved))
+        single = fit(replace(three.recording, groups=None))
+        assert len(set(nine.impacts.groups)) == 3
+        widths.append([np.ptp(each.interval) for each in (three, nine, single)])
+    wide, moved_wide, narrow = np.median(widths, axis=0)
+    assert 0.8 < moved_wide / wide < 1.25 and wide < 3 * narrow
+
+
+def test_single_impacts_at_new_heights_are_no_groups():
+    """Ten drops from nine heights had an interval twice as wide as those from ten."""
+    h = np.geomspace(0.3, 1.5, 9)
+    up = 0.64 * h * np.exp(0.01 * np.random.default_rng(2).normal(size=9))
+    found = fit({"drop (m)": [*h, h[0]], "rebound (m)": [*up, 1.01 * up[0]]})
+    assert found.interval == fit(replace(found.recording, groups=None)).interval
+    assert "groups" not in str(found)
 
 
 def test_one_height_or_two_leave_its_error_out_and_a_note_says_so():
@@ -305,14 +330,6 @@ def test_one_wrong_reading_is_named_by_the_impacts_that_it_enters(readings, name
 def test_no_reading_of_the_experiments_is_called_wrong():
     for name in experiments():
         assert not any("far from all others" in note for note in fit(name).notes)
-
-
-def test_what_a_table_lacks_is_explained(tmp_path):
-    """A title with commas was a column that is not known."""
-    path = tmp_path / "film.csv"
-    path.write_text("Heights of a ball, third run, indoors\n1000,640,410\n")
-    with pytest.raises(Refused, match="a title or a comment begins with #"):
-        fit(path)
 
 
 def test_errors_of_pooled_pairs_make_no_slope(typed):

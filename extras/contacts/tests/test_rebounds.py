@@ -510,8 +510,8 @@ def test_the_threshold_of_ode_is_named(typed):
 
 
 def test_the_page_has_what_was_measured():
-    """The table of docs/bounces.md is the one of these drops; ``python`` of this file prints it."""
-    page = (Path(__file__).parents[1] / "docs" / "bounces.md").read_text("utf-8")
+    """The table of docs/validation.md is that of these drops; ``python`` of this file prints it."""
+    page = (Path(__file__).parents[1] / "docs" / "validation.md").read_text("utf-8")
     shown = page.partition("<!-- rules -->\n")[2].partition("<!-- end of rules -->")[0]
     assert shown == table()
 

@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 import wave
 from xml.etree import ElementTree
 
@@ -249,6 +251,22 @@ def test_labels_are_written_and_read_again(typed, drop):
     # A line of the labels, and not of a table that nobody sees.
     out = typed(f"fit {drop} --leave-out 1")[1]
     assert f"{len(labels) - 3} impacts at" in out
+
+
+def test_a_sound_is_a_recording_in_python_and_in_a_pipe(typed, drop):
+    """They said that it is no text, and how to convert it into a sound."""
+    of_file = typed(f"fit {drop}")[1]
+    found = fit(drop)
+    assert found.result.split(": ")[1] in of_file
+    assert any(note.startswith("heard: ") and "another fall" in note for note in found.notes)
+    code = "from bouncing_ball_contacts.cli import run; run()"
+    piped = subprocess.run(
+        [sys.executable, "-c", code, "fit", "-"],
+        input=drop.read_bytes(),
+        capture_output=True,
+        check=True,
+    )
+    assert found.result.split(": ")[1] in piped.stdout.decode()
 
 
 def test_the_picture_has_numbers_and_an_axis(typed, drop):

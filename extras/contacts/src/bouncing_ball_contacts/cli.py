@@ -254,9 +254,6 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
         click.Option(["--from", "begin"], help="Begin of the fall in a sound, such as '1.4 s'."),
         click.Option(["--to", "end"], help="End of the fall in a sound."),
         click.Option(
-            ["--read-at"], help="Where rebound heights are read on the ball: bottom or top."
-        ),
-        click.Option(
             ["--engine"], help="For which the contact is written.", shell_complete=_engines
         ),
         _STEP,
@@ -288,7 +285,7 @@ def fit_command(
     and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms. Of a sound,
     drop.wav, the impacts are heard, and written to drop.txt and drop.svg.
     """
-    from bouncing_ball_contacts.fits import fit, together
+    from bouncing_ball_contacts.fits import fit
     from bouncing_ball_contacts.recordings import read
     from bouncing_ball_contacts.tables import typed_readings
 
@@ -317,12 +314,7 @@ def fit_command(
         for name in holding((value, name) for name, value in of_engine.items()):
             option = name.replace("_", "-")
             raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
-        if len(fits) == 1 or as_json:
-            _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain, heard=heard)
-            return
-        each, shared = together(fits)
-        _print(each, as_json, explain)
-        click.echo("\n".join(["", *(f"! of all: {note}" for note in shared)]))
+        _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain, heard=heard)
         return
     if len(fits) > 1:
         raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")

@@ -2,7 +2,6 @@
 
 import itertools
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,12 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from bouncing_ball_contacts.answers import MOST_WARNINGS
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.flights import drag_of, impact_of
 from bouncing_ball_contacts.intervals import (
     KINDS,
-    Curves,
     Impacts,
     curves_of,
     estimate,
@@ -25,6 +22,7 @@ from bouncing_ball_contacts.intervals import (
 )
 from bouncing_ball_contacts.recordings import Recording, read, rounding_of
 from bouncing_ball_contacts.units import (
+    MOST_WARNINGS,
     STANDARD_GRAVITY,
     Refused,
     holding,
@@ -34,10 +32,8 @@ from bouncing_ball_contacts.units import (
     span,
 )
 
-_NO_SCALE = "heights in px have no speed: give them in cm for a speed, the drag or an engine"
 _WITH_DRAG = ("flights", "heights", "drops", "track")
-# Mass in kg and diameter in m of the balls that the drag changes little and much.
-_GOLF_BALL = (0.0459, 0.0427)
+# Mass in kg and diameter in m of a ball that the drag changes much.
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
 
 
@@ -85,14 +81,13 @@ class Fit:
         ends = span(*self.interval, 4)
         # r has the digits of its interval, in which it would not lie with fewer.
         r = f"{self.restitution:.{len(ends.split()[0]) - 2}f}"
-        at = f" at {self.speed:.3g} m/s" if self.recording.has_scale else ""
-        return f"{title}: r = {r} ({ends}){at}"
+        return f"{title}: r = {r} ({ends}) at {self.speed:.3g} m/s"
 
     @property
     def _groups(self) -> int:
-        """Number of groups of several impacts, or 0."""
-        count = len(np.unique(self.impacts.groups))
-        return count * (count < len(self.impacts.groups))
+        """Number of groups of several impacts."""
+        _, counts = np.unique(self.impacts.groups, return_counts=True)
+        return int(np.sum(counts > 1))
 
     def _lines(self, most: int) -> list[str]:
         v = self.impacts.speed
@@ -113,9 +108,7 @@ class Fit:
         more = "; ".join([f"from {self.recording.kind}", *filter(None, [", ".join(holding(said))])])
         return [
             self.result,
-            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}"
-            if self.recording.has_scale
-            else f"{count} at unknown speeds, {more}",
+            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}",
             *(f"! {note}" for note in self.notes[:most]),
         ]
 
@@ -137,8 +130,6 @@ class Fit:
 
         The contact time of a bounce is the one of a linear contact without damping.
         """
-        if not self.recording.has_scale:
-            raise Refused(_NO_SCALE)
         body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
             body["radius"] = self.diameter / 2
@@ -149,30 +140,6 @@ class Fit:
         return Bounce(**body)
 
 
-_NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
-
-
-def together(fits: Mapping[str, Fit]) -> tuple[dict[str, Fit], list[str]]:
-    """Return fits without the notes that all of them have, and these notes once.
-
-    The numbers of such a note are the smallest and the largest of all fits.
-    """
-    by_words = [{_NUMBER.sub("0", note): note for note in each.notes} for each in fits.values()]
-    shared = [words for words in by_words[0] if all(words in each for each in by_words)]
-    notes = []
-    for words in shared:
-        columns = zip(*(_NUMBER.findall(each[words]) for each in by_words), strict=True)
-        ends = ((min(each, key=float), max(each, key=float)) for each in columns)
-        numbers = [low if low == high else f"{low}–{high}" for low, high in ends]
-        pairs = itertools.zip_longest(words.split("0"), numbers, fillvalue="")
-        notes.append("".join(itertools.chain(*pairs)))
-    left = {
-        name: replace(each, notes=tuple(note for words, note in own.items() if words not in shared))
-        for (name, each), own in zip(fits.items(), by_words, strict=True)
-    }
-    return left, notes
-
-
 def _phase(restitution: float) -> float:
     """Return √(k/m) times the contact time of a spring and a damper that never pull.
 
@@ -181,35 +148,6 @@ def _phase(restitution: float) -> float:
     ratios = np.geomspace(1e-6, 1.1e3, 4000)
     phases = np.abs(2 * np.emath.arccos(ratios) / np.emath.sqrt(1 - ratios**2))
     return float(np.interp(-math.log(max(restitution, 1e-3)), ratios * phases, phases))
-
-
-def lowest_points(recording: Recording, diameter: Any) -> Recording:
-    """Return a recording whose heights were read at the top of the ball as those of its bottom.
-
-    Of drops these are the rebounds; the drop height is that of the bottom.
-
-    Raises
-    ------
-    Refused
-        If there are no heights, the diameter is missing, or it is more than a height.
-    """
-    refuse(
-        [
-            (
-                recording.kind not in ("drops", "heights"),
-                "--read-at is for heights: there are none in this recording",
-            ),
-            (
-                diameter is None,
-                "heights read at the top of the ball need its diameter: --diameter '43 mm'",
-            ),
-        ]
-    )
-    size = np.array([0.0, 1.0] if recording.kind == "drops" else [1.0]) * diameter
-    chains = tuple(each - size for each in recording.chains)
-    is_low = min(each.min() for each in chains) <= 0
-    refuse([(is_low, f"a height is less than the diameter of {show(diameter, 'm')}")])
-    return replace(recording, chains=chains)
 
 
 def _recording_of(
@@ -227,66 +165,35 @@ def _recording_of(
     return next(iter(balls.values()))
 
 
-@dataclass(frozen=True)
-class _Reading:
-    """What an estimate needs beside the impacts.
+def _drag_note(found: Fit, known: Any, rounding: float) -> str:
+    """Return what the drag of the air does to r; empty if it is less than half of the interval.
 
-    Attributes
-    ----------
-    error, rounding
-        The standard deviation of a reading; None if it is not known, and then that to which the
-        readings are rounded.
-    at
-        Speed in m/s of r; None for the middle of the speeds.
+    ``known`` and ``rounding`` are those of `curves_of`.
     """
-
-    error: Any
-    rounding: float
-    at: float | None
-
-    def speed_of(self, impacts: Impacts) -> float:
-        """Return the speed in m/s for which r is asked."""
-        return math.exp(float(np.mean(np.log(impacts.speed)))) if self.at is None else self.at
-
-    def curves_of(self, impacts: Impacts) -> Curves:
-        """Return the curves of r over the speed."""
-        return curves_of(impacts, self.error, self.speed_of(impacts), self.rounding)
-
-    def by_drag(self, recording: Recording, mass: float, diameter: float) -> float:
-        """Return the difference of r with the drag of a ball, and without drag."""
-        r_with, r_without = (
-            estimate(self.curves_of(impacts)).of_r[0]
-            for impacts in (
-                impacts_of(recording, drag_of(mass, diameter)),
-                impacts_of(recording),
-            )
-        )
-        return r_with - r_without
-
-
-def _drag_note(found: Fit, reading: _Reading) -> str:
-    """Return what the drag of the air does to r; empty if it is less than half of the interval."""
     recording = found.recording
-    if not recording.has_scale or recording.kind not in _WITH_DRAG:
+    if recording.kind not in _WITH_DRAG:
         return ""
-    if found.mass and found.diameter:
-        by_drag = reading.by_drag(recording, found.mass, found.diameter)
-        note = f"the drag of the air is removed, which raises r by {by_drag:.2g}"
-    else:
-        by_golf = reading.by_drag(recording, *_GOLF_BALL)
-        by_drag = reading.by_drag(recording, *_TABLE_TENNIS_BALL)
-        note = (
-            f"the drag of the air is not removed: r is too low by {by_golf:.2g} (golf ball) to "
-            f"{by_drag:.2g} (table tennis ball); give --mass and --diameter"
-        )
+    is_known = bool(found.mass and found.diameter)
+    mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
+    r_with, r_without = (
+        estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
+        for drag in (drag_of(mass or 0.0, diameter or 0.0), 0.0)
+    )
+    by_drag = r_with - r_without
+    note = (
+        f"the drag of the air is removed, which raises r by {by_drag:.2g}"
+        if is_known
+        else "the drag of the air is not removed: r of a table tennis ball is too low by "
+        f"{by_drag:.2g}, that of heavier balls by less; give --mass and --diameter"
+    )
     low, high = found.interval
     return note * (by_drag > (high - low) / 2)
 
 
-def _size_note(found: Fit, read_at: str | None) -> str:
-    """Return how far r is off if heights are those of the top of the ball; empty if it is said."""
+def _size_note(found: Fit) -> str:
+    """Return how far r is off if heights are those of the top of the ball."""
     recording = found.recording
-    if recording.kind not in ("drops", "heights") or read_at or not recording.has_scale:
+    if recording.kind not in ("drops", "heights"):
         return ""
     size = found.diameter or 0.04
     # r = √(h′/h), and h′ = r² v²/2g.
@@ -296,7 +203,7 @@ def _size_note(found: Fit, read_at: str | None) -> str:
     too_high *= 1 - found.restitution**2 if recording.kind == "heights" else 1.0
     return (
         "heights are those of the lowest point of the ball; if they are of its top, r is too "
-        f"high by {too_high:.2g} ({show(size, 'm')}): give --read-at bottom or top"
+        f"high by {too_high:.2g} ({show(size, 'm')}): subtract its diameter"
     )
 
 
@@ -349,15 +256,15 @@ def _gravity_note(found: Fit) -> str:
     ) * (changes > (found.interval[1] - found.interval[0]) / 2)
 
 
-def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> tuple[str, ...]:
+def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, ...]:
     """Return the notes on a fit, the severest first; `value` is r before it is limited to 1."""
     impacts = found.impacts
     v = impacts.speed
     at = found.speed
     unit = KINDS[found.recording.kind][0]
     wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
-    drag = _drag_note(found, reading)
-    size = _size_note(found, read_at)
+    drag = _drag_note(found, known, rounding)
+    size = _size_note(found)
     contact = _contact_note(found)
     gravity = _gravity_note(found)
     is_taken_off = bool(contact and found.contact_time)
@@ -391,9 +298,8 @@ def _notes(found: Fit, reading: _Reading, value: float, read_at: str | None) -> 
                 ),
                 (is_taken_off, contact),
                 (
-                    reading.rounding > impacts.usual,
-                    f"readings are multiples of {show(reading.rounding, unit, 4)}: taken as "
-                    "rounded",
+                    rounding > impacts.usual,
+                    f"readings are multiples of {show(rounding, unit, 4)}: taken as rounded",
                 ),
             ]
         )
@@ -410,7 +316,6 @@ def fit(
     contact_time: Quantity = None,
     leave_out: tuple[int, ...] = (),
     ball: str | None = None,
-    read_at: str | None = None,
 ) -> Fit:
     """Return r of a recording at a speed with its 95 % interval.
 
@@ -432,8 +337,6 @@ def fit(
         Lines of the file.
     ball : str, optional
         The name of one, if the file has a column of several.
-    read_at : {"bottom", "top"}, optional
-        Where rebound heights were read off the ball.
 
     Raises
     ------
@@ -447,16 +350,10 @@ def fit(
         said = recording.head.get(name) if value is None else value
         return None if said is None else positive(name, said, unit)
 
-    if not recording.has_scale and any((speed, resolution, mass, diameter, read_at)):
-        raise Refused(_NO_SCALE)
     unit = KINDS[recording.kind][0]
     known = given("resolution", resolution, unit) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
-    if read_at not in (None, "bottom", "top"):
-        raise Refused(f"--read-at {read_at} is neither bottom nor top")
-    if read_at == "top":
-        recording = lowest_points(recording, metres)
     # A contact that is not known is taken to have no duration.
     lasts = given("contact time", contact_time, "s") or recording.contact_time
     rounding = rounding_of(recording) if known is None else 0.0
@@ -464,8 +361,8 @@ def fit(
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag_of(kilograms, metres) if kilograms and metres else 0.0)
     v = impacts.speed
-    reading = _Reading(known, rounding, None if speed is None else positive("speed", speed, "m/s"))
-    at = reading.speed_of(impacts)
+    middle = math.exp(float(np.mean(np.log(v))))
+    at = middle if speed is None else positive("speed", speed, "m/s")
     error = rounding / math.sqrt(12) if known is None else known
     refuse(
         [
@@ -482,7 +379,7 @@ def fit(
             ),
         ]
     )
-    curves = reading.curves_of(impacts)
+    curves = curves_of(impacts, known, at, rounding)
     estimated = estimate(curves)
     value = math.exp(estimated.value)
     if estimated.low > 0:
@@ -502,4 +399,4 @@ def fit(
         diameter=metres,
         notes=(),
     )
-    return replace(found, notes=_notes(found, reading, value, read_at))
+    return replace(found, notes=_notes(found, known, rounding, value))

@@ -15,8 +15,7 @@ import math
 
 import numpy as np
 
-from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, Refused, show
 
 # Of the air: its density in kg/m³ and the drag coefficient of a ball. The densest ball is osmium.
 _AIR = 1.2

@@ -40,9 +40,10 @@ i, their mean is::
 so means of different groups are independent, and their variances are equal for equal nⱼ. The fit
 above is made to the means, whose scatter s contains bⱼ: impacts of one group count as one impact
 (S. G. Donald, K. Lang, Review of Economics and Statistics 89 (2007) 221; J. M. Wooldridge, American
-Economic Review 93 (2003) 133). The prior of their scatter does not fall below 0.5, because what a
-group shares has no usual size. For a constant r that is nearly Student's t with one degree of
-freedom less than groups. At least three groups are needed (`group_means`).
+Economic Review 93 (2003) 133). Few means alone do not bound s: by three of them and a slope r would
+be known seven times worse than by single impacts. What a group shares is seldom much larger than
+the scatter within the groups, so the middle of the prior of s is 1.5 times this scatter, with a
+factor of 3.3 above it. At least three groups of several impacts are needed (`group_means`).
 
 The speed of an impact that follows another one is larger for a larger r, so bⱼ would make a slope
 of the means ȳⱼ over x̄ⱼ, which hides it. Such means are taken at one speed: only the prior of c then
@@ -60,9 +61,8 @@ from scipy import optimize, special
 
 from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
-from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import Lines
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, refuse, show
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, Refused, refuse, show
 
 # Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
 # the readings with which the speeds before and after an impact go. Those of series are alike; of a
@@ -76,13 +76,16 @@ KINDS = {
     "coefficients": ("", 1.1e-2, (0.0, 1.0)),
 }
 # The priors: the width of the logarithm of errors, the middle of scatter and the width of its
-# logarithm, and the width of c. What a group shares has no usual size: its middle is the largest
-# scatter that is tried, so that no size is less probable than a smaller one.
+# logarithm, and the width of c.
 _WIDTH_OF_ERRORS = 2.0
 _SCATTER = 0.011
-_SCATTER_OF_GROUPS = 0.5
 _WIDTH_OF_SCATTER = 1.5
 _SLOPE = 0.25
+# The same of means of groups: the middle in units of the scatter within groups, and the width. Both
+# are the smallest with which intervals hold r in about 95 % (``interval_coverage.py``).
+_SCATTER_OF_GROUPS, _WIDTH_OF_GROUPS = 1.5, 1.2
+# Scatter within groups that are all alike, as by rounding.
+_SMALLEST_WITHIN = 1e-3
 # Of a reading in its SI unit: exact ones, as of a simulation, have the errors of arithmetic.
 _ARITHMETIC = 1e-12
 # A fit takes about 1 s for each 1,000 impacts; of a series arrays have the square of its length.
@@ -110,8 +113,8 @@ class Impacts:
         Usual standard deviation of a reading.
     groups
         What impacts that share an error have in common: a height, a film, or a name.
-    scatter
-        Middle of the prior of scatter.
+    scatter, width
+        Middle of the prior of scatter, and the width of its logarithm above the middle.
     is_set
         Whether speeds were set, and do not follow from the impact before.
     """
@@ -123,6 +126,7 @@ class Impacts:
     usual: float
     groups: NDArray[Any]
     scatter: float = _SCATTER
+    width: float = _WIDTH_OF_SCATTER
     is_set: bool = True
 
     @property
@@ -239,11 +243,11 @@ def group_means(
 ) -> tuple[Impacts, float | Array | None]:
     """Return the mean of each group as one impact, and the standard deviation of its readings.
 
-    Impacts of one or two groups are returned as they are: two means leave no deviation by which the
-    errors of the groups are known.
+    With fewer than three groups of several impacts they are returned as they are: two means leave
+    no deviation by which the errors of the groups are known.
     """
     names, of, sizes = np.unique(impacts.groups, return_inverse=True, return_counts=True)
-    if not 3 <= len(names) < len(of):
+    if np.sum(sizes > 1) < 3:
         return impacts, known
     # Errors of each r become the unit of its reading.
     unit = known if isinstance(known, np.ndarray) else 1.0
@@ -261,9 +265,9 @@ def group_means(
     if not impacts.is_set:
         log_v[:] = np.mean(np.log(impacts.speed))
     log_r = np.bincount(of, impacts.log_r) / sizes
-    means = Impacts(
-        np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, _SCATTER_OF_GROUPS
-    )
+    within = math.sqrt(np.sum((impacts.log_r - log_r[of]) ** 2) / (len(of) - len(names)))
+    prior = _SCATTER_OF_GROUPS * math.hypot(within, _SMALLEST_WITHIN), _WIDTH_OF_GROUPS
+    means = Impacts(np.exp(log_v), log_r, readings, of_speed, impacts.usual, names, *prior)
     return means, 1.0 if isinstance(known, np.ndarray) else known
 
 
@@ -391,14 +395,16 @@ def _below(weights: Array, columns: Array, y: Array, sizes: Array) -> Array:
     return special.chdtrc(degrees[:, None], statistic[:, None] / sizes[:, None] ** 2)
 
 
-def _confidence(posterior: Array, below: Array, scatter: Array) -> Array:
-    """Return the weights by the confidence distribution of the scatter, in units of its middle."""
+def _confidence(posterior: Array, below: Array, above: Array) -> Array:
+    """Return the weights by the confidence distribution of the scatter.
+
+    ``above`` is ln s less the middle of its prior, in widths of the prior.
+    """
     # No scatter has a weight of its own, and each other one what is nearest to it.
     ends = (below[1:-1] + below[2:]) / 2
     ends = np.concatenate([np.zeros_like(ends[:1]), below[:1], ends, np.ones_like(ends[:1])])
     weights = np.diff(ends, axis=0)
-    above = np.maximum(np.log(scatter) / _WIDTH_OF_SCATTER, 0.0)
-    weights[1:] *= np.exp(-(above**2) / 2)[..., None]
+    weights[1:] *= np.exp(-(np.maximum(above, 0.0) ** 2) / 2)[..., None]
     return weights / weights.sum(axis=0) * posterior.sum(axis=0)
 
 
@@ -480,8 +486,8 @@ def curves_of(
     scatter = np.outer(ratio, sizes)
     # The logarithms of the priors.
     prior = -((np.log(unrounded) / _WIDTH_OF_ERRORS) ** 2) / 2 * np.ones((len(variances), 1))
-    usual_scatter = scatter / impacts.scatter
-    prior[1:] -= (np.log(usual_scatter) / _WIDTH_OF_SCATTER) ** 2 / 2
+    above = np.log(scatter / impacts.scatter)
+    prior[1:] -= (above / _WIDTH_OF_SCATTER) ** 2 / 2
     # Least squares of y = X (β, c) with the weights W, and the prior of c as one more reading.
     # Bends less their mean, times the ones, are orthogonal to these, so that c is found first. The
     # posterior of the ratio, the size and the exponent has the determinants of W and of both. The
@@ -526,7 +532,8 @@ def curves_of(
     if n > 2:
         # One exponent at a time, because these arrays are the largest ones.
         below = [_below(weights, each[None], y, sizes) for each in columns]
-        confidence = _confidence(confidence, np.concatenate(below, axis=-1), usual_scatter)
+        shares_below = np.concatenate(below, axis=-1)
+        confidence = _confidence(confidence, shares_below, above / impacts.width)
     return Curves(
         scatter_sizes=np.concatenate([np.zeros_like(scatter[:1]), scatter]),
         confidence=confidence,

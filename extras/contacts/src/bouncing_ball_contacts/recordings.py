@@ -12,24 +12,24 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_contacts.flights import impact_of
-from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.tables import (
+    HEADINGS,
     LAYOUTS,
     TEXTS,
     Column,
     Lines,
     Table,
-    headings_for,
     table_of,
 )
+from bouncing_ball_contacts.tracks import FEWEST, Impact, copies, impacts_of_track, outliers
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
+    Array,
     Refused,
     holding,
     positive,
@@ -54,8 +54,6 @@ _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
-# Flights of a track have at least so many positions, without those beside an impact.
-_FEWEST = 4
 
 
 @dataclass(frozen=True)
@@ -84,8 +82,6 @@ class Recording:
     digit : float
         Last digit of the readings in SI units, or 0. Heights of drops and speeds of coefficients
         are set, and not read.
-    has_scale : bool
-        Whether lengths are known; of heights in px only the ratios are.
     head : dict
         Quantities in the head of the file.
     groups : array
@@ -103,7 +99,6 @@ class Recording:
     is_free: bool = False
     are_times: bool = False
     digit: float = 0.0
-    has_scale: bool = True
     head: dict[str, str] = field(default_factory=dict)
     groups: NDArray[Any] | None = None
     notes: tuple[str, ...] = ()
@@ -156,7 +151,9 @@ def _runs(table: Table, columns: list[Column]) -> list[tuple[Array, Lines]]:
     ]
 
 
-def _groups(table: Table, lines: Sequence[int], default: Array | None) -> NDArray[Any] | None:
+def _groups(
+    table: Table, lines: Sequence[int], default: NDArray[Any] | None
+) -> NDArray[Any] | None:
     """Return the group of the impact in each line, if there is a column of groups."""
     names = dict(zip(table.lines.tolist(), table.names("group"), strict=True))
     return np.array([names[line] for line in lines]) if table.of("group") else default
@@ -171,12 +168,21 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) 
             f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
             "and y"
         )
-    past = f"the time is not after the one before: sort the lines, or {another}"
-    short = "a flight of {} s is too short: is the unit right?"
-    long = "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide "
-    table.refuse(flights <= 0, past, lines=lines)
-    table.refuse(flights < 1e-3, short, flights, lines=lines)
-    table.refuse(flights > 9, f"{long}times of slow motion", flights, lines=lines)
+    table.refuse(
+        flights <= 0,
+        f"the time is not after the one before: sort the lines, or {another}",
+        lines=lines,
+    )
+    table.refuse(
+        flights < 1e-3, "a flight of {} s is too short: is the unit right?", flights, lines=lines
+    )
+    table.refuse(
+        flights > 9,
+        "a flight of {} s is too long: is it in ms? write (ms) behind the heading, or divide times "
+        "of slow motion",
+        flights,
+        lines=lines,
+    )
 
 
 def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, remedy: str) -> None:
@@ -194,8 +200,12 @@ def _refuse_echoes(table: Table, flights: Array, lines: Lines, grows: float, rem
     is_echo[:-1] = is_short & (after > _GROWTH * flights[:-1] + grows)
     if len(flights) > 2 and flights[-2] <= _GROWTH * flights[-3] + grows:
         is_echo[-1] = 4 * flights[-1] * flights[-3] < flights[-2] ** 2
-    said = f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}"
-    table.refuse(is_echo, said, flights, lines=lines)
+    table.refuse(
+        is_echo,
+        f"{{}} s after the touch before it: an echo, or one touch counted twice; {remedy}",
+        flights,
+        lines=lines,
+    )
 
 
 def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) -> None:
@@ -227,8 +237,8 @@ def _refuse_ratios(table: Table, flights: Array, lines: Lines, rounding: float) 
 def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
     """Return the recording of heights, of flights, or of times."""
     runs = _runs(table, columns)
-    # Times of one line that get shorter are those between touches.
-    if len(columns) > 1 and all(np.all(np.diff(values) < 0) for values, _ in runs):
+    # Times of one line that decrease are those between touches.
+    if len(columns) > 1 and sum(values[-1] - values[0] for values, _ in runs) < 0:
         kind = kind.replace("times", "flights")
     if kind == "times":
         runs = [(np.diff(times), lines[1:]) for times, lines in runs]
@@ -238,7 +248,7 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         tuple(values for values, _ in runs if len(values)),
         are_times=kind == "times",
         # The errors of intervals that were rounded one by one do not cancel, as those of times.
-        digit=0.0 if kind == "flights" else min(each.digit for each in columns),
+        digit=0.0 if kind == "flights" else min(each.scale * each.digit for each in columns),
         head=table.head,
         groups=_groups(table, [i for _, lines in runs for i in lines[1:].tolist()], None),
     )
@@ -301,14 +311,24 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
         grows = 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
         _refuse_growth(table, kind, pairs, lines, grows)
     read_off = columns if kind == "speeds" else columns[1:]
-    digit = min(each.digit for each in read_off)
+    digit = min(each.scale * each.digit for each in read_off)
     uncertainty = numbers[is_there, 2] if errors else None
     # A height of a drop and a speed of a coefficient are set once for all trials.
-    groups = _groups(table, lines.tolist(), None if kind == "speeds" else pairs[:, 0])
+    shared = {"drops": _heights_that_are_one(pairs[:, 0]), "coefficients": pairs[:, 0]}
+    groups = _groups(table, lines.tolist(), shared.get(kind))
     return Recording(table.name, kind, (pairs,), uncertainty, digit=digit, groups=groups)
 
 
-def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float = 0.0) -> None:
+def _heights_that_are_one(heights: Array) -> Array:
+    """Return the lowest of the heights of a group, which differ by 1 % at most."""
+    lowest = heights.copy()
+    for i, j in itertools.pairwise(np.argsort(heights)):
+        if heights[j] <= 1.01 * lowest[i]:
+            lowest[j] = lowest[i]
+    return lowest
+
+
+def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: float) -> None:
     """Refuse pairs of heights or speeds with an r above 1.05."""
     before, after = pairs.T
     unit = "m" if kind == "drops" else "m/s"
@@ -320,49 +340,39 @@ def _refuse_growth(table: Table, kind: str, pairs: Array, lines: Lines, grows: f
 # Samples to series.
 
 
-def _flights_of_track(up: Array) -> tuple[list[Lines], list[int]]:
-    """Return the indices of each flight, without positions next to impacts, and the impacts."""
-    # Importing it takes longer than all else here.
-    from scipy.signal import find_peaks
+class _Film(NamedTuple):
+    """Times in s, positions and lines of a film, and which positions are left out."""
 
-    # Third differences of a parabola vanish; those of noise of size 1 have a median of 3.
-    noise = float(np.median(np.abs(np.diff(up, 3)))) / 3
-    bottoms = find_peaks(-up, prominence=max(0.02 * float(np.ptp(up)), 6 * noise))[0].tolist()
-    edges = [-2, *bottoms, len(up) + 1]
-    flights = [np.arange(a + 2, b - 1) for a, b in itertools.pairwise(edges)]
-    if bottoms:
-        # A hand may hold the ball at first, and at last it may lie still: the first flight begins
-        # below 0.9 of its height, and the last one ends below 0.1 of it.
-        fall = up[: bottoms[0]] - up[bottoms[0]]
-        held = np.flatnonzero(fall > 0.9 * fall.max()).max()
-        flights[0] = flights[0][flights[0] > held]
-        rise = up[bottoms[-1] :] - up[bottoms[-1]]
-        top = int(np.argmax(rise))
-        down = np.flatnonzero(rise[top:] < 0.1 * rise[top]).min(initial=len(rise))
-        flights[-1] = flights[-1][flights[-1] < bottoms[-1] + top + down]
-    return flights, bottoms
+    t: Array
+    y: Array
+    lines: Lines
+    is_copy: NDArray[np.bool_]
+    is_out: NDArray[np.bool_]
+
+    def impacts(self, way: int) -> list[tuple[int, Impact]]:
+        """Return each impact with its line; `way` is -1 if positions grow downwards."""
+        used = np.flatnonzero(~(self.is_copy | self.is_out))
+        found = impacts_of_track(self.t[used], way * self.y[used])
+        return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
 
 
-def _impacts_of_track(t: Array, up: Array) -> dict[int, tuple[Array, float, float, float]]:
-    """Return the track of each impact, its speeds before and after, and gravity."""
-    flights, bottoms = _flights_of_track(up)
-    impacts = {}
-    for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
-        if min(len(before), len(after)) < _FEWEST:
-            continue
-        both = np.concatenate([before, after])
-        track = np.column_stack([t[both], up[both], np.isin(both, after)])
-        v_before, v_after, gravity, misfit = impact_of(track)
-        # What misses the positions by more than a twentieth of the height is no flight.
-        slowest = min(v_before, v_after)
-        if min(slowest, gravity) > 0 and misfit < 0.05 * slowest**2 / (2 * gravity):
-            impacts[bottom] = track, v_before, v_after, gravity
-    return impacts
+def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
+    """Return a film of positions; its rounded times are replaced by those of even frames."""
+    frames = np.arange(len(t))
+    even = np.polyval(np.polyfit(frames, t, 1), frames)
+    is_even = np.abs(t - even).max() <= columns[0].scale * columns[0].digit
+    t = np.where(is_even, even, t)
+    digit = columns[1].digit
+    is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
+    is_out = np.zeros(len(t), bool)
+    is_out[~is_copy] = outliers(t[~is_copy], y[~is_copy], digit)
+    return _Film(t, y, lines, is_copy, is_out)
 
 
-def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Lines]]:
-    """Return the times, positions and lines of each film; an empty line or a name divides films."""
+def _films(table: Table, columns: list[Column]) -> list[_Film]:
+    """Return the films; an empty line or a name divides films."""
     films = []
+    most = 0
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
@@ -370,63 +380,65 @@ def _films(table: Table, columns: list[Column]) -> list[tuple[Array, Array, Line
         is_end = np.isnan(both).all(axis=1)
         for rows in np.split(np.arange(len(both)), np.flatnonzero(is_end)):
             frames = rows[~np.isnan(both[rows, 0])]
-            _refuse_gaps(table, both[frames, 0], part.lines[frames])
+            table.refuse(
+                np.diff(both[frames, 0]) < 0,
+                "the time is not after the one before: sort the lines, or leave an empty line "
+                "before another film",
+                lines=part.lines[frames[1:]],
+            )
             found = frames[~np.isnan(both[frames, 1])]
-            if len(found):
+            most = max(most, len(found))
+            if len(found) > 2 * FEWEST:
                 t, y = both[found].T
-                films.append((t - t[0], y, part.lines[found]))
+                films.append(_film(columns, t - t[0], y, part.lines[found]))
+    if not films:
+        raise Refused(
+            f"{table.name}: too few lines of a track, {most}; tops are one column, height"
+        )
     return films
 
 
-def _refuse_gaps(table: Table, t: Array, lines: Lines) -> None:
-    """Refuse times of frames that are not those of one film."""
-    steps = np.diff(t)
-    table.refuse(
-        steps < 0,
-        "the time is not after the one before: sort the lines, or leave an empty line before "
-        "another film",
-        lines=lines[1:],
-    )
-    gap = steps * len(steps) > 20 * np.sum(steps)
-    table.refuse(gap, "a gap in the time: leave an empty line before another film", lines=lines[1:])
-
-
-def _even(table: Table, t: Array, digit: float) -> Array:
-    """Return the times of a film; rounded times are those of even frames."""
-    if len(t) <= 2 * _FEWEST:
-        raise Refused(
-            f"{table.name}: too few lines of a track, {len(t)}; tops are one column, height"
-        )
-    frames = np.arange(len(t))
-    even = np.polyval(np.polyfit(frames, t, 1), frames)
-    return np.where(np.abs(t - even).max() <= digit, even, t)
+def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> list[str]:
+    """Return what is left out of films between the begin of their first and end of last flight."""
+    left: dict[str, list[int]] = {
+        "copies of the frame before": [],
+        "positions that no ball has": [],
+        "frames that are missing before": [],
+    }
+    for film, found in zip(films, impacts, strict=True):
+        during = np.zeros(len(film.t), bool)
+        for _, impact in found:
+            during |= (film.t >= impact.track[0, 0]) & (film.t <= impact.track[-1, 0])
+        steps = np.diff(film.t, prepend=film.t[0])
+        of_kinds = film.is_copy, film.is_out, steps > 2.5 * np.median(steps)
+        for lines, is_left in zip(left.values(), of_kinds, strict=True):
+            lines += film.lines[during & is_left].tolist()
+    return [
+        f"left out are {what}: line {', '.join(map(str, lines[:3]))}"
+        + f" and {len(lines) - 3} more" * (len(lines) > 3)
+        for what, lines in left.items()
+        if lines
+    ]
 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
-    films = [
-        (_even(table, t, columns[0].digit), y, lines) for t, y, lines in _films(table, columns)
-    ]
+    films = _films(table, columns)
     # Upside down no flight is a parabola.
-    ways = [
-        [
-            (lines[i], film, impact)
-            for film, (t, y, lines) in enumerate(films)
-            for i, impact in _impacts_of_track(t, way * y).items()
-        ]
-        for way in (1, -1)
-    ]
-    impacts = max(ways, key=len)
+    ways = [[film.impacts(way) for film in films] for way in (1, -1)]
+    of_films = max(ways, key=lambda each: sum(map(len, each)))
+    numbers, impacts = zip(*itertools.chain(*of_films), strict=True) if any(of_films) else ((), ())
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    numbers, film_of, found = zip(*impacts, strict=True)
-    tracks, *speeds, gravities = zip(*found, strict=True)
+    tracks, *speeds, gravities = zip(*impacts, strict=True)
     pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    lines = np.array(numbers)
     lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
-    long = "a flight of {} s is too long: is it in ms, or of slow motion?"
-    table.refuse(lasts > 9, long, lasts, lines=lines)
-    _refuse_growth(table, "speeds", pairs, lines)
+    table.refuse(
+        lasts > 9,
+        "a flight of {} s is too long: is it in ms, or of slow motion?",
+        lasts,
+        lines=np.array(numbers),
+    )
     mean = float(np.mean(gravities))
     unit = columns[1].unit
     # Without a scale, as of pixels, nothing contradicts gravity.
@@ -440,15 +452,17 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
         ),
         (
             True,
-            f"{len(impacts)} impacts were found between flights that can be fitted; gravity, "
+            f"{len(tracks)} impacts were found between flights that can be fitted; gravity, "
             f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale",
         ),
+        *((True, note) for note in _left_out(films, of_films)),
         (
-            impacts is ways[1],
+            of_films is ways[1],
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]
-    groups = _groups(table, numbers, np.array(film_of) if len(films) > 1 else None)
+    film_of = np.repeat(np.arange(len(films)), [len(each) for each in of_films])
+    groups = _groups(table, numbers, film_of if len(set(film_of)) > 1 else None)
     return Recording(table.name, "track", tracks, groups=groups, notes=tuple(holding(notes)))
 
 
@@ -472,8 +486,8 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         by_rate = "frames are times with a line above the headings, # frame rate: 30; "
         film = by_rate if "frame" in roles else ""
         raise Refused(
-            f"{table.name}: no bounces, as {there}: {film}write {headings_for(table.columns)}; a "
-            "title or a comment begins with #"
+            f"{table.name}: no bounces, as {there}: {film}{HEADINGS}; a title or a comment begins "
+            "with #"
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
@@ -500,24 +514,6 @@ def _is_reading(column: Column, kind: str) -> bool:
     return bool(is_of_bounce or (named and not column.is_count))
 
 
-def _is_group(column: Column, kind: str) -> bool:
-    """Return whether a column that is not known has numbers that each return, as groups have."""
-    _, counts = np.unique(column.numbers, return_counts=True)
-    is_derived = re.search(_ERRORS, column.name.lower())
-    return (
-        kind != "track" and not (column.role or is_derived) and len(counts) > 1 and all(counts > 1)
-    )
-
-
-def _contact_time(table: Table) -> float:
-    """Return the contact time in s, from the head or as the mean of a column; 0 without one."""
-    if "contact time" in table.head:
-        return positive("contact time", table.head["contact time"], "s")
-    times = [value for each in table.of("duration") for value in table.values(each).tolist()]
-    known = [value for value in times if not math.isnan(value)]
-    return sum(known) / max(len(known), 1)
-
-
 def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     """Return the recording of one ball."""
     kind, columns = _layout(table)
@@ -532,7 +528,8 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     if not sum(map(len, recording.chains)):
         named = ", ".join(each.name for each in columns)
         raise Refused(f"{table.name}: no line that is not left out has numbers in {named}")
-    used = [*columns, *errors, *table.of("duration")]
+    used = [*columns, *errors]
+    lasts = table.head.get("contact time")
     ignored = [
         each for each in table.columns if each.name and each not in used and each.role not in TEXTS
     ]
@@ -543,17 +540,13 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
                 f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
                 "delete it, or name it 'remark'"
             )
-        if _is_group(each, kind):
-            raise Refused(
-                f"{table.name}: column {each.name!r} looks like groups: name it 'ball' for one "
-                "result each, or 'group' for one of all"
-            )
     unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
     divides = " and divides the series" if recording.kind in ("flights", "heights") else ""
     notes = [
         *((True, note) for note in recording.notes),
         (unused, f"columns not used: {unused}"),
+        (table.head.get("heard"), f"heard: {table.head.get('heard')}"),
         (gaps, f"a number is missing in line {gaps}, which is left out{divides}"),
         *(
             (
@@ -566,9 +559,8 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
     return replace(
         recording,
         head=table.head,
-        contact_time=_contact_time(table),
+        contact_time=positive("contact time", lasts, "s") if lasts else 0.0,
         is_free=columns[0].role == "flight",
-        has_scale=kind == "track" or all(each.unit != "px" for each in columns),
         notes=tuple(holding(notes)),
     )
 

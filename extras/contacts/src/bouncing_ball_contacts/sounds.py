@@ -15,6 +15,7 @@ import math
 import warnings
 from dataclasses import dataclass
 from html import escape
+from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,8 +25,7 @@ from scipy.io import wavfile
 from scipy.ndimage import maximum_filter1d
 from scipy.signal import butter, sosfilt
 
-from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import Refused, holding, refuse, show, span
+from bouncing_ball_contacts.units import Array, Refused, holding, refuse, show, span
 
 CUTOFFS = (1000.0, 200.0)
 """Frequencies in Hz of the high-pass filter. A soft ball is heard only above the second one."""
@@ -125,8 +125,8 @@ class Heard:
         return "".join(f"{t:.6f}\t{t:.6f}\t{i}\n" for i, t in enumerate(self.times, 1))
 
 
-def sound_of(path: Path, begin: float = 0.0, end: float = math.inf) -> Sound:
-    """Return the sound of a WAV file between two times in s.
+def sound_of(path: Path | BytesIO, begin: float = 0.0, end: float = math.inf) -> Sound:
+    """Return the sound of a WAV file, or of its bytes, between two times in s.
 
     Raises
     ------
@@ -134,7 +134,8 @@ def sound_of(path: Path, begin: float = 0.0, end: float = math.inf) -> Sound:
         If the file cannot be read, or the part has no sound, less than 0.2 s or more than
         :data:`LONGEST_SOUND`.
     """
-    with path.open("rb") as file, warnings.catch_warnings():
+    name = path.name if isinstance(path, Path) else "the sound"
+    with path.open("rb") if isinstance(path, Path) else path as file, warnings.catch_warnings():
         # Chunks that are not known are those of editors.
         warnings.simplefilter("ignore", wavfile.WavFileWarning)
         try:
@@ -142,10 +143,9 @@ def sound_of(path: Path, begin: float = 0.0, end: float = math.inf) -> Sound:
         except Exception:
             # SciPy has no error of its own for a damaged file.
             raise Refused(
-                f"{path.name} is no WAV that can be read: convert it by ffmpeg -i {path.name} "
-                "converted.wav"
+                f"{name} is no WAV that can be read: convert it by ffmpeg -i {name} converted.wav"
             ) from None
-    refuse([(rate < 8000, f"{path.name} has {rate} samples a second: 8000 are needed")])
+    refuse([(rate < 8000, f"{name} has {rate} samples a second: 8000 are needed")])
     part = slice(*(round(min(t, len(data) / rate) * rate) for t in (begin, end)))
     samples = np.atleast_2d(data[part].T).T.astype(float)
     lasts = len(samples) / rate
@@ -153,26 +153,26 @@ def sound_of(path: Path, begin: float = 0.0, end: float = math.inf) -> Sound:
         [
             (
                 begin < 0,
-                f"a part of {path.name} that begins at {begin:g} s begins before the sound",
+                f"a part of {name} that begins at {begin:g} s begins before the sound",
             ),
             (
                 lasts < 0.2,
-                f"{path.name} has {lasts:.3g} s of sound in this part of {len(data) / rate:.4g} s: "
+                f"{name} has {lasts:.3g} s of sound in this part of {len(data) / rate:.4g} s: "
                 "0.2 s are needed",
             ),
             (
                 lasts > LONGEST_SOUND,
-                f"{path.name} has {lasts:.4g} s of sound, more than {LONGEST_SOUND:g} s: choose a "
+                f"{name} has {lasts:.4g} s of sound, more than {LONGEST_SOUND:g} s: choose a "
                 "fall by --from and --to",
             ),
-            (not np.isfinite(samples).all(), f"{path.name} has samples that are no numbers"),
+            (not np.isfinite(samples).all(), f"{name} has samples that are no numbers"),
         ]
     )
     # Eight bits are around 128, and a microphone may have an offset.
     samples -= np.median(samples, axis=0)
     loudest = np.abs(samples).max()
-    refuse([(loudest == 0, f"{path.name} is silent")])
-    return Sound(path.name, rate, begin, samples / loudest)
+    refuse([(loudest == 0, f"{name} is silent")])
+    return Sound(name, rate, begin, samples / loudest)
 
 
 def _onset(high: Array, rate: int, start: int) -> tuple[float, float]:

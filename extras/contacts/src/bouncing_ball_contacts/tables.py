@@ -6,6 +6,7 @@ the head, in which ``# mass: 46 g`` is a quantity of the ball.
 """
 
 import csv
+import io
 import itertools
 import math
 import re
@@ -18,8 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import LARGEST, Refused, in_si, positive, refuse, units_of
+from bouncing_ball_contacts.units import LARGEST, Array, Refused, in_si, positive, refuse, units_of
 
 Lines = NDArray[np.intp]
 
@@ -40,9 +40,8 @@ NAMES = {
     "speed": "speed, velocity, v, impact speed, impact velocity",
     "restitution": "restitution, restitution coefficient, coefficient of restitution, COR, e, r",
     "uncertainty": "uncertainty, standard deviation, std, error",
-    "duration": "contact time, duration",
-    "position": "y, z, y position, position, distance",
-    "frame": "frame, frames, frame number",
+    "position": "y, z, ym, y position, position, distance",
+    "frame": "frame, frames, frame number, slice",
     "ball": "ball, name, body, sample",
     "recording": "recording, run, series, experiment",
     "count": "n, no, nr, number, bounce, bounce number, event number",
@@ -69,23 +68,19 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("heights", ("height",)),
 )
 """What was measured is the first row whose columns are all there."""
+HEADINGS = (
+    "write 'time (s)' over times of impacts, 'interval (s)', 'height (cm)' over successive tops, "
+    "'drop height (cm),rebound height (cm)' over drops, or 't (s),y (cm)' over a film"
+)
+"""What messages say of headings that are not known."""
 _ROLES = {
     re.sub(r"[ .]", "", name.lower()): role
     for role, names in NAMES.items()
     for name in names.split(", ")
 }
 _INHERITED = ("m", "m/s")
-_USUAL = {"m": "cm", "s": "s", "m/s": "m/s", "": ""}
-# Words next to the name of a column that are not the name of a ball.
-_NO_BALL = (
-    "first|second|third|fourth|last|next|total|energy|mean|average|max|maximum|min|minimum|std|"
-    "error|theoretical|ratio|x|in"
-)
 TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
-_READINGS = "|".join(
-    name for role, names in NAMES.items() if role not in TEXTS for name in names.split(", ")
-)
 _SPELLED = {
     "inches": "in",
     "feet": "ft",
@@ -100,6 +95,7 @@ _SPELLED = {
     "milliseconds": "ms",
 }
 """Units in words."""
+_KNOWN_UNITS = {*_SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
 _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
 # Programs write the name of a series before a heading or behind it.
 _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
@@ -112,7 +108,6 @@ _EXPORTED = r"\d+\.\d{6}\t"
 _UNITS = {
     "interval": "s",
     "flight": "s",
-    "duration": "s",
     "time": "s",
     "touch": "s",
     "drop height": "m",
@@ -137,6 +132,8 @@ _LARGEST = {
     "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
 _SMALLEST = 1e-9
+# How files of spreadsheets begin.
+_SHEETS = (b"PK\3\4", b"\xd0\xcf\x11\xe0")
 # What programs and people write for a missing number.
 _MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 
@@ -159,8 +156,6 @@ class Column:
         What the column contains, a key of :data:`NAMES`; empty if the name is not known.
     cells, numbers
         Texts of the cells, and numbers in the unit of the column; NaN for an empty cell.
-    pixel
-        Size of a pixel in m if heights are in px: the largest height is 1 m.
     """
 
     name: str
@@ -168,13 +163,10 @@ class Column:
     role: str
     cells: list[str]
     numbers: Array
-    pixel: float = math.nan
 
     @property
     def scale(self) -> float:
         """Unit of the column in SI units."""
-        if self.unit == "px" and self.pixel > 0:
-            return self.pixel
         return in_si(f"unit of column {self.name!r}", f"1 {self.unit}", _UNITS[self.role])
 
     @property
@@ -183,24 +175,12 @@ class Column:
         steps = np.diff(self.numbers)
         return bool(np.all(self.numbers % 1 == 0) and np.all((steps == 0) | (steps == 1)))
 
-    def may_be(self, role: str) -> bool:
-        """Return whether a column that is not known may have this role; times increase."""
-        is_time = role != "time" or bool(np.all(np.diff(self.numbers) > 0))
-        return is_time and not self.role and self.unit in ("", *units_of(_UNITS.get(role, "m")))
-
-    @property
-    def is_ambiguous(self) -> bool:
-        """Whether 1.500 may be 1500, because no instrument writes thousandths of the unit."""
-        cells = list(filter(None, self.cells))
-        is_thousands = all(re.fullmatch(r"[1-9]\d{0,2}[.,]\d{3}", cell) for cell in cells)
-        return self.unit in ("mm", "mm/s", "px") and bool(cells) and is_thousands
-
     @property
     def digit(self) -> float:
-        """Last digit of the numbers, in SI units."""
+        """Last digit of the numbers, in the unit of the column."""
         written = [re.search(r"[.,](\d+)(?:[eE]([-+]?\d+))?", cell) for cell in self.cells]
         powers = [int(each[2] or 0) - len(each[1]) for each in written if each]
-        return self.scale * 10.0 ** min(powers, default=0)
+        return 10.0 ** min(powers, default=0)
 
 
 @dataclass(frozen=True)
@@ -288,13 +268,32 @@ def _text_of(source: Any) -> tuple[str, str]:
         ]
     )
     data = path.read_bytes()
-    is_text = b"\0" not in data and not data.startswith(b"PK")
-    sound = f"a sound as WAV, as by ffmpeg -i {path.name} {path.stem}.wav"
-    refuse([(not is_text, f"{path.name} is no text: save it as csv in UTF-8, {sound}")])
+    if data.startswith(b"RIFF"):
+        return path.name, _heard(data)
+    refuse(
+        [
+            (data[:4] in _SHEETS, f"{path.name} is a spreadsheet: save its sheet as csv"),
+            (
+                b"\0" in data,
+                f"{path.name} is no text: save it as csv in UTF-8, or a sound as WAV, as by ffmpeg "
+                f"-i {path.name} {path.stem}.wav",
+            ),
+        ]
+    )
     text = data.decode("utf-8-sig", errors="replace")
     # A single line of numbers is read as the arguments of the command.
     is_typed = re.fullmatch(r"[-+−.\d][^\n:;#\t]*\s*", text)
     return path.name, _columns_as_text(typed_readings(text.split())) if is_typed else text
+
+
+def _heard(data: bytes) -> str:
+    """Return the labels of the impacts that are heard in a WAV file, and its head below them."""
+    # Sounds need SciPy, whose import takes longer than a table.
+    from bouncing_ball_contacts.sounds import listen, sound_of
+
+    heard = listen(sound_of(io.BytesIO(data)))
+    said = "; ".join([str(heard), *heard.notes])
+    return f"{heard.labels}# resolution: {heard.resolution:.2g} s\n# heard: {said}"
 
 
 def typed_readings(words: Sequence[str]) -> dict[str, Any]:
@@ -375,15 +374,20 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
     """
     head: dict[str, str] = {}
     lines: dict[int, str] = {}
+    # Below its table ImageJ has another one, with the lengths of the tracks.
+    (text, *_) = re.split(r"\nTrack\W", text)
     for i, written in enumerate(text.rstrip().splitlines(), 1):
         line = re.sub(f"^{_STAMP}", "", written)
+        if re.match(r"Tracks \d|[-|:+ ]*---[-|:+ ]*$", line):
+            # ImageJ counts its tracks, and a line divides the headings of Markdown.
+            continue
         if line.startswith("#"):
             key, _, said = line.lstrip("# ").partition(":")
             key = key.strip().lower()
             head[key] = f"{head.get(key, '')} {said.strip()}".strip()
         elif lines or line.strip():
             lines[i] = line
-    titles = {i: re.split(r'[\t;,"]+', lines[i]) for i in list(lines)[:4]}
+    titles = {i: re.split(r'[\t;|,"]+', lines[i]) for i in list(lines)[:4]}
     known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
     begin = min(known or lines, default=0)
     table = {i: line for i, line in lines.items() if i >= begin}
@@ -395,55 +399,56 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
         # Impacts have no end.
         begins = {i: line.partition("\t")[0] for i, line in labels.items()}
         begin, table = 0, {0: "time (s)", **begins}
-    if len(table) < 2:
+    if len(table) < 2 or not table[begin].strip("| "):
         raise Refused(f"{name} has no line of numbers below a heading")
-    sign = next((each for each in "\t;," if each in table[begin]), "\t")
+    sign = next((each for each in "\t;|," if each in table[begin]), "")
+    below = [_number(cell, True) for cell in list(table.values())[1].split()]
+    if not sign and len(below) > 1 and None not in below:
+        return head, _divided_by_spaces(name, table), True
     rows = {}
     for i, line in table.items():
-        (cells,) = csv.reader([line], delimiter=sign, skipinitialspace=True)
+        (cells,) = csv.reader([line.strip("| ")], delimiter=sign or "\t", skipinitialspace=True)
         rows[i] = [cell.strip() for cell in cells]
     return head, rows, sign != ","
 
 
+def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]:
+    """Return the cells by line of a table whose columns are divided by spaces."""
+    begin, *lines = table
+    # A unit belongs to the name before it, and names with spaces are divided by two.
+    headings = re.sub(r" (?=[(\[])", "", table[begin].strip())
+    rows = {begin: re.split(r"\s{2,}|\t" if re.search(r"\s{2,}|\t", headings) else " ", headings)}
+    rows |= {i: table[i].split() for i in lines}
+    for i in lines:
+        if rows[i] and len(rows[i]) != len(rows[begin]):
+            raise Refused(
+                f"{name}, line {i}: {len(rows[i])} cells below {len(rows[begin])} headings: divide "
+                "columns by commas, because spaces divide names, and hide a missing number"
+            )
+    return rows
+
+
 def _name_in(heading: str) -> tuple[str, str]:
-    """Return the name of a run or a ball in a heading, and the heading without it."""
+    """Return the name of a run or a track in a heading, and the heading without it."""
     program = re.search(_SERIES, heading, re.IGNORECASE)
     if program:
         return program[0].strip(": "), heading.replace(program[0], "")
-    title, unit, role = _heading(heading)
-    for pattern in (
-        f"(?P<plain>{_READINGS}) (?P<ball>.+)",
-        f"(?P<ball>.+?):? (?P<plain>{_READINGS})",
-    ):
-        found = re.fullmatch(pattern, title, re.IGNORECASE)
-        if found and not role and not re.fullmatch(_NO_BALL, found["ball"], re.IGNORECASE):
-            return found["ball"], found["plain"] + f" ({unit})" * bool(unit)
+    track = re.fullmatch(r"(x|y|flag)(\d+)", heading, re.IGNORECASE)
+    if track:
+        return track[2], track[1]
     return "", heading
 
 
-def _series_in(headings: list[str], rows: list[list[str]]) -> list[tuple[str, str]]:
+def _series_in(headings: list[str]) -> list[tuple[str, str]]:
     """Return the name of each column's series, and the heading without it.
 
-    A heading that returns begins another run, and the name of a ball may be the heading of its
-    rebounds.
+    A heading that returns begins another run.
     """
     found = [_name_in(each) for each in headings]
-    columns = [_heading(plain) for _, plain in found]
-    is_drop = {role for _, _, role in columns} - {"", *TEXTS} == {"drop height"}
-    for i, (title, unit, role) in enumerate(columns):
-        plain = found[i][1]
-        is_other = re.match(rf"({_NO_BALL})\b", title, re.IGNORECASE)
-        has_numbers = rows and all(re.match(r"[.\d]|$", row[i]) for row in rows)
-        if role and headings.count(plain) > 1:
-            found[i] = str(headings[: i + 1].count(plain)), plain
-        elif (
-            is_drop
-            and title
-            and not (role or is_other)
-            and unit in ("", *units_of("m"))
-            and has_numbers
-        ):
-            found[i] = title, f"rebound height ({unit})" if unit else "rebound height"
+    plain = [each for _, each in found]
+    for i, each in enumerate(plain):
+        if _heading(each)[2] and headings.count(each) > 1:
+            found[i] = str(headings[: i + 1].count(each)), each
     return found
 
 
@@ -454,7 +459,7 @@ def _below_each_other(
 
     A column without the name of a series, such as one time of all, belongs to each series.
     """
-    names, plain = zip(*_series_in(headings, rows), strict=True)
+    names, plain = zip(*_series_in(headings), strict=True)
     series = {
         each: [i for i, other in enumerate(names) if other in ("", each)]
         for each in dict.fromkeys(filter(None, names))
@@ -476,29 +481,19 @@ def _below_each_other(
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    is_program = any(re.search(_SERIES, each, re.IGNORECASE) for each in headings)
-    divides = "recording" if is_program or "1" in series else "ball"
-    return [divides, *kinds.pop()], numbers, stacked
+    return ["recording", *kinds.pop()], numbers, stacked
 
 
-def headings_for(columns: Sequence[Column]) -> str:
-    """Return how the headings would be written: by the layout that fits most of the columns."""
-    readings = [each for each in columns if each.role not in TEXTS]
-
-    def fitting(roles: Sequence[str]) -> int:
-        """Return how well the columns fit, in order; a name counts more than a unit."""
-        both = zip(readings, roles, strict=False)
-        return sum(3 * (each.role == role) or each.may_be(role) for each, role in both) - len(roles)
-
-    # A touch is written as start, stop 1 or T0.
-    best = max((roles for _, roles in LAYOUTS if "touch" not in roles), key=fitting)
-    units = [
-        each.unit * (each.may_be(role) or each.role == role)
-        for each, role in zip(readings, best, strict=False)
-    ]
-    usual = (_USUAL[_UNITS.get(role, "m")] for role in best)
-    written = itertools.zip_longest(best, units[: len(best)], usual)
-    return ",".join(f"{role} ({unit or other})".replace(" ()", "") for role, unit, other in written)
+def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
+    """Take the headings out of the rows, and a row of units below them; return the headings."""
+    begin, first, *_ = rows
+    headings = rows.pop(begin)
+    units = [re.sub(r"[()\[\]]", "", cell).strip("-") for cell in rows[first]]
+    if not any(units) or not {*map(str.lower, filter(None, units))} <= _KNOWN_UNITS:
+        return headings
+    del rows[first]
+    padded = itertools.zip_longest(headings, units, fillvalue="")
+    return [f"{heading} ({unit})" if unit else heading for heading, unit in padded]
 
 
 def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
@@ -513,8 +508,9 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     """
     name, text = _text_of(source)
     head, rows, is_decimal_comma = _rows_of(name, text)
-    begin, *lines = rows
-    headings = rows.pop(begin)
+    begin = next(iter(rows))
+    headings = _with_row_of_units(rows)
+    lines = list(rows)
     unknown = set(leave_out) - set(lines)
     refuse(
         [
@@ -542,24 +538,12 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
                 f"stands in the heading, as in {title} (cm)"
             )
         column = Column(title, unit, role, cells, np.array(numbers, float))
-        if role and column.is_ambiguous:
-            cell = next(filter(None, cells))
-            raise Refused(
-                f"{name}: {cell!r} below {title!r} can be read as {re.sub('[.,]', '', cell)} or "
-                f"as {cell.replace(',', '.').rstrip('0').rstrip('.')} {unit}: write it without "
-                "this sign, or with fewer digits"
-            )
         # Trials by their numbers divide a table, where those of heights have a unit.
         is_number = title.lower() == "trial" and not unit and column.is_count
         columns.append(replace(column, role="recording") if is_number else column)
     if _number(headings[0] or "no", is_decimal_comma) is not None:
-        said = f"a table begins with headings: write {headings_for(columns)}"
-        raise Refused(f"{name}, line {begin}: {said}")
+        raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
     columns = _with_units(columns)
-    pixels = [each for each in columns if each.unit == "px" and _UNITS.get(each.role) == "m"]
-    largest = max((np.nanmax(each.numbers, initial=0.0) for each in pixels), default=0.0)
-    if largest > 0:
-        columns = [replace(each, pixel=1 / largest) if each in pixels else each for each in columns]
     return Table(name, head, _with_times(head, columns), np.array(lines))
 
 

@@ -62,7 +62,7 @@ INSTANTS = 24
 SHORTEST_STEP = 1e-4
 """Step in s below which no other step is tried: at shorter ones an answer takes minutes, and few
 users run so many steps."""
-MOST_INSTANTS = 96
+MOST_INSTANTS = 192
 """Of the impact within a step, in an answer."""
 # Steps without a move after which a ball has come to rest: no rebound takes so long to begin.
 _LYING = 50
@@ -113,11 +113,11 @@ class ByNumber:
         a body come to rest; and a setting with which it comes to rest.
     pixels : float
         Number of pixels in a metre, of an engine whose lengths are pixels.
-    turns : tuple of float
-        How a ball that is a polygon may be turned, in half sides: 0 with a corner below.
+    either : tuple of mappings
+        Settings that nobody chooses, over which r is taken: how a ball that is a polygon is turned,
+        in half sides, 0 with a corner below; and how the engine rounds.
     skin : float
-        Height in m above the surface at which a ball touches. A ball lies there, so heights are
-        counted from it.
+        Height in m above a polygon at which a ball touches it.
     reach : float
         Height in m above which a body that rises flies freely, and below which a contact is found.
     """
@@ -146,7 +146,7 @@ class ByNumber:
     is_restless: bool = False
     calmed_by: str = ""
     pixels: float = 0.0
-    turns: tuple[float, ...] = ()
+    either: tuple[Mapping[str, float], ...] = ({},)
     skin: float = 0.0
     reach: float = 0.06
     notes: tuple[str, ...] = ()
@@ -233,11 +233,6 @@ _PHYSX = ByNumber(
 _AHEAD = "The contact offset is taken as longer than the way of the body in a step"
 # Drops from 1 m at 1/60 s in PhysX 5.12: 0.34 to 0.66 for 0.70; slow balls did not bounce at all.
 _PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
-_HAS_A_SKIN = (
-    "Heights are counted from where a ball lies, which is up to "
-    f"{1000 * step_rules.SKIN:g} mm above the surface of a polygon, because there is a skin around "
-    f"it; a polygon lies up to {2000 * step_rules.SKIN:g} mm above another one"
-)
 _BOX2D_2 = ByNumber(
     name="box2d-2",
     rule=step_rules.box2d_2,
@@ -253,7 +248,8 @@ _BOX2D_2 = ByNumber(
     set_by="restitutionThreshold",
     skin=step_rules.SKIN,
     reach=step_rules.SKIN,
-    notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3", _HAS_A_SKIN),
+    either=({"rounding": 1e-9}, {"rounding": -1e-9}),
+    notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3",),
 )
 _BOX2D_2_3 = replace(
     _BOX2D_2,
@@ -261,7 +257,7 @@ _BOX2D_2_3 = replace(
     ran="Box2D 2.3.10 of Python",
     set_by="b2_velocityThreshold",
     lines={name: _BOX2D_2.lines[name] for name in ("restitution", "step")},
-    notes=(_CONSTANT, _HAS_A_SKIN),
+    notes=(_CONSTANT,),
 )
 _DART = ByNumber(
     name="dart",
@@ -398,7 +394,7 @@ BY_NUMBER = {
                 "World.setVelocityThreshold": "World.setVelocityThreshold({value}f);",
                 "step": "world.step({value}f, 8, 3);",
             },
-            notes=("libGDX was not run: it has Box2D 2.3, and sets its threshold", _HAS_A_SKIN),
+            notes=("libGDX was not run: it has Box2D 2.3, and sets its threshold",),
         ),
         replace(
             _BOX2D_2,
@@ -411,7 +407,7 @@ BY_NUMBER = {
                 "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
                 "step": "world.step({value});",
             },
-            notes=(_HAS_A_SKIN,),
+            notes=(),
             # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
             not_for=("three touching bodies",),
         ),
@@ -458,7 +454,7 @@ BY_NUMBER = {
                 "step": "Matter.Engine.update(engine, 1000 * {value});",
             },
             pixels=_PIXELS / STANDARD_GRAVITY,
-            turns=(0.0, 0.5, 1.0),
+            either=tuple({"turn": turn} for turn in (0.0, 0.5, 1.0)),
             reach=0.03,
             settings={"frictionAir": 0.01},
             designed=({"frictionAir": 0.0},),
@@ -751,22 +747,59 @@ def _after(steps: Steps, z: float, way: float, reach: float = 0.0) -> tuple[floa
     return 0.0, 0.0
 
 
+def _rebounds(engine: ByNumber, at: Fall, z: Array, v: Array, speed: float) -> tuple[Array, Array]:
+    """Return heights and velocities of balls that fly up again, from those of their falls."""
+    way = speed * at.step
+    reach = _reach(engine, at)
+    most = 2000 + math.ceil(6 * (reach + 4 * way) / way)
+    after = [
+        _after(islice(engine.rule(at, *start), most), start[0], way, reach)
+        for start in zip(z.tolist(), v.tolist(), strict=True)
+    ]
+    z, v = np.array(after).T
+    return z, v
+
+
+def _reach(engine: ByNumber, at: Fall) -> float:
+    """Return the height in m below which a contact may be found; PyBullet finds large balls ahead."""
+    return max(engine.reach, at.settings.get("ahead", 0.0))
+
+
+def drops(engine: ByNumber, at: Fall, heights: Array, starts: Array) -> Array:
+    """Return √(h′/h) of drops from heights in m above the floor.
+
+    A drop starts after a share of a step, for which it has fallen already.
+
+    >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
+    >>> drops(BY_NUMBER["jolt"], at, np.array([0.1, 0.1]), np.array([0.0, 0.5])).round(2)
+    array([0.82, 0.84])
+    """
+    speed = math.sqrt(2 * at.gravity * heights.mean())
+    # As far as a ball falls in a number of steps.
+    z = heights - at.added * at.step * starts * ((starts - 1) / 2 + engine.sinks)
+    v = -at.added * starts
+    # Down to where a contact may be found the ball flies freely, longer if it is damped.
+    near = _reach(engine, at) + 4 * speed * at.step
+    ways, speeds = _flight(engine, at, v[:, None], 2 * speed / at.added)
+    n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
+    each = np.arange(len(n)), np.maximum(n, 0)
+    z, v = _rebounds(engine, at, z + ways[each], speeds[each], speed)
+    # And so it flies up to its top.
+    ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
+    return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
+
+
 def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None = None) -> Array:
     """Return √(h′/h) of impacts with a speed in m/s, at instants within a step.
 
-    Without gravity it is the ratio of the speeds.
-
-    >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
-    >>> round(float(restitutions(BY_NUMBER["jolt"], at, speed=1.4).mean()), 2)
-    0.83
+    A fall meets the surface at another instant from another height, or if it starts at another one.
+    Without gravity r is the ratio of the speeds.
     """
     way = speed * at.step
-    # PyBullet finds large balls farther ahead.
-    reach = max(engine.reach, at.settings.get("ahead", 0.0))
     # Within a step r changes by about g h/v.
     is_short = 0 < at.added < 1e-3 * speed
     instants = instants or (INSTANTS // 6 if is_short else INSTANTS)
-    height = speed**2 / (2 * at.gravity) if at.gravity else reach + way
+    height = speed**2 / (2 * at.gravity) if at.gravity else math.inf
     refuse(
         [
             (
@@ -775,35 +808,19 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
                 f"{show(at.step, 's')}: between 1 µm and 1 km are computed",
             ),
             (
-                height <= way / 2,
+                height <= way / 2 + engine.skin,
                 f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
                 "greater height",
             ),
         ]
     )
-    heights = height + way * (np.arange(instants) / instants - 0.5)
-    z = engine.skin + heights
-    v = np.full(instants, -speed)
-    near = reach + 4 * way
-    if at.gravity:
-        # Down to where a contact may be found the ball flies freely, longer if it is damped.
-        longest = 2 * math.sqrt(2 * height / at.gravity) / at.step
-        ways, speeds = _flight(engine, at, np.zeros(1), longest)
-        n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
-        n = np.maximum(n, 0)
-        z = z + ways[n]
-        v = speeds[n]
-    most = 2000 + math.ceil(6 * near / way)
-    after = [
-        _after(islice(engine.rule(at, *start), most), start[0], way, reach)
-        for start in zip(z.tolist(), v.tolist(), strict=True)
-    ]
-    z, v = np.array(after).T
+    places = np.arange(instants) / instants
     if not at.gravity:
-        return v / speed
-    # And so it flies up to its top.
-    ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
-    return np.sqrt(np.maximum(z + ways.max(axis=1) - engine.skin, 0.0) / heights)
+        z = _reach(engine, at) + way * (places + 0.5)
+        return _rebounds(engine, at, z, np.full(instants, -speed), speed)[1] / speed
+    half = places[::2]
+    of_heights = drops(engine, at, height + way * (half - 0.5), 0 * half)
+    return np.concatenate([of_heights, drops(engine, at, np.full(len(half), height), half)])
 
 
 def _number(value: float) -> str:
@@ -852,9 +869,15 @@ class Case(NamedTuple):
     other: float | None = None
 
     @property
+    def speed(self) -> float:
+        """Speed in m/s at which the ball touches, above the floor if there is a skin."""
+        bounce = self.bounce
+        return math.sqrt(max(bounce.impact_speed**2 - 2 * bounce.load * self.engine.skin, 0.0))
+
+    @property
     def never_bounces(self) -> bool:
         """Whether the impact is below a threshold that is a constant."""
-        fastest = self.bounce.impact_speed + self.bounce.load * self.step
+        fastest = self.speed + self.bounce.load * self.step
         return fastest <= self.threshold and self.engine.is_constant
 
     def number(self, written: float) -> float:
@@ -888,8 +911,8 @@ class Case(NamedTuple):
             mass=bounce.reduced_mass if bounce.mass else 1.0,
             settings=settings,
         )
-        turned = [replace(at, settings={**settings, "turn": turn}) for turn in row.turns] or [at]
-        return np.concatenate([restitutions(row, each, speed, instants) for each in turned])
+        falls = [replace(at, settings={**settings, **each}) for each in row.either]
+        return np.concatenate([restitutions(row, each, speed, instants) for each in falls])
 
     def slower(self, written: float) -> Range:
         """Return r at a third of the speed; NaN if the step is too long for it."""
@@ -922,7 +945,7 @@ class Case(NamedTuple):
         """
         best = self.nearest()
         row = self.engine
-        speed = self.bounce.impact_speed
+        speed = self.speed
         if row.is_constant or not row.set_by:
             return best
         if best.deviation > TOLERANCE and speed < 1.5 * self.threshold:
@@ -993,7 +1016,7 @@ class Tried(NamedTuple):
             snippet=_snippet(case, number),
             warnings=tuple(_warnings(case, number, r)),
             not_for=row.not_for,
-            remarks=tuple(_remarks(case, number)),
+            remarks=tuple(_remarks(case, number, r)),
             gives=f"{row.parameter} = {number:.4g}{named} at {step} gives r = {r}",
             numbers={"number": case.number(number), "threshold": case.threshold},
         )
@@ -1003,12 +1026,12 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     """Return what changes r, the severest first."""
     row = case.engine
     bounce = case.bounce
-    speed = bounce.impact_speed
+    speed = case.speed
     number = case.number(written)
     slower = case.slower(written)
     slowest = case.threshold / (max(number, 1e-9) if row.is_of_rebound else 1.0)
     is_slow = 0 < speed <= slowest
-    lowest = slowest**2 / (2 * bounce.load) if bounce.load else 0.0
+    lowest = slowest**2 / (2 * bounce.load) + row.skin if bounce.load else 0.0
     slow = f"drops under {show(lowest, 'm')}" if lowest else f"impacts below {show(slowest, 'm/s')}"
     way = speed * case.step
     settling = case.settling(written)
@@ -1020,9 +1043,6 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
         else f"above a threshold of {show(settling, 'm/s')}"
     )
     limit = row.limit(case.threshold)
-    # Share of the drop that is within the skin.
-    skin = min(2 * bounce.load * row.skin / speed**2, 1.0)
-    from_floor = Range(*(math.sqrt(skin + (1 - skin) * each**2) for each in r))
     return holding(
         [
             (
@@ -1040,11 +1060,6 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
                 f"of {limit}",
             ),
             (r.high >= 1.0005, f"at some instants the ball gains energy: r is up to {r.high:.3f}"),
-            (
-                skin and from_floor.mean > r.high,
-                f"heights are counted from a skin of {show(row.skin, 'm')}: from the floor r is "
-                f"{from_floor}",
-            ),
             (
                 speed / 3 > slowest and abs(slower.mean - r.mean) > TOLERANCE / 2,
                 f"at a third of the speed r is {slower}",
@@ -1066,7 +1081,12 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     )
 
 
-def _remarks(case: Case, written: float) -> list[str]:
+def from_skin(r: Range, share: float) -> Range:
+    """Return r of heights above a skin that takes a share of the drop, from r above the floor."""
+    return Range(*(math.sqrt(max(each**2 - share, 0.0) / (1 - share)) for each in r))
+
+
+def _remarks(case: Case, written: float, r: Range) -> list[str]:
     """Return remarks, what was given, and what was assumed."""
     row = case.engine
     bounce = case.bounce
@@ -1083,12 +1103,19 @@ def _remarks(case: Case, written: float) -> list[str]:
     }
     defaulted = ", ".join(f"{name} = {value:g}" for name, value in defaults.items())
     bodies = "alike" if case.other is None else f"and {case.other:g} of the other body"
+    fall = bounce.impact_speed**2 / (2 * bounce.load) if bounce.load else math.inf
     return holding(
         [
             (
                 damping and bounce.gravity,
                 f"The flights are damped by {row.damped_by} = {damping:g}, which lowers r: it "
                 "holds for this height only",
+            ),
+            (
+                row.skin,
+                f"A ball lies up to {show(row.skin, 'm')} above a polygon, and a polygon up to "
+                f"{show(2 * row.skin, 'm')} above another one: from there r is "
+                f"{from_skin(r, row.skin / fall)}",
             ),
             *((True, note) for note in row.notes),
             (
@@ -1179,6 +1206,7 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     if best.does_it:
         return found
     nothing = f"at {show(step, 's')} no number gives this r"
+    nothing += f", because a ball rises to the skin of {show(engine.skin, 'm')}" * bool(engine.skin)
     nothing += "" if also else ": nothing is written to paste"
     return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 

@@ -21,7 +21,7 @@ import numpy as np
 from engine_page import KEPT, NOT_RUN, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.number_rows import BY_NUMBER
 
 G = engine_drops.G
 INSTANTS = 13

@@ -22,8 +22,9 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.engines import ENGINES
-from bouncing_ball_contacts.rebounds import BY_NUMBER, from_skin
+from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rebounds import from_skin
+from bouncing_ball_contacts.spring_rows import ENGINES
 
 INSTANTS = 9
 DESIGNS = {

@@ -5,7 +5,6 @@ import functools
 import json
 import math
 import re
-from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -14,14 +13,9 @@ import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import as_compared
-from bouncing_ball_contacts.rebounds import (
-    BY_NUMBER,
-    NAMES,
-    Case,
-    _after,
-    drops,
-    rows_of,
-)
+from bouncing_ball_contacts.names import NAMES, rows_of
+from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rebounds import Case, _after, drops
 from bouncing_ball_contacts.step_rules import Fall
 
 G = 9.81
@@ -826,11 +820,6 @@ def test_shapes_that_left_the_range_in_an_engine_are_excepted():
 def test_a_threshold_is_a_height_under_gravity_and_a_speed_without(bounce, said):
     found = design(Bounce(restitution=0.8, radius=0.1, **bounce), "jolt", 1 / 240)
     assert any(said in text for text in found.warnings)
-
-
-def test_two_free_bodies_meet_without_gravity():
-    two = Bounce(restitution=0.8, radius=0.1, mass=1, other_mass=1, speed=3)
-    assert "drops" not in design(two, "pybullet", 1 / 240).explained
 
 
 def test_a_spring_is_written_where_no_number_gives_r():

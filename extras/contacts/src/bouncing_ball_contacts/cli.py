@@ -10,9 +10,11 @@ import click
 
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce
-from bouncing_ball_contacts.engines import ENGINES, as_compared
+from bouncing_ball_contacts.engines import as_compared
+from bouncing_ball_contacts.names import rows_of
+from bouncing_ball_contacts.number_rows import BY_NUMBER
 from bouncing_ball_contacts.questions import design, diagnose
-from bouncing_ball_contacts.rebounds import BY_NUMBER, rows_of
+from bouncing_ball_contacts.spring_rows import ENGINES
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
@@ -43,7 +45,6 @@ _BODY = [
     click.Option(
         ["--points"], type=int, default=1, help="Contact points: 4 for the face of a box."
     ),
-    click.Option(["--other-mass"], help="Mass of a second free body; needs the speed of approach."),
     click.Option(
         ["--gravity"],
         default=str(STANDARD_GRAVITY),

@@ -110,36 +110,22 @@ class Problem:
         refuse([(self.bounce.mass is None, missing)])
 
     @property
-    def usable_depth(self) -> float:
-        """Largest depth in m at which a contact works in a scene.
-
-        A ball that sinks by more than its radius may leave a table on its other side, and two free
-        bodies that overlap by more than a quarter of one slide past each other.
-        """
-        share = 1 if self.bounce.other_mass is None else 4
-        return min(self.bounce.size, self.bounce.other_size) / share
-
-    @property
     def deepest(self) -> float:
-        """Depth in m above which the engine loses the body, or two bodies pass each other."""
-        size = self.bounce.size
-        return min(self.engine.deepest * size, size + self.bounce.other_size)
+        """Depth in m above which the engine loses the body."""
+        return self.engine.deepest * self.bounce.size
 
     @property
     def lost(self) -> str:
         """Message for depths above the deepest one."""
-        if self.bounce.other_mass is None:
-            return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
-        return f"bodies that sink more than {show(self.deepest, 'm')} pass through each other"
+        return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
 
     def setting(self, step: float) -> Setting:
         """Return the setting of a contact at a time step in s."""
         return Setting(
-            mass=self.bounce.reduced_mass,
+            mass=self.bounce.mass,
             step=step,
             points=self.bounce.points,
-            radius=self.bounce.reduced_radius,
-            both_free=self.bounce.other_mass is not None,
+            radius=self.bounce.size,
         )
 
     def law(self, depth: Any, ratio: Any) -> Law:
@@ -154,15 +140,15 @@ class Problem:
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
         """Return the drops of contacts at a time step in s."""
         bounce = self.bounce
-        return drop(law, self.engine.scheme, step, bounce.impact_speed, bounce.load, trials)
+        return drop(law, self.engine.scheme, step, bounce.impact_speed, bounce.gravity, trials)
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
         """Return the outcome of a contact at a time step in s."""
         found = self.drops(law, step, trials)
-        force = found.peak * self.bounce.reduced_mass
-        rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
+        force = found.peak * self.bounce.mass
+        rest = float(np.max(law.rest(self.bounce.gravity))) if self.bounce.gravity else 0.0
         # A contact of MuJoCo hardly feels gravity: the body hops by what this moves it in a step.
-        hop = self.bounce.load * step**2 if isinstance(law, Impedance) else 0.0
+        hop = self.bounce.gravity * step**2 if isinstance(law, Impedance) else 0.0
         is_resolved = rest == 0 or rest >= max(self.engine.resolution * self.bounce.size, hop)
         return Outcome(
             # A body that creeps is not followed until it is at rest.
@@ -178,11 +164,11 @@ class Problem:
         Each step of gravity adds the speed g h, which the contact throws back. A rebound keeps r of
         a speed, so the body leaves with about g h/(1 - r).
         """
-        fall = self.bounce.load * step
+        fall = self.bounce.gravity * step
         speed = 0.0
         if isinstance(law, Impedance):
             speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
-        height = speed**2 / (2 * self.bounce.load) if speed else 0.0
+        height = speed**2 / (2 * self.bounce.gravity) if speed else 0.0
         # All bodies hop a little in MuJoCo.
         return (height > self.bounce.size / 100) * (
             f"it never lies still, but hops by up to about {show(height, 'm', 2)}: less at a "
@@ -198,7 +184,7 @@ class Problem:
         share = float(law.damping) / math.sqrt(float(law.stiffness))
         if not share:
             return "friction acts as a damper: nothing of a sliding speed is taken"
-        creeps = 2e3 * self.bounce.load * math.sin(math.radians(10)) * step / (math.pi * share)
+        creeps = 2e3 * self.bounce.gravity * math.sin(math.radians(10)) * step / (math.pi * share)
         return (
             f"friction acts as a damper: a bounce leaves {100 * math.exp(-math.pi * share):.2g} % "
             "of a sliding speed that Coulomb's friction would take"
@@ -215,7 +201,7 @@ class Problem:
         """Undamped depth δ in m of a contact that was given; None without one."""
         time = self.bounce.contact_time
         if self.bounce.stiffness is not None:
-            time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
+            time = math.pi * math.sqrt(self.bounce.mass / self.bounce.stiffness)
         return None if time is None else time / self.duration
 
     def ratio(self, depth: float, step: float, guess: float = 0.0) -> float:
@@ -310,7 +296,7 @@ class Problem:
         If no contact does, return the contact with the nearest r.
         """
         tried = []
-        shares = (1.0, _SHARE) if self.bounce.load and self.given_depth is None else (1.0,)
+        shares = (1.0, _SHARE) if self.bounce.gravity and self.given_depth is None else (1.0,)
         for share in shares:
             contact = None
             for count in _COUNTS:
@@ -363,16 +349,16 @@ class Problem:
             shorter = _written(step / 2**halvings)
             # With the fewest steps a contact is the least deep.
             found = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
-            if found.outcome.depth[1] <= self.usable_depth:
+            if found.outcome.depth[1] <= self.bounce.size:
                 found = self.keeping(functools.partial(_same, shorter), near=short)
                 if not self.keeps(found.outcome, self.permitted):
-                    found = self.stiffest(shorter, self.usable_depth)
+                    found = self.stiffest(shorter, self.bounce.size)
             return found
 
         def is_held(halvings: int) -> bool:
             found = contact(halvings).outcome
-            # Beyond its size the ground swallows a body at rest.
-            return self.keeps(found, self.usable_depth) and not found.rest >= self.bounce.size
+            # A ball that sinks by more than its radius may leave a table on its other side.
+            return self.keeps(found, self.bounce.size) and not found.rest >= self.bounce.size
 
         longer = max(math.ceil(math.log2(step / short.step)), 1)
         place = bisect_left(range(longer), True, key=is_held)
@@ -451,7 +437,7 @@ def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:
         not_for=not_for(problem, outcome),
         remarks=tuple(_remarks(problem, law, step, asked, outcome)),
         numbers={
-            "stiffness": float(deep.stiffness) * bounce.reduced_mass,
+            "stiffness": float(deep.stiffness) * bounce.mass,
             "damping_ratio": float(deep.damping / deep.stiffness**0.5 / 2),
         },
     )
@@ -461,8 +447,7 @@ def snippet(problem: Problem, parameters: Parameters, step: float, asked: float 
     """Return what to paste; the parameters of an engine that has no snippet here."""
     engine = problem.engine
     bounce = problem.bounce
-    bodies = "ground" if bounce.other_mass is None else "pair"
-    template = snippet_of(f"{engine.name}-{bodies}") or snippet_of(engine.name)
+    template = snippet_of(engine.name)
     if not template:
         return "\n".join(f"{name} = {value}" for name, value in parameters.items())
     mu = bounce.friction or 0.0
@@ -485,15 +470,13 @@ def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
     is_wider = max(outcome.restitution.low - low, high - outcome.restitution.high) > TOLERANCE
     # The widest range is that of the largest speed.
     low, high = problem.promised(outcome, max(engine.sliding.speeds, default=None))
-    is_ball = bounce.points == 1 and not bounce.other_mass
     return tuple(
         holding(
             [
                 (is_wider, f"bodies that slide (r = {span(low, high)})"),
                 (bounce.points > 1, "boxes off flat or that slide fast"),
-                (bounce.other_mass, "bodies that slide past each other"),
                 *((True, text) for text in engine.not_for),
-                *((is_ball, text) for text in engine.not_of_one_point),
+                *((bounce.points == 1, text) for text in engine.not_of_one_point),
             ]
         )
     )
@@ -567,7 +550,7 @@ def _remarks(
     return holding(
         [
             (
-                outcome.rest > 0 and bounce.load,
+                outcome.rest > 0 and bounce.gravity,
                 f"At rest it lies {show(outcome.rest, 'm')} deep; the largest force is "
                 f"{show(outcome.force[1], 'N')}",
             ),
@@ -582,11 +565,6 @@ def _remarks(
             *((True, note) for note in engine.notes),
             (isinstance(engine.scheme, Implicit), STEP_ONLY),
             (bounce.points > 1 and engine.box, engine.box),
-            (
-                bounce.other_mass,
-                f"Two free bodies act as one of {show(bounce.reduced_mass, 'kg', 4)}, their "
-                "reduced mass; r is along the line of their centres",
-            ),
             (not engine.ran, f"The row of {engine.name} was never run in its engine"),
             (True, f"Given: {', '.join(given)}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),

@@ -24,16 +24,8 @@ import numpy as np
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem
-from bouncing_ball_contacts.engines import (
-    CONES,
-    ENGINES,
-    MODES,
-    Engine,
-    Parameters,
-    as_compared,
-    one_of,
-    parameters_of,
-)
+from bouncing_ball_contacts.engines import MODES, Engine, Parameters, as_compared, one_of
+from bouncing_ball_contacts.names import parameters_of
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
@@ -46,6 +38,7 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
+from bouncing_ball_contacts.spring_rows import CONES, ENGINES
 from bouncing_ball_contacts.units import Refused, holding, in_si, refuse, show, within
 
 _SHARES = ("e", "soft_erp")
@@ -201,9 +194,9 @@ def diagnose_spring(
     spring = _spring(contact.law)
     found = Found(
         outcome=contact.outcome(),
-        limit=_in_short_steps(contact, bounce.load),
+        limit=_in_short_steps(contact, bounce.gravity),
         free=_in_short_steps(contact, 0.0),
-        stiffness=float(spring.stiffness) * bounce.reduced_mass,
+        stiffness=float(spring.stiffness) * bounce.mass,
         damping_ratio=float(spring.damping / spring.stiffness**0.5 / 2),
     )
     wanted = bounce.restitution
@@ -259,7 +252,7 @@ def _remarks(
         ]
     )
     law = contact.law
-    lies = bounce.load > 0 and math.isfinite(found.outcome.rest)
+    lies = bounce.gravity > 0 and math.isfinite(found.outcome.rest)
     return holding(
         [
             (

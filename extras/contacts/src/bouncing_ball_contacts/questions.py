@@ -6,9 +6,10 @@ from typing import Any
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.designs import design_spring
-from bouncing_ball_contacts.engines import ENGINES, Engine, as_compared
-from bouncing_ball_contacts.rebounds import design_number, diagnose_number, rows_of
-from bouncing_ball_contacts.tables import experiments
+from bouncing_ball_contacts.engines import Engine, as_compared
+from bouncing_ball_contacts.names import rows_of
+from bouncing_ball_contacts.rebounds import design_number, diagnose_number
+from bouncing_ball_contacts.spring_rows import ENGINES
 from bouncing_ball_contacts.units import Refused
 
 
@@ -42,8 +43,8 @@ def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity
         raise Refused("give a bounce: design(Bounce(mass='50 g', restitution=0.8), 'mujoco')")
     if bounce.restitution is None:
         raise Refused(
-            "the restitution is missing: --restitution 0.8 or restitution=0.8; measured ones are "
-            f"printed by bounce fit and one of {', '.join(experiments())}"
+            "the restitution is missing: --restitution 0.8 or restitution=0.8; 'bounce fit' "
+            "measures it"
         )
     if isinstance(engine, Engine):
         return design_spring(bounce, engine, time_step)

@@ -21,6 +21,7 @@ import numpy as np
 from engine_page import KEPT, NOT_RUN, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
+from bouncing_ball_contacts.engines import ran_in
 from bouncing_ball_contacts.number_rows import BY_NUMBER
 
 G = engine_drops.G
@@ -164,7 +165,7 @@ def plans(table):
 def reason(name):
     """Return why an engine is not run, as its row has it."""
     row = BY_NUMBER[name]
-    return next((note for note in row.notes if "was not run" in note), f"no program for {name}")
+    return ran_in(row) if row.borrows else f"no program for {name}"
 
 
 def ran(table):

@@ -522,15 +522,23 @@ def _physx():
     return engine, ovphysx.types.TensorType.RIGID_BODY_POSE, ovstage
 
 
-def _isaac_lab(text):
-    """Return what a snippet for Isaac Lab sets, by the names of a stage."""
-    given = {}
+def _of_snippet(text):
+    """Return what a snippet for PhysX or Isaac Lab sets, by the names of a stage."""
+    made = []
 
     def configuration(**values):
-        given.update(values)
+        made.append(SimpleNamespace(**values))
+        return made[-1]
 
-    kinds = dict.fromkeys(("SimulationCfg", "PhysxCfg", "RigidBodyMaterialCfg"), configuration)
-    exec(text, {**kinds, "sim_utils": SimpleNamespace(**kinds)})
+    if "sceneDesc.solverType = PxSolverType::ePGS;" in text:
+        numbers = re.findall(r"(?:simulate|Restitution|Damping)\(-?([^f)]+)", text)
+        step, stiffness, damping = map(float, numbers)
+        springs = {"compliant_contact_stiffness": stiffness, "compliant_contact_damping": damping}
+        configuration(**springs, dt=step, solver_type=0)
+    else:
+        kinds = ("SimulationCfg", "PhysxCfg", "PhysxRigidBodyMaterialCfg")
+        exec(text, dict.fromkeys(kinds, configuration))
+    given = {name: value for each in made for name, value in vars(each).items()}
     names = {
         "compliant_contact_stiffness": "compliantContactStiffness",
         "compliant_contact_damping": "compliantContactDamping",
@@ -554,7 +562,7 @@ def physx(trial, other=None):
     }
     friction = 0.5 if trial.friction is None else trial.friction
     snippet = trial.design.snippet
-    one = defaults | (_isaac_lab(snippet) if snippet else trial.design.parameters)
+    one = defaults | (_of_snippet(snippet) if snippet else trial.design.parameters)
     step = one.get("dt", trial.step)
     of_table = one if other is None else defaults | other
     r = trial.size

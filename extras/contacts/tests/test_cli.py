@@ -178,7 +178,7 @@ MISTAKES = {
     f"{MUJOCO} solref=": "two numbers",
     f"{MUJOCO} solref=1,2,3": "two numbers",
     f"{MUJOCO} solreff=0.02": "did you mean solref",
-    f"{MUJOCO} solref='0.02 1' dt=1ms": "the time step is given twice, as 1ms and as 2ms",
+    f"{MUJOCO} solref='0.02 1' dt=1ms": "; the time step is --time-step",
     f"{MUJOCO} integrator=RK4": "mujoco: 'integrator' is not computed here",
     f"{MUJOCO} kn=1": "computed are solref, solimp, refsafe",
     f"{PYBULLET} contactStiffness=1e4": "give both",

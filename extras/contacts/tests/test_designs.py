@@ -320,7 +320,8 @@ def test_a_given_friction_is_in_the_snippet_or_said_to_be_missing(of_ball):
     for name, text in (
         ("drake-sap", "CoulombFriction(0.5, 0.5)"),
         ("drake", "CoulombFriction(0.5, 0.5)"),
-        ("physx", "dynamic_friction=0.5"),
+        ("physx", "setDynamicFriction(0.5);"),
+        ("isaac-lab", "dynamic_friction=0.5"),
         ("ode", "mu = 0.5"),
         ("mujoco", 'friction="0.5 0.005 0.0001"'),
         # PyBullet multiplies those of two bodies.
@@ -476,7 +477,7 @@ def test_numbers_that_overflow_are_one_line(more):
 def test_names_of_engines_are_forgiving():
     ball = Bounce(mass=1, restitution=0.8, contact_time="4 ms")
     assert design(ball, "MuJoCo").engine == "mujoco"
-    assert design(ball, "isaac_lab").engine == "physx"
+    assert design(ball, "isaac_lab").engine == "isaac-lab"
     with pytest.raises(Refused, match="did you mean mujoco"):
         design(ball, "mujocco")
     with pytest.raises(Refused, match="engine 5 is not known"):

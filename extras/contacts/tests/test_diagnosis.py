@@ -211,7 +211,7 @@ def test_a_restitution_by_number_is_that_of_pybullet():
     assert found.outcome.restitution == pytest.approx((0.730, 0.814, 0.850), abs=0.003)
     assert "linearDamping = 0.04 lowers r" in str(found)
     half = diagnose(ball, "pybullet", {"restitution": 0.5}, "1/240")
-    assert half.outcome.restitution == pytest.approx((0.202, 0.267, 0.295), abs=0.003)
+    assert half.outcome.restitution == pytest.approx((0.196, 0.269, 0.297), abs=0.003)
     assert diagnose(ball, "pybullet", None, "1/240").outcome.restitution == (0, 0, 0)
     # One body's restitution counts for nothing if the other one has none.
     alone = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240", other={})

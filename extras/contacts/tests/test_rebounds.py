@@ -28,7 +28,7 @@ LARGEST = {
     "rapier": 3e-4,
     "physx": 0.0016,
     "unity": 0.0016,
-    "box2d": 3e-4,
+    "box2d-3.1": 3e-4,
 }
 
 
@@ -230,8 +230,9 @@ def test_what_is_pasted_sets_the_time_step(name, given):
     bounce = Bounce(mass="50 g", radius="30 mm", drop_height="2 m", restitution=0.7, **given)
     found = design(bounce, name, time_step=None if given else "1.25 ms")
     numbers = [float(each) for each in re.findall(r"\d+\.?\d*(?:e-?\d+)?", found.snippet)]
-    # Godot has ticks in a second.
-    step = 1 / found.time_step if name == "godot-jolt" else found.time_step
+    # These have steps in a second.
+    is_rate = not given and name in ("godot-jolt", "isaac-sim", "matter-js")
+    step = 1 / found.time_step if is_rate else found.time_step
     assert pytest.approx(step, rel=1e-5) in numbers
 
 
@@ -415,7 +416,7 @@ def test_what_does_not_do_it_is_not_pasted(typed):
     status, out, err = typed(
         "design --engine box2d-2.3 --restitution 0.6 --drop-height 5cm --time-step 1/60"
     )
-    assert (status, err) == (0, "")
+    assert (status, err) == (1, "")
     assert "restitution = " not in out and "nothing is written to paste" in out
     assert "near the threshold of 1 m/s, b2_velocityThreshold" in out
 
@@ -434,12 +435,12 @@ def test_names_without_an_answer_are_refused_with_the_reason(name, typed):
     ("typed_name", "name"),
     [
         ("Rapier3D", "rapier"),
-        ("Box2D v3", "box2d"),
+        ("Box2D v3", "box2d-3.1"),
         ("PhysX 5", "physx"),
         ("gz-sim8", "gazebo-sim"),
         ("gz-sim", "gazebo-sim"),
         ("matter.js", "matter-js"),
-        ("Box2D", "box2d"),
+        ("Box2D", "box2d-3.1"),
         ("pybox2d", "box2d-2.3"),
         ("jbox2d", "box2d-2.3"),
         ("Box2D 2.3", "box2d-2.3"),
@@ -518,12 +519,43 @@ def test_the_command(typed):
 
 
 def test_ode_has_two_numbers_of_its_own(typed):
-    """With kp and kd it was refused, with a hint to Gazebo."""
+    """With kp and kd Python refused it."""
     line = "diagnose --engine ode --mass 1 --time-step 1ms"
     by_spring = typed(f"{line} kp=1e5 kd=50 --explain")[1]
     # ERP = h kp/(h kp + kd), CFM = 1/(h kp + kd).
-    own = typed(f"{line} soft_erp={100 / 150} soft_cfm={1 / 150} --explain")[1]
+    own = typed(f"{line} soft_cfm={1 / 150} soft_erp={100 / 150} --explain")[1]
     assert by_spring == own and "soft_cfm" in own
+    ball = Bounce(mass=1)
+    assert diagnose(ball, "ode", {"kp": "100 N/mm", "kd": 50}, "1 ms").explained == own.rstrip()
+    # A design has them beside its numbers.
+    found = design(Bounce(mass=1, restitution=0.5, penetration="5 mm"), "ode")
+    kp, kd = re.search(r"kp = (\S+) N/m and kd = (\S+) N s/m", found.snippet).groups()
+    again = diagnose(ball, "ode", {"kp": kp, "kd": kd}, found.time_step)
+    assert again.outcome.restitution == pytest.approx(found.outcome.restitution, abs=1e-4)
+    for given in ({"kp": 1e5}, {"kp": 1e5, "kd": 5, "soft_erp": 0.1}):
+        with pytest.raises(Refused, match="give kp and kd, and nothing beside them"):
+            diagnose(ball, "ode", given, "1 ms")
+
+
+@pytest.mark.parametrize("name", [name for name, row in BY_NUMBER.items() if row.borrows])
+def test_what_was_not_run_says_so_where_it_is_read(name, typed):
+    """Five products answered as those that were run."""
+    row = BY_NUMBER[name]
+    said = f"not run: the rule of {row.borrows}, run in {BY_NUMBER[row.borrows].ran}"
+    found = design(Bounce(**BALL), name, "1/120")
+    assert found.ran == said and str(found).split("\n")[1] == f"! {said}"
+    listed = typed("engines")[1]
+    assert f"\n    {said}\n" in listed[listed.index(f"\n{name}: ", listed.index("by number")) :]
+    assert "not run" not in str(design(Bounce(**BALL), row.borrows, "1/120"))
+    # Newton's MuJoCo solver has no restitution.
+    assert ("newton-mujoco" in str(found)) == name.startswith("isaac")
+
+
+def test_nothing_to_paste_is_an_exit_status_of_1(typed):
+    low = "--engine planck --drop-height 10cm --restitution 0.3 --time-step 1/60"
+    assert typed(f"design {low}")[0] == 1
+    kept = "--engine rapier restitution=0.8 --time-step 1/60"
+    assert typed(f"diagnose {kept}")[0] == typed(f"diagnose {kept} --restitution 0.5")[0] == 0
 
 
 def test_the_threshold_of_ode_is_named(typed):
@@ -583,7 +615,7 @@ def test_a_threshold_is_written_as_a_line_of_the_engine(typed):
     said = "design --engine {} --restitution 0.8 --drop-height '4 cm' --time-step 1/200"
     for engine, line in (
         ("unity", "Physics.bounceThreshold = 0.22f;"),
-        ("box2d", "worldDef.restitutionThreshold = 0.22f;"),
+        ("box2d-3.1", "worldDef.restitutionThreshold = 0.22f;"),
     ):
         status, out, _ = typed(said.format(engine))
         assert status == 0 and f"\n{line}" in out

@@ -29,7 +29,14 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.engines import Engine, Parameters, Setting, filled, snippet_of
+from bouncing_ball_contacts.engines import (
+    Engine,
+    Parameters,
+    Setting,
+    filled,
+    ran_in,
+    snippet_of,
+)
 from bouncing_ball_contacts.schemes import (
     Array,
     Drops,
@@ -158,22 +165,24 @@ class Problem:
             restitution=Range.of(found.restitution),
         )
 
-    def hops(self, law: Law, step: float, found: Outcome) -> str:
-        """Return by how much a body at rest hops in MuJoCo; empty if it hardly does.
+    def at_rest(self, law: Law, step: float, found: Outcome) -> tuple[str, bool]:
+        """Return what a body at rest does, and whether it hops by more than 1 % of its size.
 
-        Each step of gravity adds the speed g h, which the contact throws back. A rebound keeps r of
-        a speed, so the body leaves with about g h/(1 - r).
+        A contact of MuJoCo throws back the speed g h of each step of gravity. A rebound keeps r of
+        a speed, so the body leaves with up to g h/(1 - r). In MuJoCo 4.0.0 bodies lie still if they
+        lie deeper than 8 g h², and some also above.
         """
+        lies = f"at rest it lies {show(found.rest, 'm')} deep"
         fall = self.bounce.gravity * step
-        speed = 0.0
-        if isinstance(law, Impedance):
-            speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
-        height = speed**2 / (2 * self.bounce.gravity) if speed else 0.0
-        # All bodies hop a little in MuJoCo.
-        return (height > self.bounce.size / 100) * (
-            f"it never lies still, but hops by up to about {show(height, 'm', 2)}: less at a "
-            "shorter step"
-        )
+        if not fall:
+            return "", False
+        if not isinstance(law, Impedance) or found.rest >= 8 * fall * step:
+            return VAGUE if math.isnan(found.rest) else lies, False
+        speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
+        height = speed**2 / (2 * self.bounce.gravity)
+        hops = f"hops by up to about {show(height, 'm', 2)}: less at a shorter step"
+        said = f"at rest it {hops}" if math.isnan(found.rest) else f"{lies}, or {hops}"
+        return said, height > self.bounce.size / 100
 
     def slides(self, law: Law, step: float) -> str:
         """Return how weakly friction acts in MuJoCo.
@@ -427,6 +436,7 @@ def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:
     outcome = problem.outcome(law, step)
     return Answer(
         engine=engine.name,
+        ran=ran_in(engine),
         bounce=bounce,
         time_step=step,
         asked_step=asked,
@@ -451,8 +461,11 @@ def snippet(problem: Problem, parameters: Parameters, step: float, asked: float 
     if not template:
         return "\n".join(f"{name} = {value}" for name, value in parameters.items())
     mu = bounce.friction or 0.0
+    law = problem.law_of(parameters, step)
     values = {
         "step": step,
+        "k": float(law.stiffness) * bounce.mass / bounce.points,
+        "c": float(law.damping) * bounce.mass / bounce.points,
         "friction": mu,
         "rubs": engine.rubs.format(mu=mu, root=math.sqrt(mu))
         if bounce.friction is not None
@@ -491,7 +504,7 @@ def _warnings(
     slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
     slow = replace(problem, bounce=slower).outcome(law, step).restitution
     is_undamped = float(law.damping) == 0 and r.mean < bounce.restitution
-    hops = problem.hops(law, step, outcome)
+    rests, hops = problem.at_rest(law, step, outcome)
     size = f"{bounce.size_name} of {show(bounce.size, 'm')}"
     moves = f"it moves {show(bounce.impact_speed * (asked or step), 'm')} in a step"
     is_other = asked is not None and step != asked
@@ -522,7 +535,7 @@ def _warnings(
                 f"at {show(asked or 0, 's', 4)} a contact with this r is too deep: {moves}",
             ),
             (depth > bounce.size, f"it sinks deeper than its {size}"),
-            (hops, hops),
+            (hops, rests),
         ]
     )
 
@@ -540,7 +553,7 @@ def _remarks(
     share = f"a tenth of the {bounce.size_name}" if is_tenth else "a fifth of the drop height"
     depth = f"it may sink {show(bounce.limit, 'm')}, {share} (--penetration)"
     assumed = bounce.assumed + holding([(not bounce.gives_contact, depth)])
-    is_vague = math.isnan(outcome.rest) and not isinstance(law, Impedance)
+    rests, hops = problem.at_rest(law, step, outcome)
     ranges = [
         f"{span(*problem.promised(outcome, speed))} at up to {speed:g} times the speed of the fall"
         for speed in engine.sliding.speeds
@@ -549,12 +562,8 @@ def _remarks(
     is_pasted = re.search("@friction@|@rubs@", snippet_of(engine.name))
     return holding(
         [
-            (
-                outcome.rest > 0 and bounce.gravity,
-                f"At rest it lies {show(outcome.rest, 'm')} deep; the largest force is "
-                f"{show(outcome.force[1], 'N')}",
-            ),
-            (is_vague, VAGUE),
+            (not hops, rests[:1].upper() + rests[1:]),
+            (True, f"The largest force is {show(outcome.force[1], 'N')}"),
             (is_sliding, f"Of bodies that slide r is {', '.join(ranges)}"),
             (bounce.friction and engine.friction, engine.friction),
             (bounce.friction and isinstance(law, Impedance), problem.slides(law, step)),
@@ -565,7 +574,6 @@ def _remarks(
             *((True, note) for note in engine.notes),
             (isinstance(engine.scheme, Implicit), STEP_ONLY),
             (bounce.points > 1 and engine.box, engine.box),
-            (not engine.ran, f"The row of {engine.name} was never run in its engine"),
             (True, f"Given: {', '.join(given)}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),
         ]

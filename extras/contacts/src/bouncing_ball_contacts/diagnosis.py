@@ -23,8 +23,16 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem
-from bouncing_ball_contacts.engines import MODES, Engine, Parameters, as_compared, one_of
+from bouncing_ball_contacts.designs import LEAST_RESTITUTION, Problem
+from bouncing_ball_contacts.engines import (
+    MODES,
+    Engine,
+    Parameters,
+    Setting,
+    as_compared,
+    one_of,
+    ran_in,
+)
 from bouncing_ball_contacts.names import parameters_of
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
@@ -185,6 +193,7 @@ def diagnose_spring(
             ),
         ]
     )
+    given = _converted(engine, given, problem.setting(bounce.step(time_step)))
     contact = Contact(
         problem=problem,
         one={**engine.defaults, **given},
@@ -215,6 +224,7 @@ def diagnose_spring(
             )
     return Answer(
         engine=engine.name,
+        ran=ran_in(engine),
         bounce=bounce,
         time_step=contact.step,
         parameters=contact.one,
@@ -251,8 +261,7 @@ def _remarks(
             *((True, each) for each in bounce.assumed),
         ]
     )
-    law = contact.law
-    lies = bounce.gravity > 0 and math.isfinite(found.outcome.rest)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
     return holding(
         [
             (
@@ -260,15 +269,13 @@ def _remarks(
                 f"The contact has k = {show(found.stiffness, 'N/m')} and a damping ratio of "
                 f"{found.damping_ratio:.3g}; in short steps r is {found.limit:.3f}",
             ),
-            (lies, f"At rest it lies {show(found.outcome.rest, 'm')} deep"),
-            (math.isnan(found.outcome.rest) and not isinstance(law, Impedance), VAGUE),
+            (not hops, rests[:1].upper() + rests[1:]),
             (engine.caution, engine.caution[:1].upper() + engine.caution[1:]),
             (bounce.points > 1 and engine.box, engine.box),
             (
                 bounce.restitution is None,
                 "With --restitution there is a least change, for the r that is wanted",
             ),
-            (not engine.ran, f"The row of {engine.name} was never run in its engine"),
             (True, f"Given: {'; '.join(filter(None, known))}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),
         ]
@@ -283,8 +290,8 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     Refused
         If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
-    names = {as_compared(name): name for name in engine.rules}
-    raw = parameters_of(engine.name, names, list(engine.rules), typed)
+    known = [*engine.rules, *engine.spring]
+    raw = parameters_of(engine.name, {as_compared(name): name for name in known}, known, typed)
     found = {name: _value(engine, name, value) for name, value in raw.items()}
     body = {**engine.defaults, **found}
     missing = [name for name in engine.rules if name not in body]
@@ -304,6 +311,24 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
+def _converted(engine: Engine, given: dict[str, Any], at: Setting) -> dict[str, Any]:
+    """Return parameters with a spring and a damper as the engine has them at a step."""
+    springs = given.keys() & set(engine.spring)
+    both = " and ".join(engine.spring)
+    refuse(
+        [
+            (
+                springs and len(given) != 2 or len(springs) == 1,
+                f"give {both}, and nothing beside them",
+            )
+        ]
+    )
+    if not springs:
+        return given
+    k, c = (np.asarray(given[name] * at.points / at.mass) for name in engine.spring)
+    return engine.write(Linear(k, c), at)
+
+
 def _value(engine: Engine, name: str, value: Any) -> Any:
     """Return a parameter as a number, as several numbers or as a word."""
     if name in _WORDS:
@@ -318,7 +343,7 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
         return number
     if name == "min_depth":
         raise Refused(f"min_depth = {value} is not computed: a min_depth above 0 lowers r")
-    if number == 0 and name in (engine.names[0], *_DIVISORS):
+    if number == 0 and name in (engine.names[0], *engine.spring[:1], *_DIVISORS):
         raise Refused(f"{name} = 0 is not computed: give a small number")
     return within(name, number, 0, 1 if name in _SHARES else math.inf)
 
@@ -461,8 +486,7 @@ def _friction(contact: Contact, found: Found) -> list[str]:
 def _facts(contact: Contact, found: Found) -> list[str]:
     """Return further warnings."""
     row = contact.problem.engine
-    law = contact.law
-    hops = contact.problem.hops(law, contact.step, found.outcome)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
     return holding(
@@ -481,7 +505,7 @@ def _facts(contact: Contact, found: Found) -> list[str]:
                 f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
                 "oscillation",
             ),
-            (hops, hops),
+            (hops, rests),
         ]
     )
 
@@ -543,6 +567,7 @@ def _nearest(contact: Contact) -> Answer:
     outcome = found.outcome()
     return Answer(
         engine=contact.problem.engine.name,
+        ran=ran_in(contact.problem.engine),
         bounce=bounce,
         time_step=contact.step,
         parameters={contact.damper: value},

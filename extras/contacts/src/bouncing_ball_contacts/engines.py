@@ -97,6 +97,8 @@ class Engine:
         How the engine combines each parameter of two bodies.
     write : callable
         The combined parameters of a law in a setting.
+    spring : tuple of str
+        Names of a spring in N/m and a damper in N s/m, which `write` converts at a step.
     beside : mapping
         What is written beside them.
     read : callable
@@ -115,8 +117,8 @@ class Engine:
         The largest penetration in radii at which the engine still sees the contact.
     resolution : float
         The least depth at rest in radii that the precision of the engine's positions resolves.
-    ran : str
-        The version in which designs of this row were run; empty if none was.
+    ran, borrows : str
+        See :func:`ran_in`.
     notes : tuple of str
         What a user has to know.
     box : str
@@ -145,6 +147,7 @@ class Engine:
     read: Callable[[Parameters, Setting], Law]
     meaning: str
     rules: Mapping[str, Rule]
+    spring: tuple[str, ...] = ()
     beside: Parameters = field(default_factory=dict)
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
     units: Mapping[str, str] = field(default_factory=dict)
@@ -154,6 +157,7 @@ class Engine:
     resolution: float = 0.0
     unit: str = "N/m"
     ran: str = ""
+    borrows: str = ""
     notes: tuple[str, ...] = ()
     box: str = ""
     flat_only: bool = False
@@ -200,8 +204,9 @@ class ByNumber:
 
     Attributes
     ----------
-    name, ran : str
-        Name of the row, and the version in which its rule was compared with drops.
+    name : str
+    ran, borrows : str
+        See :func:`ran_in`.
     rule : callable
         Steps of a ball, see :mod:`.step_rules`.
     parameter, pair, default
@@ -248,6 +253,8 @@ class ByNumber:
         Height in m above a polygon at which a ball touches it.
     reach : float
         Height in m above which a body that rises flies freely, and below which a contact is found.
+    ignored_by : str
+        A backend of the product that ignores the number.
     """
 
     name: str
@@ -278,6 +285,8 @@ class ByNumber:
     either: tuple[Mapping[str, float], ...] = ({},)
     skin: float = 0.0
     reach: float = 0.06
+    borrows: str = ""
+    ignored_by: str = ""
     notes: tuple[str, ...] = ()
     not_for: tuple[str, ...] = ()
 
@@ -316,6 +325,16 @@ class ByNumber:
             return self
         scale = pixels or PIXELS / (gravity or STANDARD_GRAVITY)
         return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
+
+
+def ran_in(row: Engine | ByNumber) -> str:
+    """Return the version in which a row was compared with its engine.
+
+    A product that was not run itself ``borrows`` the rule of another row.
+    """
+    if not row.borrows:
+        return f"run in {row.ran}" if row.ran else "not run"
+    return f"not run: the rule of {row.borrows}, run in {row.ran}"
 
 
 def one_of(name: str, value: Any, words: Iterable[str]) -> str:

@@ -16,6 +16,8 @@ _SAME = {
     "c": "damping",
 }
 """What other engines and papers call a parameter, as names are compared."""
+_TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
+"""What engines call the time step, as names are compared."""
 
 
 def parameters_of(
@@ -37,9 +39,11 @@ def parameters_of(
         if name is None:
             near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
             others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
+            step = ["; the time step is --time-step, or time_step= in Python"]
+            steps = step * (as_compared(str(each)) in _TIME_STEPS)
             same = _SAME.get(as_compared(str(each)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
-            hint = "".join(meant or near or others)
+            hint = "".join(steps or meant or near or others)
             known_here = ", ".join(names)
             raise Refused(
                 f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
@@ -52,6 +56,7 @@ def parameters_of(
 
 NAMES = {
     "bevyrapier": "rapier",
+    "box2d": "box2d-3.1",
     "box2d24": "box2d-2",
     "box2d241": "box2d-2",
     "box2d242": "box2d-2",
@@ -89,13 +94,14 @@ NAMES = {
     "bevy": "has several engines: take rapier for bevy_rapier",
     "bevyxpbd": "",
     "blender": "has Bullet: take pybullet",
+    "box2d32": "has another rule than box2d-3.1",
     "box3d": "",
     "ammo": "is Bullet: take pybullet with linearDamping=0",
     "babylon": "has several engines: take cannon-es for its Cannon",
     "brax": "",
     "chaos": "",
     "chrono": "",
-    "construct": "has Box2D: take box2d-2.3, or box2d for Box2D 3",
+    "construct": "has Box2D: take box2d-2.3, or box2d-3.1 for Box2D 3",
     "coppeliasim": "has several engines: take pybullet, ode or mujoco",
     "gdevelop": "has Box2D: take box2d-2.3",
     "godot": "has two engines: take godot-jolt for Jolt Physics",
@@ -120,7 +126,7 @@ NAMES = {
     "simscape": "",
     "siconos": "",
     "three": "has no physics: take the engine beside it, such as cannon-es or rapier",
-    "unity2d": "has Box2D: take box2d-2, or box2d for Box2D 3",
+    "unity2d": "has Box2D: take box2d-2, or box2d-3.1 for Box2D 3",
     "unreal": "",
     "ue": "",
     "warp": "has no contacts of its own: take mujoco-warp or newton",

@@ -57,6 +57,7 @@ _PHYSX = ByNumber(
     is_physx=True,
     is_restless=True,
 )
+_NEWTON = "the Newton backend with its MuJoCo solver (--engine newton-mujoco)"
 _AHEAD = "The contact offset is taken as longer than the way of the body in a step"
 # Drops from 1 m at 1/60 s in PhysX 5.12: 0.34 to 0.66 for 0.70; slow balls did not bounce at all.
 _PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
@@ -142,7 +143,7 @@ BY_NUMBER = {
             settings={"default_linear_damp": 0.1},
             designed=({"default_linear_damp": 0.0},),
             damped_by="default_linear_damp",
-            notes=(_OLD_JOLT, "Godot was not run: its source hands these numbers to Jolt"),
+            borrows="jolt",
         ),
         _PHYSX,
         replace(
@@ -157,7 +158,8 @@ BY_NUMBER = {
                 "step": "Time.fixedDeltaTime = {value}f;",
             },
             springs="",
-            notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
+            borrows="physx",
+            notes=("It has PhysX 4.1 with a contact offset of 10 mm",),
         ),
         replace(
             _PHYSX,
@@ -166,13 +168,16 @@ BY_NUMBER = {
             threshold=0.5,
             set_by="PhysxCfg.bounce_threshold_velocity",
             lines={
-                "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}\n"
-                "PhysxCfg(solver_type=0)  # PGS, of SimulationCfg(physx=…)",
-                "PhysxCfg.bounce_threshold_velocity": "PhysxCfg(bounce_threshold_velocity={value})"
-                "  # of SimulationCfg(physx=…)",
-                "step": "SimulationCfg(dt={value})",
+                "restitution": "# Isaac Lab 3: isaaclab_physx.sim.spawners.materials and .physics\n"
+                "material = PhysxRigidBodyMaterialCfg(restitution={value})  # of {bodies}\n"
+                "physics = PhysxCfg(solver_type=0)  # PGS",
+                "PhysxCfg.bounce_threshold_velocity": "physics.bounce_threshold_velocity = {value}",
+                "step": "simulation = SimulationCfg(dt={value}, physics=physics)",
             },
-            notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD, _PGS),
+            springs="isaac-lab",
+            borrows="physx",
+            ignored_by=_NEWTON,
+            notes=(_AHEAD, _PGS),
         ),
         replace(
             _PHYSX,
@@ -181,22 +186,21 @@ BY_NUMBER = {
             threshold=0.0,
             set_by="physxScene:bounceThreshold",
             lines={
-                "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}\n"
+                "restitution": "float physics:restitution = {value}  # of {bodies}\n"
                 'uniform token physxScene:solverType = "PGS"',
                 "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
-                "step": "World(physics_dt={value})",
+                "step": "uint physxScene:timeStepsPerSecond = {rate}",
             },
-            notes=(
-                "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold",
-                _AHEAD,
-                _PGS,
-            ),
+            springs="",
+            borrows="physx",
+            ignored_by=_NEWTON,
+            notes=("By its USD schema there is no threshold", _AHEAD, _PGS),
         ),
         _RAPIER,
         ByNumber(
-            name="box2d",
+            name="box2d-3.1",
             rule=step_rules.box2d,
-            ran="Box2D 3 (box2d3-wasm 5.2.0)",
+            ran="Box2D after 3.1.1 (box2d3-wasm 5.2.0)",
             pair=LARGER,
             threshold=1.0,
             set_by="b2WorldDef.restitutionThreshold",
@@ -207,7 +211,7 @@ BY_NUMBER = {
             },
             sinks=_RAPIER.sinks,
             reach=0.02,
-            notes=("Box2D 2 has another rule: --engine box2d-2",),
+            notes=("Since August 2026 Box2D has another rule, released in 3.2",),
             not_for=_RAPIER.not_for,
         ),
         _BOX2D_2,
@@ -221,7 +225,8 @@ BY_NUMBER = {
                 "World.setVelocityThreshold": "World.setVelocityThreshold({value}f);",
                 "step": "world.step({value}f, 8, 3);",
             },
-            notes=("libGDX was not run: it has Box2D 2.3, and sets its threshold",),
+            borrows="box2d-2.3",
+            notes=(),
         ),
         replace(
             _BOX2D_2,
@@ -278,7 +283,7 @@ BY_NUMBER = {
                 "  // of {bodies}",
                 "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
                 "frictionAir": "body.frictionAir = {value};",
-                "step": "Matter.Engine.update(engine, 1000 * {value});",
+                "step": "Matter.Engine.update(engine, 1000 / {rate});",
             },
             pixels=PIXELS / STANDARD_GRAVITY,
             either=tuple({"turn": turn} for turn in (0.0, 0.5, 1.0)),

@@ -113,7 +113,7 @@ def diagnose(
     compared = set(map(as_compared, [*typed, *(other or {})]))
     of_number = number.names if number else {}
     of_springs = set(map(as_compared, springs.rules)) - of_number.keys() if springs else set()
-    of_springs |= set(map(as_compared, springs.names)) if springs else set()
+    of_springs |= set(map(as_compared, [*springs.names, *springs.spring])) if springs else set()
     is_number = "number" in {of_number.get(each) for each in compared}
     if number is None or (springs and not is_number and compared & of_springs):
         return diagnose_spring(bounce, springs or ENGINES["generic"], typed, time_step, other)

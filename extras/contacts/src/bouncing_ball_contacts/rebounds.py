@@ -20,7 +20,7 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.engines import LARGER, MEAN, MODES, ByNumber, Rule, one_of
+from bouncing_ball_contacts.engines import LARGER, MEAN, MODES, ByNumber, Rule, one_of, ran_in
 from bouncing_ball_contacts.names import parameters_of
 from bouncing_ball_contacts.number_rows import BY_NUMBER
 from bouncing_ball_contacts.schemes import Array
@@ -180,11 +180,11 @@ def _snippet(case: "Case", number: float) -> str:
     changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
     if case.threshold != row.threshold or not row.has_defaults:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
-    step = float(f"{case.step:.6g}")
-    values = {row.parameter: float(f"{number:.4g}"), **changed, "step": step}
+    rate = 1 / case.step
+    values = {row.parameter: float(f"{number:.4g}"), **changed, "step": float(f"{case.step:.6g}")}
     # In the order of the lines.
     return "\n".join(
-        line.format(name=name, value=_number(values[name]), bodies=bodies, rate=round(1 / step))
+        line.format(name=name, value=_number(values[name]), bodies=bodies, rate=f"{rate:.6g}")
         for name, line in row.lines.items()
         if name in values
     )
@@ -349,6 +349,7 @@ class Tried(NamedTuple):
         step = show(case.step, "s")
         return Answer(
             engine=row.name,
+            ran=ran_in(row),
             bounce=bounce,
             time_step=case.step,
             parameters={row.parameter: number, **settings},
@@ -385,6 +386,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     limit = row.limit(case.threshold)
     return holding(
         [
+            (row.ignored_by, f"{row.ignored_by} ignores this number"),
             (
                 number == 0 < written,
                 f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",

@@ -158,7 +158,7 @@ def _mix_solimp(one: Any, other: Any) -> tuple[float, ...]:
     return tuple((np.asarray(_solimp(one)) + np.asarray(_solimp(other))) / 2)
 
 
-_BY_TIMES = replace(MEAN, text="by averaged time constants and damping ratios")
+_BY_TIMES = replace(MEAN, text="by averaged times and ratios")
 _SOLIMP = Rule("averaged", _mix_solimp, lambda x: x)
 _DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
 _DESIGNED_SOLIMP = (IMPEDANCE, IMPEDANCE, 0.001)
@@ -301,8 +301,7 @@ _PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
 _WEIGHTLESS = (
-    "These contacts feel 0.1 % of gravity: a load does not press them in by its weight over k, and "
-    "a body at rest hops a little"
+    "These contacts feel 0.1 % of gravity: a load does not press them in by its weight over k"
 )
 # In MuJoCo the damper acts along the surface as well.
 _PUSHED_UP = Sliding(
@@ -368,6 +367,38 @@ _MUJOCO = Engine(
     rubs=' friction="{mu:g} 0.005 0.0001"',
     sliding=_PUSHED_UP,
     not_for=_NOT_MUJOCO,
+)
+_BY_MODE = replace(MEAN, text="averaged, or by the mode")
+_COMPLIANT = PhysX(
+    name="physx",
+    scheme=Implicit(ahead=True),
+    names=_PHYSX["names"],
+    write=_PHYSX["write"],
+    read=_PHYSX["read"],
+    units=_PHYSX["units"],
+    rubs="\nmaterial->setStaticFriction({mu:g});\nmaterial->setDynamicFriction({mu:g});",
+    meaning="compliantContactStiffness = k, compliantContactDamping = c",
+    ran="PhysX 5.12 (ovphysx 0.7.0)",
+    rules={
+        "compliantContactStiffness": _BY_MODE,
+        "compliantContactDamping": _BY_MODE,
+        "restitutionCombineMode": PAIR,
+    },
+    defaults={
+        "compliantContactStiffness": 0.0,
+        "compliantContactDamping": 0.0,
+        "restitutionCombineMode": "average",
+    },
+    resolution=_SINGLE,
+    notes=(
+        "Use the solver PGS",
+        "The contactOffset has to be longer than the way of the body in a step",
+    ),
+    box="r is that of a box which falls flat on a plane and does not slide; on springs, "
+    "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
+    flat_only=True,
+    not_of_one_point=_SPRING_OF_ONE_POINT,
+    caution="the contactOffset is taken as longer than the way of the body in a step",
 )
 ENGINES: Mapping[str, Engine] = {
     engine.name: engine
@@ -444,7 +475,10 @@ ENGINES: Mapping[str, Engine] = {
             read=_read_dissipation,
             meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
             units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
-            rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
+            rules={
+                "point_contact_stiffness": SERIES,
+                "hunt_crossley_dissipation": replace(MEAN, text="averaged by the penetrations"),
+            },
             defaults={"point_contact_stiffness": 1e6, "hunt_crossley_dissipation": 50.0},
             of_depth=HuntCrossley.of_depth,
             ran="Drake 1.51.1",
@@ -543,47 +577,24 @@ ENGINES: Mapping[str, Engine] = {
             friction=_EVERY_FRICTION,
             sliding=_PUSHED_UP,
         ),
-        PhysX(
-            name="physx",
-            scheme=Implicit(ahead=True),
-            names=_PHYSX["names"],
-            write=_PHYSX["write"],
-            read=_PHYSX["read"],
-            units=_PHYSX["units"],
+        _COMPLIANT,
+        replace(
+            _COMPLIANT,
+            name="isaac-lab",
+            borrows="physx",
             rubs="static_friction={mu:g}, dynamic_friction={mu:g}, ",
-            meaning="compliantContactStiffness = k, compliantContactDamping = c",
-            ran="PhysX 5.12 (ovphysx 0.7.0)",
-            rules={
-                "compliantContactStiffness": MEAN,
-                "compliantContactDamping": MEAN,
-                "restitutionCombineMode": PAIR,
-            },
-            defaults={
-                "compliantContactStiffness": 0.0,
-                "compliantContactDamping": 0.0,
-                "restitutionCombineMode": "average",
-            },
-            resolution=_SINGLE,
-            notes=(
-                "Use the solver PGS",
-                "The contactOffset has to be longer than the way of the body in a step",
-            ),
-            box="r is that of a box which falls flat on a plane and does not slide; on springs, "
-            "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
-            flat_only=True,
-            not_of_one_point=_SPRING_OF_ONE_POINT,
-            caution="the contactOffset is taken as longer than the way of the body in a step",
         ),
         Engine(
             name="ode",
             names=("soft_cfm", "soft_erp"),
+            spring=("kp", "kd"),
             scheme=Implicit(),
             write=_write_ode,
             read=_read_ode,
             rubs="\ncontact.surface.mu = {mu:g};",
             meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
             ran="ODE 0.16.2",
-            units={"soft_cfm": "m/N/s"},
+            units={"soft_cfm": "m/N/s", "kp": "N/m", "kd": "N s/m"},
             rules=dict.fromkeys(("soft_cfm", "soft_erp"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2},
             sets_pair=True,

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from engine_runs import as_python, quiet_warp, rebound
 
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = 9.81
 INSTANTS = 8

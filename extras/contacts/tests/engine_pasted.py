@@ -22,7 +22,7 @@ from engine_page import KEPT, NOT_RUN, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
 from bouncing_ball_contacts.engines import ran_in
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = engine_drops.G
 INSTANTS = 13

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball_contacts.spring_rows import ENGINES
+from bouncing_ball_contacts.rows import ENGINES
 
 
 class Trial(NamedTuple):

@@ -23,7 +23,7 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.spring_rows import ON_BOXES
+from bouncing_ball_contacts.rows import ON_BOXES
 
 BALL = dict(mass=0.5, radius=0.1, restitution=0.8)
 GOLF = dict(mass=0.046, radius=0.0213, restitution=0.8)

@@ -22,9 +22,8 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.number_rows import BY_NUMBER
 from bouncing_ball_contacts.rebounds import from_skin
-from bouncing_ball_contacts.spring_rows import ENGINES
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 
 INSTANTS = 9
 DESIGNS = {

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball_contacts import cli
-
 BALL = 'design --mass "50 g" --restitution 0.8'
 # A contact that is given is not searched for.
 SHORT = f'{BALL} --contact-time "2 ms"'
@@ -83,25 +81,6 @@ def test_a_full_device_is_one_line():
         )
     assert done.returncode == 2
     assert done.stderr.startswith("bounce: ") and done.stderr.count("\n") == 1
-
-
-@pytest.mark.parametrize(
-    ("line", "offered"),
-    [
-        ("design --engine muj", "plain,mujoco\nplain,mujoco-warp"),
-        ("diagnose --engine pyb", "plain,pybullet"),
-        ("fit croquet --engine drake-", "plain,drake-sap"),
-        ("fit croq", "file,croq"),
-    ],
-)
-def test_names_are_completed(line, offered, monkeypatch, capsys):
-    words = line.split()
-    monkeypatch.setenv("COMP_WORDS", f"bounce {line}")
-    monkeypatch.setenv("COMP_CWORD", str(len(words)))
-    monkeypatch.setenv("_BOUNCE_COMPLETE", "bash_complete")
-    with pytest.raises(SystemExit):
-        cli.main(prog_name="bounce")
-    assert capsys.readouterr().out.strip() == offered
 
 
 COMMANDS = ("", "design", "diagnose", "fit", "engines")
@@ -185,8 +164,6 @@ MISTAKES = {
     f"{PYBULLET} contactStiffness='1e4 kg' contactDamping=1": "write it as in '100 kN/m'",
     f"{PYBULLET} restitution='0.8 m'": "write a number without a unit as in '0.8'",
     "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
-    "diagnose --engine drake-sap hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
-    "drake has it",
     LAMMPS: "kn is missing: give kn and gamma_n; lammps has no default",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
@@ -266,13 +243,14 @@ def test_an_extreme_number_has_an_answer_or_one_line(typed, line):
 
 
 def test_the_command_starts_quickly():
-    """SciPy is not imported for a design."""
+    """Neither SciPy nor what reads recordings is imported for a design."""
     code = (
         "import sys; sys.argv = ['bounce', 'design', '--mass', '50 g', '--restitution', '0.8']\n"
         "from bouncing_ball_contacts.cli import run\n"
         "try: run()\n"
         "except SystemExit: pass\n"
-        "print(sorted({'scipy', 'mujoco'} & set(sys.modules)))"
+        "halves = {f'bouncing_ball_contacts.{each}' for each in ('fits', 'tables', 'recordings')}\n"
+        "print(sorted(({'scipy', 'mujoco'} | halves) & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

@@ -8,7 +8,7 @@ import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 UNDISTURBED = {**BY_NUMBER["pybullet"].designed[0], "restitutionVelocityThreshold": 0.0}
 STILL = {name: value for name, value in UNDISTURBED.items() if name in ENGINES["pybullet"].defaults}
@@ -672,8 +672,3 @@ def test_a_solimp_out_of_its_range_is_said_to_be(solimp, said):
 def test_a_name_of_another_engine_is_answered_by_the_one_here(engine, name, meant):
     with pytest.raises(Refused, match=f"did you mean {meant}?"):
         diagnose(Bounce(mass=1), engine, {name: 0.8}, "2 ms")
-
-
-def test_a_diameter_is_answered_by_the_radius(typed):
-    status, _, err = typed("design --mass 1 --restitution 0.8 --diameter '5 cm'")
-    assert status == 2 and "--radius" in err

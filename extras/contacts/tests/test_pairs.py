@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = 9.81
 WANTED = 0.6

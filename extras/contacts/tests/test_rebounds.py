@@ -13,9 +13,9 @@ import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import as_compared
-from bouncing_ball_contacts.names import NAMES, rows_of
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.questions import rows_of
 from bouncing_ball_contacts.rebounds import Case, _after, drops
+from bouncing_ball_contacts.rows import BY_NUMBER, NAMES
 from bouncing_ball_contacts.step_rules import Fall
 
 G = 9.81
@@ -81,14 +81,22 @@ def distances(name):
 
 
 def table():
-    """Return the table of the page: how far the rules are from the drops."""
-    rows = ["| engine | run in | drops | within 0.0001 | largest distance |"]
-    rows.append("| --- | --- | --- | --- | --- |")
-    for name in dict.fromkeys(line["engine"] for line in LINES):
-        apart = distances(name)
-        exact = f"{len(apart)} | {np.sum(apart < EXACT)} | {apart.max():.4f}"
-        rows.append(f"| `{name}` | {BY_NUMBER[name].ran} | {exact} |")
-    return "\n".join(rows) + "\n"
+    """Return the part of the page: how far the rules are from the drops."""
+    apart = {name: distances(name) for name in dict.fromkeys(line["engine"] for line in LINES)}
+    exact = [name for name, each in apart.items() if each.max() < EXACT]
+    return "\n".join(
+        [
+            "| engine | drops | within 0.0001 | largest distance |",
+            "| --- | --- | --- | --- |",
+            *(
+                f"| `{name}` | {len(each)} | {np.sum(each < EXACT)} | {each.max():.4f} |"
+                for name, each in apart.items()
+                if name not in exact
+            ),
+            f"\nWithin 0.0001 are all {sum(len(apart[name]) for name in exact)} drops of "
+            f"{', '.join(exact)}.\n",
+        ]
+    )
 
 
 @pytest.mark.parametrize("name", dict.fromkeys(line["engine"] for line in LINES))

@@ -8,13 +8,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bouncing_ball_contacts.bounces import Bounce
-from bouncing_ball_contacts.schemes import Array
-from bouncing_ball_contacts.units import holding, show, span
+from bouncing_ball_contacts.units import MOST_WARNINGS, Array, holding, show, span
 
 TOLERANCE = 0.02
 """Largest deviation of r from the one that is wanted."""
-MOST_WARNINGS = 3
-"""Number of warnings that an answer prints; the others are remarks."""
 
 
 class Range(NamedTuple):

@@ -114,7 +114,7 @@ class Bounce:
                 ),
             ]
         )
-        typed = {name: getattr(self, name) for name in ("density", "contact_time")}
+        density = self.density
         given = {}
         for name, (unit, read) in _QUANTITIES.items():
             default = getattr(Bounce, name)
@@ -126,21 +126,12 @@ class Bounce:
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)
-        # A gravity that is not positive is refused below.
-        falls = _is_bare(typed["contact_time"]) and (self.speed or self.gravity > 0)
-        depth = self.impact_speed * (self.contact_time or 0.0) / math.pi if falls else 0.0
         refuse(
             [
                 (
-                    _is_bare(typed["density"]) and (self.density or math.inf) < _FOAM,
-                    f"is the density of {typed['density']} in g/cm^3, or in kg/m^3? "
-                    f"write the unit: --density '{typed['density']} g/cm^3'",
-                ),
-                (
-                    depth > self.size,
-                    f"a contact of {show(self.contact_time or 0, 's')} is {show(depth, 'm')} deep, "
-                    f"more than the {self.size_name} of {show(self.size, 'm')}: if ms are meant, "
-                    f"--contact-time '{typed['contact_time']} ms'",
+                    _is_bare(density) and (self.density or math.inf) < _FOAM,
+                    f"is the density of {density} in g/cm^3, or in kg/m^3? "
+                    f"write the unit: --density '{density} g/cm^3'",
                 ),
             ]
         )

@@ -11,10 +11,8 @@ import click
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce
 from bouncing_ball_contacts.engines import PAIR, ran_in
-from bouncing_ball_contacts.names import rows_of
-from bouncing_ball_contacts.number_rows import BY_NUMBER
-from bouncing_ball_contacts.questions import design, diagnose
-from bouncing_ball_contacts.spring_rows import ENGINES
+from bouncing_ball_contacts.questions import design, diagnose, rows_of
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
@@ -28,12 +26,7 @@ _DENSITY = click.Option(
 )
 
 
-def _halve(_: click.Context, __: click.Parameter, typed: str | None) -> None:
-    refuse([(typed is not None, f"give the radius, half of the diameter {typed}: --radius")])
-
-
 _BODY = [
-    click.Option(["--diameter"], hidden=True, expose_value=False, callback=_halve),
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
     click.Option(["--restitution"], help="√(h′/h) that is wanted, 0 to 1."),
     click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),
@@ -59,13 +52,7 @@ _CONTACT = [
 _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
 
-def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
-    return [name for name in {**ENGINES, **BY_NUMBER} if name.startswith(typed)]
-
-
-_ENGINE = click.Option(
-    ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
-)
+_ENGINE = click.Option(["--engine"], default="generic", help="One of 'bounce engines'.")
 _EXPLAIN = click.Option(["--explain"], is_flag=True, help="All remarks.")
 _JSON = click.Option(["--json", "as_json"], is_flag=True, help="All numbers, in SI units.")
 
@@ -242,9 +229,7 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
         click.Option(
             ["--read-at"], help="Where rebound heights are read on the ball: bottom or top."
         ),
-        click.Option(
-            ["--engine"], help="For which the contact is written.", shell_complete=_engines
-        ),
+        click.Option(["--engine"], help="For which the contact is written."),
         _STEP,
         _DENSITY,
         *_CONTACT,

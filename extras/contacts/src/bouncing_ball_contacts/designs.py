@@ -19,7 +19,6 @@ within a step. Implicit steps, gravity and strong damping therefore need no form
 
 import functools
 import math
-import re
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -33,7 +32,6 @@ from bouncing_ball_contacts.engines import (
     Engine,
     Parameters,
     Setting,
-    filled,
     ran_in,
     snippet_of,
 )
@@ -89,11 +87,6 @@ def _written(value: Any) -> Any:
 def _up_to(most: float) -> Array:
     """Return ratios of damping from 0 to `most`."""
     return np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
-
-
-def _same(step: float, _: float) -> float:
-    """Return a step, whatever the depth."""
-    return step
 
 
 @dataclass(frozen=True)
@@ -359,7 +352,7 @@ class Problem:
             # With the fewest steps a contact is the least deep.
             found = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
             if found.outcome.depth[1] <= self.bounce.size:
-                found = self.keeping(functools.partial(_same, shorter), near=short)
+                found = self.keeping(lambda _: shorter, near=short)
                 if not self.keeps(found.outcome, self.permitted):
                     found = self.stiffest(shorter, self.bounce.size)
             return found
@@ -399,7 +392,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     refuse(
         [
             (
-                bounce.stiffness is not None and engine.unit != "N/m",
+                bounce.stiffness is not None and engine.units.get(engine.names[0]) == "Pa",
                 f"{engine.name} has no stiffness in N/m: give the penetration",
             ),
         ]
@@ -409,7 +402,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     short = replace(problem, tolerance=problem.tolerance / 2).wanted()
     chosen = short
     if asked is not None:
-        yours = problem.keeping(functools.partial(_same, asked))
+        yours = problem.keeping(lambda _: asked)
         if problem.keeps(yours.outcome, problem.permitted):
             chosen = yours
         elif not bounce.gives_contact:
@@ -472,7 +465,7 @@ def snippet(problem: Problem, parameters: Parameters, step: float, asked: float 
         else "",
         "condim": 1 if bounce.friction == 0 else 3,
     }
-    return filled(template, {**values, **parameters}).rstrip()
+    return template.format(**values, **parameters).rstrip()
 
 
 def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
@@ -559,7 +552,7 @@ def _remarks(
         for speed in engine.sliding.speeds
     ]
     is_sliding = ranges and bounce.friction != 0
-    is_pasted = re.search("@friction@|@rubs@", snippet_of(engine.name))
+    is_pasted = "{rubs}" in snippet_of(engine.name)
     return holding(
         [
             (not hops, rests[:1].upper() + rests[1:]),

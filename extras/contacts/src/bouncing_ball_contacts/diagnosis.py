@@ -26,14 +26,16 @@ from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.designs import LEAST_RESTITUTION, Problem
 from bouncing_ball_contacts.engines import (
     MODES,
+    PAIR,
     Engine,
     Parameters,
     Setting,
     as_compared,
     one_of,
+    parameters_of,
     ran_in,
 )
-from bouncing_ball_contacts.names import parameters_of
+from bouncing_ball_contacts.rows import CONES, ENGINES
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
@@ -46,7 +48,6 @@ from bouncing_ball_contacts.schemes import (
     exact,
     offsets,
 )
-from bouncing_ball_contacts.spring_rows import CONES, ENGINES
 from bouncing_ball_contacts.units import Refused, holding, in_si, refuse, show, within
 
 _SHARES = ("e", "soft_erp")
@@ -184,7 +185,7 @@ def diagnose_spring(
     refuse(
         [
             (
-                engine.sets_pair and other is not None,
+                other is not None and all(rule is PAIR for rule in engine.rules.values()),
                 f"{engine.name} sets the contact of a pair of bodies, and not of one body",
             ),
             (

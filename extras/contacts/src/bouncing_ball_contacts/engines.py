@@ -5,9 +5,10 @@ engine, and which scheme then moves the body. Laws are per unit of mass (:mod:`.
 :data:`.BY_NUMBER` has the restitution number and the rule of its steps (:mod:`.step_rules`).
 """
 
+import difflib
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any, NamedTuple
@@ -111,8 +112,6 @@ class Engine:
         The SI units of the parameters that have one.
     defaults : mapping
         The parameters of a body for which none are set.
-    sets_pair : bool
-        Whether the snippet sets the contact of a pair, and not of each body.
     deepest : float
         The largest penetration in radii at which the engine still sees the contact.
     resolution : float
@@ -123,8 +122,6 @@ class Engine:
         What a user has to know.
     box : str
         What a user has to know of a body with several points.
-    flat_only : bool
-        Whether r is that of a box which falls flat on a plane and does not slide; `box` says so.
     friction : str
         What friction does to r.
     rubs : str
@@ -152,15 +149,12 @@ class Engine:
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
     units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
-    sets_pair: bool = False
     deepest: float = math.inf
     resolution: float = 0.0
-    unit: str = "N/m"
     ran: str = ""
     borrows: str = ""
     notes: tuple[str, ...] = ()
     box: str = ""
-    flat_only: bool = False
     sliding: Sliding = Sliding()
     rubs: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
@@ -327,6 +321,49 @@ class ByNumber:
         return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
 
 
+_SAME = {
+    **dict.fromkeys(("e", "cor", "bounciness", "bounce", "elasticity"), "restitution"),
+    "k": "stiffness",
+    "c": "damping",
+}
+"""What other engines and papers call a parameter, as names are compared."""
+_TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
+"""What engines call the time step, as names are compared."""
+
+
+def parameters_of(
+    engine: str, known: Mapping[str, str], names: Sequence[str], typed: Parameters
+) -> dict[str, Any]:
+    """Return typed values by their names in the engine.
+
+    ``known`` maps names as they are compared to names of the engine; ``names`` are listed in
+    messages.
+
+    Raises
+    ------
+    Refused
+        If a name is unknown, or given twice.
+    """
+    found: dict[str, Any] = {}
+    for each, value in typed.items():
+        name = known.get(as_compared(str(each)))
+        if name is None:
+            near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
+            step = ["; the time step is --time-step, or time_step= in Python"]
+            steps = step * (as_compared(str(each)) in _TIME_STEPS)
+            same = _SAME.get(as_compared(str(each)), "")
+            meant = [f"; did you mean {same}?"] * (same in known)
+            hint = "".join(steps or meant or near)
+            known_here = ", ".join(names)
+            raise Refused(
+                f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
+            )
+        if name in found:
+            raise Refused(f"{each!r} gives {name} twice")
+        found[name] = value
+    return found
+
+
 def ran_in(row: Engine | ByNumber) -> str:
     """Return the version in which a row was compared with its engine.
 
@@ -349,14 +386,3 @@ def snippet_of(name: str) -> str:
     """Return the text of a snippet; empty if there is none."""
     path = files(__package__).joinpath("snippets", f"{name}.txt")
     return path.read_text("utf-8") if path.is_file() else ""
-
-
-def filled(text: str, values: Mapping[str, Any]) -> str:
-    """Replace ``@name@`` and ``@name.0@`` in a text by numbers."""
-
-    def number(place: re.Match[str]) -> str:
-        name, _, index = place[1].partition(".")
-        value = values[name][int(index)] if index else values[name]
-        return value if isinstance(value, str) else f"{value:.6g}"
-
-    return re.sub(r"@([\w.]+)@", number, text)

@@ -20,9 +20,17 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.engines import LARGER, MEAN, MODES, ByNumber, Rule, one_of, ran_in
-from bouncing_ball_contacts.names import parameters_of
-from bouncing_ball_contacts.number_rows import BY_NUMBER
+from bouncing_ball_contacts.engines import (
+    LARGER,
+    MEAN,
+    MODES,
+    ByNumber,
+    Rule,
+    one_of,
+    parameters_of,
+    ran_in,
+)
+from bouncing_ball_contacts.rows import BY_NUMBER
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import (

@@ -24,9 +24,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from bouncing_ball_contacts.units import Array
 
 MOST_STEPS = 3000
 """In a contact. Finer steps change r by less than 0.001, and are not computed."""

@@ -290,42 +290,38 @@ def pybullet(at: Fall, z: float, v: float) -> Steps:
         yield z, v
 
 
-def ode(at: Fall, z: float, v: float) -> Steps:
+def _joint(
+    at: Fall, z: float, v: float, erp: float, cfm: float, fastest: float = math.inf
+) -> Steps:
     """The velocity before the step's gravity is reversed, or a share of the depth taken back.
 
-    `soft_cfm` softens both.
+    `cfm` softens both. `fastest` caps the velocity, but the position moves as without it.
     """
-    held = at.step / (at.settings["soft_cfm"] * at.mass)
-    erp = at.settings["soft_erp"]
-    while True:
-        u = v - at.added
-        if z < 0:
-            aim = max(-at.number * v * (v < -at.threshold), -erp * z / at.step)
-            u = max(u, aim + (u - aim) / (1 + held))
-        v = u
-        z += at.step * v
-        yield z, v
-
-
-def gazebo(at: Fall, z: float, v: float) -> Steps:
-    """As `ode`, for two bodies with the same parameters; `max_vel` caps the velocity.
-
-    The position moves as without the cap.
-    """
-    both = at.step * at.settings["kp"] / 2 + 2 * at.settings["kd"]
-    held = at.step * both / at.mass
-    fastest = min(at.settings["max_vel"], at.settings["contact_max_correcting_vel"])
+    held = at.step / (cfm * at.mass)
     while True:
         u = v - at.added
         moves = u
         if z < 0:
-            aim = max(-at.number * v * (v < -at.threshold), -at.settings["kp"] / 2 * z / both)
+            aim = max(-at.number * v * (v < -at.threshold), -erp * z / at.step)
             capped = min(aim, fastest)
             moves = max(u, aim + (u - aim) / (1 + held))
             u = max(u, capped + (u - capped) / (1 + held))
         v = u
         z += at.step * moves
         yield z, v
+
+
+def ode(at: Fall, z: float, v: float) -> Steps:
+    """Contacts of ODE with its own numbers."""
+    return _joint(at, z, v, at.settings["soft_erp"], at.settings["soft_cfm"])
+
+
+def gazebo(at: Fall, z: float, v: float) -> Steps:
+    """Contacts of ODE with the numbers that Gazebo Classic makes of both bodies."""
+    pull = at.step * at.settings["kp"] / 2
+    both = pull + 2 * at.settings["kd"]
+    fastest = min(at.settings["max_vel"], at.settings["contact_max_correcting_vel"])
+    return _joint(at, z, v, pull / both, 1 / both, fastest)
 
 
 def xpbd(at: Fall, z: float, v: float) -> Steps:

@@ -5,6 +5,12 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+MOST_WARNINGS = 3
+"""Number of warnings that an answer prints; the others are remarks."""
 STANDARD_GRAVITY = 9.80665
 """In m/s²."""
 LONGEST_STEP = 0.1

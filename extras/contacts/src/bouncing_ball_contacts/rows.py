@@ -1,19 +1,25 @@
-"""Engines with a stiffness and a damping, by their names."""
+"""Rows of engines, by their names: ENGINES with a stiffness, and BY_NUMBER with a restitution."""
 
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
+from bouncing_ball_contacts import step_rules
 from bouncing_ball_contacts.engines import (
     LARGER,
+    LEAST,
     MEAN,
     MODES,
     PAIR,
+    PIXELS,
+    PRODUCT,
     SERIES,
     SUM,
+    ByNumber,
     Engine,
     Parameters,
     Rule,
@@ -32,7 +38,7 @@ from bouncing_ball_contacts.schemes import (
     Linear,
     SemiImplicit,
 )
-from bouncing_ball_contacts.units import Refused
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused
 
 IMPEDANCE = 0.999
 """MuJoCo's of a design, at every depth.
@@ -199,8 +205,8 @@ def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
     return _read_mujoco({"solref": _solref(p["ke"], p["kd"]), "solimp": p["solimp"]}, at)
 
 
-_BULLET = _forces(("contactStiffness", "contactDamping"))
-BULLET_BESIDE = {
+_BULLET_SPRING = _forces(("contactStiffness", "contactDamping"))
+_BULLET_BESIDE = {
     "linearDamping": 0.04,
     "contactSlop": 1e-5,
     "contactProcessingThreshold": 1e18,
@@ -209,17 +215,17 @@ BULLET_BESIDE = {
 
 
 def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    spring = _BULLET["read"](p, at)
+    spring = _BULLET_SPRING["read"](p, at)
     return Bullet(
         stiffness=spring.stiffness,
         damping=spring.damping,
         slop=p["contactSlop"],
-        ahead=found_ahead(p, at.radius, at.points),
+        ahead=_found_ahead(p, at.radius, at.points),
         drag=p["linearDamping"],
     )
 
 
-def found_ahead(p: Parameters, radius: float, points: int) -> float:
+def _found_ahead(p: Parameters, radius: float, points: int) -> float:
     """Return the height in m below which PyBullet finds a contact.
 
     A ball is found within a share of half the diagonal of the box around it, 2 % by default; two
@@ -297,7 +303,7 @@ def _read_gazebo(p: Parameters, at: Setting) -> Law:
     return Capped(linear.stiffness, linear.damping, fastest, at.step)
 
 
-_PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
+_PHYSX_SPRING = _forces(("compliantContactStiffness", "compliantContactDamping"))
 
 
 _WEIGHTLESS = (
@@ -372,10 +378,10 @@ _BY_MODE = replace(MEAN, text="averaged, or by the mode")
 _COMPLIANT = PhysX(
     name="physx",
     scheme=Implicit(ahead=True),
-    names=_PHYSX["names"],
-    write=_PHYSX["write"],
-    read=_PHYSX["read"],
-    units=_PHYSX["units"],
+    names=_PHYSX_SPRING["names"],
+    write=_PHYSX_SPRING["write"],
+    read=_PHYSX_SPRING["read"],
+    units=_PHYSX_SPRING["units"],
     rubs="\nmaterial->setStaticFriction({mu:g});\nmaterial->setDynamicFriction({mu:g});",
     meaning="compliantContactStiffness = k, compliantContactDamping = c",
     ran="PhysX 5.12 (ovphysx 0.7.0)",
@@ -396,7 +402,6 @@ _COMPLIANT = PhysX(
     ),
     box="r is that of a box which falls flat on a plane and does not slide; on springs, "
     "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
-    flat_only=True,
     not_of_one_point=_SPRING_OF_ONE_POINT,
     caution="the contactOffset is taken as longer than the way of the body in a step",
 )
@@ -415,8 +420,8 @@ ENGINES: Mapping[str, Engine] = {
         Engine(
             name="pybullet",
             scheme=Implicit(),
-            names=_BULLET["names"],
-            write=_BULLET["write"],
+            names=_BULLET_SPRING["names"],
+            write=_BULLET_SPRING["write"],
             beside={
                 "linearDamping": 0.0,
                 "contactSlop": 0.0,
@@ -424,16 +429,16 @@ ENGINES: Mapping[str, Engine] = {
                 "contactBreakingThreshold": 0.2,
             },
             read=_read_pybullet,
-            units=_BULLET["units"]
+            units=_BULLET_SPRING["units"]
             | {"linearDamping": "1/s", "contactSlop": "m", "contactProcessingThreshold": "m"},
             meaning="contactStiffness = 2 k, contactDamping = c/2",
             rules={
                 "contactStiffness": SERIES,
                 "contactDamping": SUM,
-                **dict.fromkeys(BULLET_BESIDE, PAIR),
+                **dict.fromkeys(_BULLET_BESIDE, PAIR),
             },
             # A body for which no spring is set.
-            defaults={"contactStiffness": 1e18, "contactDamping": 0.1, **BULLET_BESIDE},
+            defaults={"contactStiffness": 1e18, "contactDamping": 0.1, **_BULLET_BESIDE},
             ran="PyBullet 3.2.7",
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.20 to 0.79 for 0.80); on springs a box that slides gains energy",
@@ -461,7 +466,6 @@ ENGINES: Mapping[str, Engine] = {
             "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
             "softer by the default of 1; a body that slides may have up to 0.08 less",
             box=_DRAKE_BOX,
-            flat_only=True,
             notes=("The lagged approximation, the row drake, keeps r of bodies that slide",),
             friction="",
             sliding=Sliding(takes=0.08, adds=lambda r, speed: 0.07 * (r <= 0.5), speeds=(1.4,)),
@@ -477,14 +481,13 @@ ENGINES: Mapping[str, Engine] = {
             units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
             rules={
                 "point_contact_stiffness": SERIES,
-                "hunt_crossley_dissipation": replace(MEAN, text="averaged by the penetrations"),
+                "hunt_crossley_dissipation": replace(MEAN, text="averaged by depth"),
             },
             defaults={"point_contact_stiffness": 1e6, "hunt_crossley_dissipation": 50.0},
             of_depth=HuntCrossley.of_depth,
             ran="Drake 1.51.1",
             notes=("r falls with the speed: it is as wanted at this speed only",),
             box=_DRAKE_BOX,
-            flat_only=True,
         ),
         Engine(
             name="lammps",
@@ -492,7 +495,6 @@ ENGINES: Mapping[str, Engine] = {
             **_forces(("kn", "gamma_n"), per_mass=True),
             meaning="kn = k, gamma_n = c/m",
             rules={"kn": PAIR, "gamma_n": PAIR},
-            sets_pair=True,
             deepest=1.0,
             ran="LAMMPS 2025.7.22",
             notes=("The damping is per unit of the mass, and holds for this one only",),
@@ -503,7 +505,6 @@ ENGINES: Mapping[str, Engine] = {
             **_forces(("kn", "gamma_n"), per_mass=True),
             meaning="kn = k, gamma_n = c/m, with limit_damping",
             rules={"kn": PAIR, "gamma_n": PAIR},
-            sets_pair=True,
             deepest=1.0,
             ran="LAMMPS 2025.7.22",
             notes=("The damping is per unit of the mass, and holds for this one only",),
@@ -518,9 +519,7 @@ ENGINES: Mapping[str, Engine] = {
             units={"kn": "Pa"},
             meaning="kn = (4/3) E* in Pa, e = r",
             rules={"kn": PAIR, "e": PAIR},
-            sets_pair=True,
             deepest=1.0,
-            unit="N/m^1.5",
             ran="LAMMPS 2025.7.22",
             notes=("The modulus kn is for this radius; e is the same at every speed",),
         ),
@@ -537,7 +536,6 @@ ENGINES: Mapping[str, Engine] = {
             rubs=", mu={mu:g}",
             box="The points are those of a face: r is that of a box which falls flat on a plane "
             "and does not slide; on a box, on an edge or sliding it had 0.78 to 0.91 for 0.80",
-            flat_only=True,
             not_of_one_point=_SPRING_OF_ONE_POINT,
         ),
         NewtonMujoco(
@@ -597,7 +595,6 @@ ENGINES: Mapping[str, Engine] = {
             units={"soft_cfm": "m/N/s", "kp": "N/m", "kd": "N s/m"},
             rules=dict.fromkeys(("soft_cfm", "soft_erp"), PAIR),
             defaults={"soft_cfm": 1e-10, "soft_erp": 0.2},
-            sets_pair=True,
             not_of_one_point=_SPRING_OF_ONE_POINT,
             notes=("These are numbers of a contact joint",),
             box="dCollide has to be asked for at least 4 contacts: with 1, 2 or 3 a box on a plane "
@@ -640,9 +637,503 @@ ENGINES: Mapping[str, Engine] = {
             **_forces(("stiffness", "damping")),
             meaning="stiffness = k, damping = c; semi-implicit Euler, a contact that never pulls",
             rules={"stiffness": PAIR, "damping": PAIR},
-            sets_pair=True,
             ran="a script of NumPy",
         ),
     )
 }
 """The engines by name."""
+_CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
+_OLD_JOLT = "Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m"
+_CONSTANT = "The threshold is a constant of the library"
+_JOLT = ByNumber(
+    name="jolt",
+    rule=step_rules.jolt,
+    ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
+    parameter="mRestitution",
+    pair=LARGER,
+    threshold=1.0,
+    set_by="PhysicsSettings::mMinVelocityForRestitution",
+    lines={
+        "mRestitution": "bodySettings.mRestitution = {value}f;  // of {bodies}",
+        "PhysicsSettings::mMinVelocityForRestitution": "physicsSettings.mMinVelocityForRestitution "
+        "= {value}f;",
+        "mLinearDamping": "bodySettings.mLinearDamping = {value}f;",
+        "step": "physicsSystem.Update({value}f, 1, &allocator, &jobs);",
+    },
+    settings={"mLinearDamping": 0.05},
+    designed=({"mLinearDamping": 0.0},),
+    damped_by="mLinearDamping",
+    kept=lambda damping, step: max(1 - damping * step, 0.0),
+    notes=(_OLD_JOLT,),
+)
+_GODOT = "physics/jolt_physics_3d/simulation/bounce_velocity_threshold"
+_PHYSX = ByNumber(
+    name="physx",
+    rule=partial(step_rules.physx, ahead=0.04),
+    ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
+    threshold=2.0,
+    set_by="bounceThresholdVelocity",
+    lines={
+        "restitution": "material->setRestitution({value}f);  // of {bodies}",
+        "bounceThresholdVelocity": "sceneDesc.bounceThresholdVelocity = {value}f;",
+        "step": "scene->simulate({value}f);",
+    },
+    springs="physx",
+    is_physx=True,
+    is_restless=True,
+)
+_NEWTON = "the Newton backend with its MuJoCo solver (--engine newton-mujoco)"
+_AHEAD = "The contact offset is taken as longer than the way of the body in a step"
+# Drops from 1 m at 1/60 s in PhysX 5.12: 0.34 to 0.66 for 0.70; slow balls did not bounce at all.
+_PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
+_BOX2D_2 = ByNumber(
+    name="box2d-2",
+    rule=step_rules.box2d_2,
+    ran="Box2D 2.4.1 (box2d-wasm 7.0.0)",
+    lines={
+        "restitution": "fixtureDef.restitution = {value}f;  // of {bodies}",
+        "restitutionThreshold": "fixtureDef.restitutionThreshold = {value}f;",
+        "step": "world.Step({value}f, 8, 3);",
+    },
+    pair=LARGER,
+    threshold=1.0,
+    is_restless=True,
+    set_by="restitutionThreshold",
+    skin=step_rules.SKIN,
+    reach=step_rules.SKIN,
+    either=({"rounding": 1e-9}, {"rounding": -1e-9}),
+    notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3",),
+)
+_BOX2D_2_3 = replace(
+    _BOX2D_2,
+    name="box2d-2.3",
+    ran="Box2D 2.3.10 of Python",
+    set_by="b2_velocityThreshold",
+    lines={name: _BOX2D_2.lines[name] for name in ("restitution", "step")},
+    notes=(_CONSTANT,),
+)
+_DART = ByNumber(
+    name="dart",
+    rule=step_rules.dart,
+    ran="DART 6.20 (dartpy)",
+    lines={
+        "restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}",
+        "step": "world->setTimeStep({value});",
+    },
+    pair=PRODUCT,
+    threshold=0.1,
+    is_of_rebound=True,
+    is_restless=True,
+    reach=0.0,
+    notes=(_CONSTANT,),
+    not_for=("lying capsules",),
+)
+_RAPIER = ByNumber(
+    name="rapier",
+    rule=step_rules.rapier,
+    ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
+    lines={
+        "restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}",
+        "step": "integration_parameters.dt = {value};",
+    },
+    sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
+    remembers=2000,
+    notes=("Before 0.35 Rapier had another rule",),
+    # In Rapier and Box2D 3 a ball of 0.18 m with 30 rad/s had 0.656 to 0.710 where 0.667 to 0.691
+    # was designed, from 0.32 m at 1/50 s.
+    not_for=("flat boxes", "lying capsules", "spinning balls"),
+)
+_BULLET = "    pybullet.changeDynamics(body, -1, {name}={value})"
+_OF_BULLET = "pybullet.setPhysicsEngineParameter({name}={value})"
+# Elements with their places, because each one stands once in a world of SDF.
+_OF_GAZEBO = "<{name}>{value}</{name}>  <!-- in <surface><contact><ode> -->"
+_OF_GAZEBO_BODIES = "<{name}>{value}</{name}>  <!-- in <surface><bounce> of {bodies} -->"
+_OF_GAZEBO_STEP = "<max_step_size>{value}</max_step_size>  <!-- in <physics> -->"
+BY_NUMBER = {
+    each.name: each
+    for each in (
+        _JOLT,
+        replace(
+            _JOLT,
+            name="godot-jolt",
+            parameter="bounce",
+            pair=_CLAMPED_SUM,
+            set_by=_GODOT,
+            lines={
+                "bounce": "physics_material.bounce = {value}  # of {bodies}",
+                _GODOT: f"{_GODOT}={{value}}  # project setting",
+                "default_linear_damp": "physics/3d/default_linear_damp={value}  # project setting",
+                "step": "physics/common/physics_ticks_per_second={rate}  # project setting",
+            },
+            settings={"default_linear_damp": 0.1},
+            designed=({"default_linear_damp": 0.0},),
+            damped_by="default_linear_damp",
+            borrows="jolt",
+        ),
+        _PHYSX,
+        replace(
+            _PHYSX,
+            name="unity",
+            rule=partial(step_rules.physx, ahead=0.02),
+            parameter="bounciness",
+            set_by="Physics.bounceThreshold",
+            lines={
+                "bounciness": "material.bounciness = {value}f;  // of {bodies}",
+                "Physics.bounceThreshold": "Physics.bounceThreshold = {value}f;",
+                "step": "Time.fixedDeltaTime = {value}f;",
+            },
+            springs="",
+            borrows="physx",
+            notes=("It has PhysX 4.1 with a contact offset of 10 mm",),
+        ),
+        replace(
+            _PHYSX,
+            name="isaac-lab",
+            rule=partial(step_rules.physx, ahead=math.inf),
+            threshold=0.5,
+            set_by="PhysxCfg.bounce_threshold_velocity",
+            lines={
+                "restitution": "# Isaac Lab 3: isaaclab_physx.sim.spawners.materials and .physics\n"
+                "material = PhysxRigidBodyMaterialCfg(restitution={value})  # of {bodies}\n"
+                "physics = PhysxCfg(solver_type=0)  # PGS",
+                "PhysxCfg.bounce_threshold_velocity": "physics.bounce_threshold_velocity = {value}",
+                "step": "simulation = SimulationCfg(dt={value}, physics=physics)",
+            },
+            springs="isaac-lab",
+            borrows="physx",
+            ignored_by=_NEWTON,
+            notes=(_AHEAD, _PGS),
+        ),
+        replace(
+            _PHYSX,
+            name="isaac-sim",
+            rule=partial(step_rules.physx, ahead=math.inf),
+            threshold=0.0,
+            set_by="physxScene:bounceThreshold",
+            lines={
+                "restitution": "float physics:restitution = {value}  # of {bodies}\n"
+                'uniform token physxScene:solverType = "PGS"',
+                "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
+                "step": "uint physxScene:timeStepsPerSecond = {rate}",
+            },
+            springs="",
+            borrows="physx",
+            ignored_by=_NEWTON,
+            notes=("By its USD schema there is no threshold", _AHEAD, _PGS),
+        ),
+        _RAPIER,
+        ByNumber(
+            name="box2d-3.1",
+            rule=step_rules.box2d,
+            ran="Box2D after 3.1.1 (box2d3-wasm 5.2.0)",
+            pair=LARGER,
+            threshold=1.0,
+            set_by="b2WorldDef.restitutionThreshold",
+            lines={
+                "restitution": "shapeDef.material.restitution = {value}f;  // of {bodies}",
+                "b2WorldDef.restitutionThreshold": "worldDef.restitutionThreshold = {value}f;",
+                "step": f"b2World_Step(world, {{value}}f, {step_rules.SUBSTEPS});",
+            },
+            sinks=_RAPIER.sinks,
+            reach=0.02,
+            notes=("Since August 2026 Box2D has another rule, released in 3.2",),
+            not_for=_RAPIER.not_for,
+        ),
+        _BOX2D_2,
+        _BOX2D_2_3,
+        replace(
+            _BOX2D_2_3,
+            name="libgdx",
+            set_by="World.setVelocityThreshold",
+            lines={
+                "restitution": _BOX2D_2.lines["restitution"],
+                "World.setVelocityThreshold": "World.setVelocityThreshold({value}f);",
+                "step": "world.step({value}f, 8, 3);",
+            },
+            borrows="box2d-2.3",
+            notes=(),
+        ),
+        replace(
+            _BOX2D_2,
+            name="planck",
+            ran="planck 1.4.2",
+            set_by="Settings.velocityThreshold",
+            lines={
+                "restitution": "body.createFixture({{shape, restitution: {value}}})"
+                "  // of {bodies}",
+                "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
+                "step": "world.step({value});",
+            },
+            notes=(),
+            # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
+            not_for=("three touching bodies",),
+        ),
+        ByNumber(
+            name="chipmunk",
+            rule=step_rules.chipmunk,
+            ran="Chipmunk 7 (pymunk 7.3.1)",
+            parameter="elasticity",
+            lines={
+                "elasticity": "shape.elasticity = {value}  # of {bodies}",
+                "step": "space.step({value})",
+            },
+            pair=PRODUCT,
+            sinks=0.0,
+            reach=0.0,
+        ),
+        _DART,
+        replace(
+            _DART,
+            name="gazebo-sim",
+            parameter="restitution_coefficient",
+            lines={
+                "restitution_coefficient": _OF_GAZEBO_BODIES,
+                "step": _OF_GAZEBO_STEP,
+            },
+            ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
+            notes=(
+                "With its default engine Gazebo passes this number to DART, and ignores the "
+                "threshold of the same element",
+            ),
+        ),
+        ByNumber(
+            name="matter-js",
+            rule=step_rules.matter,
+            ran="matter-js 0.20.0",
+            pair=LARGER,
+            threshold=2 * 60 * STANDARD_GRAVITY / PIXELS,
+            set_by="Resolver._restingThresh",
+            lines={
+                "restitution": "Bodies.circle(x, y, radius, {{restitution: {value}}})"
+                "  // of {bodies}",
+                "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
+                "frictionAir": "body.frictionAir = {value};",
+                "step": "Matter.Engine.update(engine, 1000 / {rate});",
+            },
+            pixels=PIXELS / STANDARD_GRAVITY,
+            either=tuple({"turn": turn} for turn in (0.0, 0.5, 1.0)),
+            reach=0.03,
+            settings={"frictionAir": 0.01},
+            designed=({"frictionAir": 0.0},),
+            damped_by="frictionAir",
+            kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
+            notes=(
+                "A circle is a polygon there, of 10 to 26 sides: r is over all ways to turn it, "
+                "which matter below a radius of 20 pixels. With inertia: Infinity it cannot turn, "
+                "and has the r of a large circle",
+                "Below the threshold a ball with a number above 0.98 may also leave faster than "
+                "it came",
+            ),
+            not_for=("boxes", "spinning circles"),
+        ),
+        ByNumber(
+            name="pybullet",
+            rule=step_rules.pybullet,
+            ran=ENGINES["pybullet"].ran,
+            pair=PRODUCT,
+            threshold=0.2,
+            set_by="restitutionVelocityThreshold",
+            lines={
+                "restitution": "for body in (one, other):  # {bodies}\n"
+                "    pybullet.changeDynamics(body, -1, restitution={value})",
+                "linearDamping": _BULLET,
+                "contactProcessingThreshold": _BULLET,
+                "contactERP": _OF_BULLET,
+                "contactSlop": _OF_BULLET,
+                "restitutionVelocityThreshold": _OF_BULLET,
+                "step": "pybullet.setPhysicsEngineParameter(fixedTimeStep={value}, numSubSteps=1)",
+            },
+            settings={"contactERP": 0.08, **_BULLET_BESIDE},
+            designed=(
+                dict.fromkeys(
+                    ("linearDamping", "contactProcessingThreshold", "contactERP", "contactSlop"),
+                    0.0,
+                ),
+            ),
+            free=step_rules.bullet_flight,
+            ahead=_found_ahead,
+            springs="pybullet",
+            is_restless=True,
+            calmed_by="contactProcessingThreshold",
+            notes=("Bullet's own bodies, as in C++ and ammo.js, have no linearDamping of 0.04",),
+            # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
+            # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
+            not_for=(
+                "three touching bodies",
+                "boxes or lying capsules on GEOM_PLANE",
+                "tilted capsules",
+            ),
+        ),
+        ByNumber(
+            name="ode",
+            rule=step_rules.ode,
+            ran=ENGINES["ode"].ran,
+            parameter="bounce",
+            pair=PAIR,
+            set_by="bounce_vel",
+            has_defaults=False,
+            lines={
+                "bounce": "contact.surface.mode = dContactBounce | dContactApprox1;\n"
+                "contact.surface.bounce = {value};",
+                "bounce_vel": "contact.surface.bounce_vel = {value};",
+                "soft_cfm": "contact.surface.soft_cfm = {value};",
+                "step": "dWorldStep(world, {value});",
+            },
+            settings=ENGINES["ode"].defaults,
+            designed=({"soft_cfm": 1e-10},),
+            reach=0.0,
+            springs="ode",
+            depends_on_mass=True,
+            notes=("These are numbers of a contact joint",),
+        ),
+        ByNumber(
+            name="gazebo",
+            rule=step_rules.gazebo,
+            ran=ENGINES["gazebo"].ran,
+            parameter="restitution_coefficient",
+            pair=LEAST,
+            threshold=1e5,
+            set_by="threshold",
+            lines={
+                "restitution_coefficient": _OF_GAZEBO_BODIES,
+                "threshold": _OF_GAZEBO_BODIES,
+                "max_vel": _OF_GAZEBO,
+                "kd": _OF_GAZEBO,
+                "contact_max_correcting_vel": "<{name}>{value}</{name}>  "
+                "<!-- in <physics><ode><constraints> -->",
+                "step": _OF_GAZEBO_STEP,
+            },
+            settings={
+                name: ENGINES["gazebo"].defaults[name]
+                for name in ("kp", "kd", "max_vel", "contact_max_correcting_vel")
+            },
+            # With such a damper the default spring takes nothing of the penetration back.
+            designed=({"max_vel": 1e9, "contact_max_correcting_vel": 1e9, "kd": 1e12},),
+            springs="gazebo",
+            reach=0.0,
+            depends_on_mass=True,
+            notes=("Gazebo Classic, with ODE",),
+        ),
+        ByNumber(
+            name="newton-xpbd",
+            rule=step_rules.xpbd,
+            ran="Newton 1.8.0",
+            lines={
+                "restitution": "ShapeConfig(restitution={value})  # SolverXPBD(model, "
+                "enable_restitution=True)",
+                "step": "solver.step(state, following, control, contacts, {value})",
+            },
+            reach=0.0,
+            not_for=("flat boxes", "lying capsules", "spinning balls"),
+        ),
+        ByNumber(
+            name="cannon-es",
+            rule=step_rules.cannon,
+            ran="cannon-es 0.20.0",
+            pair=PAIR,
+            lines={
+                "restitution": "const contact = new ContactMaterial(a, b, {{restitution: "
+                "{value}}});",
+                "contactEquationRelaxation": "contact.contactEquationRelaxation = {value};",
+                "contactEquationStiffness": "contact.contactEquationStiffness = {value};",
+                "linearDamping": "body.linearDamping = {value};",
+                "step": "world.step({value});",
+            },
+            settings={
+                "contactEquationRelaxation": 3.0,
+                "contactEquationStiffness": 1e7,
+                "linearDamping": 0.01,
+            },
+            # With such a stiffness r does not depend on the mass.
+            designed=tuple(
+                {"contactEquationRelaxation": steps, "contactEquationStiffness": 1e15}
+                for steps in (10.0, 50.0)
+            ),
+            damped_by="linearDamping",
+            kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
+            reach=0.0,
+            depends_on_mass=True,
+        ),
+    )
+}
+"""Engines whose restitution is a number, and products on top of one, by their names."""
+NAMES = {
+    "bevyrapier": "rapier",
+    "box2d": "box2d-3.1",
+    "box2d24": "box2d-2",
+    "box2d241": "box2d-2",
+    "box2d242": "box2d-2",
+    "bullet": "pybullet",
+    "bullet3": "pybullet",
+    "cannon": "cannon-es",
+    "dartpy": "dart",
+    "dartsim": "dart",
+    "drakelagged": "drake",
+    "gazeboclassic": "gazebo",
+    "gazeboharmonic": "gazebo-sim",
+    "genesisworld": "genesis",
+    "gz": "gazebo-sim",
+    "gzsim": "gazebo-sim",
+    "ignition": "gazebo-sim",
+    "ignitiongazebo": "gazebo-sim",
+    "isaac": "isaac-sim",
+    "jbox2d": "box2d-2.3",
+    "matter": "matter-js",
+    "mjwarp": "mujoco-warp",
+    "mjx": "mujoco",
+    "mujocomjx": "mujoco",
+    "newtonsemiimplicit": "newton",
+    "newtonfeatherstone": "newton",
+    "nvidiaphysx": "physx",
+    "omniverse": "isaac-sim",
+    "ovphysx": "physx",
+    "p5play": "planck",
+    "pybox2d": "box2d-2.3",
+    "pymunk": "chipmunk",
+    "xpbd": "newton-xpbd",
+    "adams": "",
+    "avian": "",
+    "bepu": "",
+    "bevy": "has several engines: take rapier for bevy_rapier",
+    "bevyxpbd": "",
+    "blender": "has Bullet: take pybullet",
+    "box2d32": "has another rule than box2d-3.1",
+    "box3d": "",
+    "ammo": "is Bullet: take pybullet with linearDamping=0",
+    "babylon": "has several engines: take cannon-es for its Cannon",
+    "brax": "",
+    "chaos": "",
+    "chrono": "",
+    "construct": "has Box2D: take box2d-2.3, or box2d-3.1 for Box2D 3",
+    "coppeliasim": "has several engines: take pybullet, ode or mujoco",
+    "gdevelop": "has Box2D: take box2d-2.3",
+    "godot": "has two engines: take godot-jolt for Jolt Physics",
+    "dojo": "",
+    "dyn4j": "",
+    "gymnasium": "has no engine of its own: take mujoco, or box2d-2.3",
+    "havok": "",
+    "haxball": "",
+    "isaacgym": "has another PhysX: take physx for PhysX 5",
+    "liggghts": "",
+    "maniskill": "has PhysX: take physx for PhysX 5",
+    "mercurydpm": "",
+    "p2": "",
+    "phaser": "has two engines: take matter-js for Matter",
+    "physac": "",
+    "physijs": "is Bullet: take pybullet with linearDamping=0",
+    "playcanvas": "has Bullet: take pybullet with linearDamping=0",
+    "physx3": "",
+    "reactphysics3d": "",
+    "rigidipc": "",
+    "sapien": "has PhysX: take physx for PhysX 5",
+    "simscape": "",
+    "siconos": "",
+    "three": "has no physics: take the engine beside it, such as cannon-es or rapier",
+    "unity2d": "has Box2D: take box2d-2, or box2d-3.1 for Box2D 3",
+    "unreal": "",
+    "ue": "",
+    "warp": "has no contacts of its own: take mujoco-warp or newton",
+    "webots": "has an ODE of its own: take ode",
+    "yade": "",
+}
+"""Other names of rows; and products that were not run, with what may stand for them."""

@@ -22,7 +22,6 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.rebounds import from_skin
 from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 
 INSTANTS = 9
@@ -124,7 +123,8 @@ def promise(found, kind):
     low, _, high = found.outcome.restitution
     row = BY_NUMBER.get(found.engine)
     if row and kind.shape == "box":
-        low, _, high = from_skin(found.outcome.restitution, row.skin / found.bounce.drop_height)
+        share = row.skin / found.bounce.drop_height
+        low, high = (math.sqrt((each**2 - share) / (1 - share)) for each in (low, high))
     along = abs(kind.spin) * found.bounce.size / found.bounce.impact_speed
     if along and "stiffness" in found.numbers:
         low, high = Problem(found.bounce, ENGINES[found.engine]).promised(found.outcome, along)

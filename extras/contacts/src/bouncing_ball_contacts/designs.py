@@ -50,7 +50,6 @@ from bouncing_ball_contacts.units import LONGEST_STEP, holding, refuse, show, sp
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
 STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
-VAGUE = "The depth at rest is less than the engine resolves: its positions have single precision"
 
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
 _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250)
@@ -170,7 +169,7 @@ class Problem:
         if not fall:
             return "", False
         if not isinstance(law, Impedance) or found.rest >= 8 * fall * step:
-            return VAGUE if math.isnan(found.rest) else lies, False
+            return ("" if math.isnan(found.rest) else lies), False
         speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
         height = speed**2 / (2 * self.bounce.gravity)
         hops = f"hops by up to about {show(height, 'm', 2)}: less at a shorter step"
@@ -555,7 +554,7 @@ def _remarks(
     is_pasted = "{rubs}" in snippet_of(engine.name)
     return holding(
         [
-            (not hops, rests[:1].upper() + rests[1:]),
+            (rests and not hops, rests[:1].upper() + rests[1:]),
             (True, f"The largest force is {show(outcome.force[1], 'N')}"),
             (is_sliding, f"Of bodies that slide r is {', '.join(ranges)}"),
             (bounce.friction and engine.friction, engine.friction),

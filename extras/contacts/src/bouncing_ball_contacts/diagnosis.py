@@ -270,8 +270,8 @@ def _remarks(
                 f"The contact has k = {show(found.stiffness, 'N/m')} and a damping ratio of "
                 f"{found.damping_ratio:.3g}; in short steps r is {found.limit:.3f}",
             ),
-            (not hops, rests[:1].upper() + rests[1:]),
-            (engine.caution, engine.caution[:1].upper() + engine.caution[1:]),
+            (rests and not hops, rests[:1].upper() + rests[1:]),
+            *((True, note) for note in engine.notes),
             (bounce.points > 1 and engine.box, engine.box),
             (
                 bounce.restitution is None,

@@ -129,8 +129,6 @@ class Engine:
         if those of two bodies are multiplied. Without it the friction is the engine's own.
     sliding : Sliding
         By how much r of a body that slides may leave the range of one that does not.
-    caution : str
-        What a diagnosis takes for granted.
     not_for : tuple of str
         Scenes in which r is another one.
     not_of_one_point : tuple of str
@@ -158,7 +156,6 @@ class Engine:
     sliding: Sliding = Sliding()
     rubs: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
-    caution: str = ""
     not_for: tuple[str, ...] = ()
     not_of_one_point: tuple[str, ...] = ()
 

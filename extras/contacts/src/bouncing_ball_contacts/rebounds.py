@@ -158,6 +158,11 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
                 f"{show(at.step, 's')}: between 1 µm and 1 km are computed",
             ),
             (
+                height <= engine.skin,
+                f"a drop from {show(height, 'm')} ends in the skin of {show(engine.skin, 'm')}: "
+                "give a greater height",
+            ),
+            (
                 height <= way / 2 + engine.skin,
                 f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
                 "greater height",
@@ -223,12 +228,6 @@ class Case(NamedTuple):
         """Speed in m/s at which the ball touches, above the floor if there is a skin."""
         bounce = self.bounce
         return math.sqrt(max(bounce.impact_speed**2 - 2 * bounce.gravity * self.engine.skin, 0.0))
-
-    @property
-    def never_bounces(self) -> bool:
-        """Whether the impact is below a threshold that is a constant."""
-        fastest = self.speed + self.bounce.gravity * self.step
-        return fastest <= self.threshold and self.engine.is_constant
 
     def number(self, written: float) -> float:
         """Return the combined number of both bodies."""
@@ -431,11 +430,6 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     )
 
 
-def from_skin(r: Range, share: float) -> Range:
-    """Return r of heights above a skin that takes a share of the drop, from r above the floor."""
-    return Range(*(math.sqrt(max(each**2 - share, 0.0) / (1 - share)) for each in r))
-
-
 def _remarks(case: Case, written: float, r: Range) -> list[str]:
     """Return remarks, what was given, and what was assumed."""
     row = case.engine
@@ -453,7 +447,9 @@ def _remarks(case: Case, written: float, r: Range) -> list[str]:
     }
     defaulted = ", ".join(f"{name} = {value:g}" for name, value in defaults.items())
     bodies = "alike" if case.other is None else f"and {case.other:g} of the other body"
-    fall = bounce.impact_speed**2 / (2 * bounce.gravity) if bounce.gravity else math.inf
+    # Share of the drop that is within the skin.
+    skin = 2 * bounce.gravity * row.skin / bounce.impact_speed**2
+    of_skin = Range(*(math.sqrt(max(each**2 - skin, 0.0) / (1 - skin)) for each in r))
     return holding(
         [
             (
@@ -462,10 +458,10 @@ def _remarks(case: Case, written: float, r: Range) -> list[str]:
                 "holds for this height only",
             ),
             (
-                row.skin,
+                skin,
                 f"A ball lies up to {show(row.skin, 'm')} above a polygon, and a polygon up to "
                 f"{show(2 * row.skin, 'm')} above another one: from there r is "
-                f"{from_skin(r, row.skin / fall)}",
+                f"{of_skin}",
             ),
             *((True, note) for note in row.notes),
             (
@@ -537,11 +533,6 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     while engine.springs and bounce.impact_speed * step > bounce.size:
         step /= 2
     case = Case(engine, bounce, step, engine.threshold, engine.settings)
-    if case.never_bounces:
-        raise Refused(
-            f"no number bounces in {engine.name} at {show(bounce.impact_speed, 'm/s')}: it has a "
-            f"threshold of {engine.limit(engine.threshold)}, a constant"
-        )
     best = case.wanted()
     also = _other_step(best)
     if time_step is None and also:
@@ -555,7 +546,8 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     if best.does_it:
         return found
     nothing = f"at {show(step, 's')} no number gives this r"
-    nothing += f", because a ball rises to the skin of {show(engine.skin, 'm')}" * bool(engine.skin)
+    rises = (bounce.restitution * bounce.impact_speed) ** 2 < 2 * bounce.gravity * engine.skin
+    nothing += f", because a ball rises to the skin of {show(engine.skin, 'm')}" * rises
     nothing += "" if also else ": nothing is written to paste"
     return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 
@@ -640,7 +632,7 @@ def diagnose_number(
     causes = tuple(_causes(case, number, found.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
     found = replace(found, snippet="", not_for=(), warnings=causes + found.warnings)
-    if found.is_kept or case.never_bounces:
+    if found.is_kept:
         return found
     best = case.wanted()
     if other is not None and best.deviation > TOLERANCE:
@@ -692,7 +684,10 @@ def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     combine = "combine" if engine.is_physx else ""
     names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
     found = parameters_of(engine.name, engine.names, list(names), typed)
+    name = {"number": engine.parameter}
     return {
-        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(what, value)
+        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(
+            name.get(what, what), value
+        )
         for what, value in found.items()
     }

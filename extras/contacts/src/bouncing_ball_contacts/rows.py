@@ -403,7 +403,6 @@ _COMPLIANT = PhysX(
     box="r is that of a box which falls flat on a plane and does not slide; on springs, "
     "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
     not_of_one_point=_SPRING_OF_ONE_POINT,
-    caution="the contactOffset is taken as longer than the way of the body in a step",
 )
 ENGINES: Mapping[str, Engine] = {
     engine.name: engine
@@ -461,12 +460,13 @@ ENGINES: Mapping[str, Engine] = {
             rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
             defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
             ran="Drake 1.51.1",
-            caution='the discrete_contact_approximation is taken as "sap"; with the default, '
-            '"lagged", Drake ignores relaxation_time, and the row is drake; '
-            "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
-            "softer by the default of 1; a body that slides may have up to 0.08 less",
             box=_DRAKE_BOX,
-            notes=("The lagged approximation, the row drake, keeps r of bodies that slide",),
+            notes=(
+                'The discrete_contact_approximation is "sap"; with the default, "lagged", Drake '
+                "ignores relaxation_time: the row drake, which keeps r of bodies that slide",
+                "sap_near_rigid_threshold is 0: by its default of 1 Drake makes strongly damped "
+                "contacts softer",
+            ),
             friction="",
             sliding=Sliding(takes=0.08, adds=lambda r, speed: 0.07 * (r <= 0.5), speeds=(1.4,)),
         ),

@@ -260,9 +260,8 @@ def test_a_depth_at_rest_that_the_engine_does_not_resolve_is_none():
         assert measured is None or found.outcome.rest == pytest.approx(measured, rel=2e-3)
     # A design for so slow a body that the spring is as stiff.
     slow = Bounce(**KILO, restitution=0.8, speed="1 cm/s", stiffness="1 GN/m")
-    for engine, is_single in (("physx", True), ("newton", True), ("mujoco", False)):
-        found = design(slow, ENGINES[engine], "5 us")
-        assert math.isnan(found.outcome.rest) == is_single
+    for engine in ("physx", "newton"):
+        assert math.isnan(design(slow, ENGINES[engine], "5 us").outcome.rest)
 
 
 @pytest.mark.parametrize(

@@ -784,7 +784,7 @@ BY_NUMBER = {
             },
             springs="",
             borrows="physx",
-            notes=("It has PhysX 4.1 with a contact offset of 10 mm",),
+            notes=("The contact offset is its default, 10 mm",),
         ),
         replace(
             _PHYSX,

@@ -49,7 +49,6 @@ from bouncing_ball_contacts.units import LONGEST_STEP, holding, refuse, show, sp
 
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
-STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
 
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
 _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250)
@@ -564,7 +563,10 @@ def _remarks(
                 f"The friction of {bounce.friction or 0:g} is not in what is pasted",
             ),
             *((True, note) for note in engine.notes),
-            (isinstance(engine.scheme, Implicit), STEP_ONLY),
+            (
+                isinstance(engine.scheme, Implicit),
+                "The numbers take back what this time step damps, and hold for it only",
+            ),
             (bounce.points > 1 and engine.box, engine.box),
             (True, f"Given: {', '.join(given)}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),

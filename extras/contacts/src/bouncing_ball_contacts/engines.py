@@ -346,11 +346,10 @@ def parameters_of(
         name = known.get(as_compared(str(each)))
         if name is None:
             near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
-            step = ["; the time step is --time-step, or time_step= in Python"]
-            steps = step * (as_compared(str(each)) in _TIME_STEPS)
+            said = ["; the time step is --time-step, or time_step= in Python"]
             same = _SAME.get(as_compared(str(each)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
-            hint = "".join(steps or meant or near)
+            hint = "".join(said * (as_compared(str(each)) in _TIME_STEPS) or meant or near)
             known_here = ", ".join(names)
             raise Refused(
                 f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"

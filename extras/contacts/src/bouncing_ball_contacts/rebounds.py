@@ -684,10 +684,9 @@ def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     combine = "combine" if engine.is_physx else ""
     names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
     found = parameters_of(engine.name, engine.names, list(names), typed)
-    name = {"number": engine.parameter}
     return {
         what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(
-            name.get(what, what), value
+            engine.parameter if what == "number" else what, value
         )
         for what, value in found.items()
     }

@@ -314,11 +314,6 @@ _PUSHED_UP = Sliding(
     adds=lambda r, speed: 0.006 + 0.1 * speed**1.3 * (1 - r) ** 2, speeds=(2.0, 4.0)
 )
 _EVERY_FRICTION = "without sliding it holds at every friction, cone and condim"
-_MANIFOLD = (
-    "a spring keeps r as long as the body "
-    "slides less than a third of its radius in a step, and a box that slides on springs may gain "
-    "energy"
-)
 _DRAKE_BOX = (
     "A pair of shapes has one contact: r is that of a box which falls flat on a HalfSpace and does "
     "not slide; on a Box, on an edge or sliding it had 0.77 to 0.84 for 0.80"
@@ -441,7 +436,8 @@ ENGINES: Mapping[str, Engine] = {
             ran="PyBullet 3.2.7",
             box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
             "r is wrong (0.20 to 0.79 for 0.80); on springs a box that slides gains energy",
-            friction=_MANIFOLD,
+            friction="a spring keeps r as long as the body slides less than a third of its radius "
+            "in a step, and a box that slides on springs may gain energy",
             rubs=", lateralFriction={root:.6g}",
             # On a plate of 1 to 5 times its mass a ball had 0.60 to 0.78 for 0.80; a box with a
             # ball's spring at each of its points had 0.39 to 0.42 for 0.60.
@@ -642,8 +638,6 @@ ENGINES: Mapping[str, Engine] = {
     )
 }
 """The engines by name."""
-_CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
-_OLD_JOLT = "Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m"
 _CONSTANT = "The threshold is a constant of the library"
 _JOLT = ByNumber(
     name="jolt",
@@ -664,7 +658,7 @@ _JOLT = ByNumber(
     designed=({"mLinearDamping": 0.0},),
     damped_by="mLinearDamping",
     kept=lambda damping, step: max(1 - damping * step, 0.0),
-    notes=(_OLD_JOLT,),
+    notes=("Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m",),
 )
 _GODOT = "physics/jolt_physics_3d/simulation/bounce_velocity_threshold"
 _PHYSX = ByNumber(
@@ -757,7 +751,7 @@ BY_NUMBER = {
             _JOLT,
             name="godot-jolt",
             parameter="bounce",
-            pair=_CLAMPED_SUM,
+            pair=Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2),
             set_by=_GODOT,
             lines={
                 "bounce": "physics_material.bounce = {value}  # of {bodies}",

@@ -34,7 +34,7 @@ _BODY = [
     click.Option(["--radius"], help="Radius, or half the height of a box."),
     _DENSITY,
     click.Option(
-        ["--points"], type=int, default=1, help="Contact points: 4 for the face of a box on springs."
+        ["--points"], type=int, default=1, help="4 for the face of a box, in engines with springs."
     ),
     click.Option(
         ["--gravity"],

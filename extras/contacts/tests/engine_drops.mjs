@@ -359,7 +359,7 @@ const ENGINES = {
   rapier,
   jolt,
   physx,
-  box2d,
+  "box2d-3.1": box2d,
   "box2d-2": box2d2,
   planck,
   "matter-js": matter,

@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from engine_runs import as_python, quiet_warp, rebound
 
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = 9.81
 INSTANTS = 8
@@ -307,7 +307,7 @@ def by_node(name, text, drops, radius, steps, kind=BALL, **more):
 
 NOT_INSTALLED = 3
 """Exit status of engine_drops.mjs without the package of an engine."""
-OF_NODE = ("jolt", "physx", "box2d", "box2d-2", "planck", "matter-js", "cannon-es")
+OF_NODE = ("jolt", "physx", "box2d-3.1", "box2d-2", "planck", "matter-js", "cannon-es")
 ENGINES = {
     "chipmunk": chipmunk,
     "dart": dart,

@@ -1,8 +1,7 @@
-// A ball or a box falls on a plane, or two balls meet, in the ODE of Gazebo Classic with the numbers
-// that Gazebo gives it; engine_runs.py calls this program as engine_gazebo, if it is on the PATH.
+// A ball or a box falls on a plane in the ODE of Gazebo Classic with the numbers that Gazebo gives
+// it; engine_runs.py calls this program as engine_gazebo, if it is on the PATH.
 //
-// Its arguments are the radius or half height, the mass, the other mass (0 for a plane), the gap,
-// the speed, gravity, kp, kd, restitution_coefficient, threshold and max_vel of both bodies, the
+// Its arguments are the radius or half height, the mass, the gap, the speed, gravity, kp, kd, restitution_coefficient, threshold and max_vel of both bodies, the
 // world's contact_max_correcting_vel, 1 for a box or 0, the step and the number of steps, in SI
 // units. It writes the gap after each step into the file heights.txt.
 
@@ -12,10 +11,10 @@
 #include <gazebo/ode/ode.h>
 
 int main(int, char* argv[]) {
-    double values[15];
-    for (int i = 0; i < 15; i++)
+    double values[14];
+    for (int i = 0; i < 14; i++)
         values[i] = std::atof(argv[i + 1]);
-    const auto [radius, mass, other, gap, speed, gravity, kp, kd, bounce, threshold, fastest,
+    const auto [radius, mass, gap, speed, gravity, kp, kd, bounce, threshold, fastest,
                 correcting, is_box, step, steps] = values;
 
     dInitODE2(0);
@@ -31,29 +30,22 @@ int main(int, char* argv[]) {
     dWorldSetQuickStepNumIterations(world, 50);
     dWorldSetQuickStepW(world, 1.3);
 
-    dBodyID bodies[2] = {nullptr, nullptr};
-    dGeomID shapes[2];
-    const double masses[2] = {mass, other};
-    const double places[2] = {radius + gap, -radius};
-    for (int i = 0; i < (other > 0 ? 2 : 1); i++) {
-        bodies[i] = dBodyCreate(world);
-        dMass inertia;
-        if (is_box)
-            dMassSetBoxTotal(&inertia, masses[i], 2 * radius, 2 * radius, 2 * radius);
-        else
-            dMassSetSphereTotal(&inertia, masses[i], radius);
-        dBodySetMass(bodies[i], &inertia);
-        dBodySetPosition(bodies[i], 0, 0, places[i]);
-        dBodySetLinearDamping(bodies[i], 0);
-        dBodySetMaxVel(bodies[i], fastest);
-        dBodySetMinDepth(bodies[i], 0);
-        shapes[i] = is_box ? dCreateBox(nullptr, 2 * radius, 2 * radius, 2 * radius)
+    dBodyID body = dBodyCreate(world);
+    dMass inertia;
+    if (is_box)
+        dMassSetBoxTotal(&inertia, mass, 2 * radius, 2 * radius, 2 * radius);
+    else
+        dMassSetSphereTotal(&inertia, mass, radius);
+    dBodySetMass(body, &inertia);
+    dBodySetPosition(body, 0, 0, radius + gap);
+    dBodySetLinearDamping(body, 0);
+    dBodySetMaxVel(body, fastest);
+    dBodySetMinDepth(body, 0);
+    dGeomID shape = is_box ? dCreateBox(nullptr, 2 * radius, 2 * radius, 2 * radius)
                            : dCreateSphere(nullptr, radius);
-        dGeomSetBody(shapes[i], bodies[i]);
-    }
-    dBodySetLinearVel(bodies[0], 0, 0, -speed);
-    if (other == 0)
-        shapes[1] = dCreatePlane(nullptr, 0, 0, 1, 0);
+    dGeomSetBody(shape, body);
+    dBodySetLinearVel(body, 0, 0, -speed);
+    dGeomID plane = dCreatePlane(nullptr, 0, 0, 1, 0);
 
     // As ODEPhysics::Collide combines the numbers of two bodies.
     dContact contact = {};
@@ -74,15 +66,14 @@ int main(int, char* argv[]) {
     std::ofstream heights("heights.txt");
     heights.precision(15);
     for (int i = 0; i < steps; i++) {
-        const int count = dCollide(shapes[0], shapes[1], 10, points, sizeof(dContactGeom));
+        const int count = dCollide(shape, plane, 10, points, sizeof(dContactGeom));
         for (int j = 0; j < count; j++) {
             contact.geom = points[j];
             dJointID joint = dJointCreateContact(world, group, &contact);
-            dJointAttach(joint, bodies[0], bodies[1]);
+            dJointAttach(joint, body, nullptr);
         }
         dWorldQuickStep(world, step);
         dJointGroupEmpty(group);
-        const double below = other > 0 ? dBodyGetPosition(bodies[1])[2] + radius : 0;
-        heights << dBodyGetPosition(bodies[0])[2] - radius - below << '\n';
+        heights << dBodyGetPosition(body)[2] - radius << '\n';
     }
 }

@@ -18,7 +18,7 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, diagnose
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 HEIGHT = 0.5
 G = 9.80665

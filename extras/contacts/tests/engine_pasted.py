@@ -21,7 +21,8 @@ import numpy as np
 from engine_page import KEPT, NOT_RUN, save
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.engines import ran_in
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = engine_drops.G
 INSTANTS = 13
@@ -90,19 +91,18 @@ def by_spring(name, answer):
 def by_number(name, answer):
     """Return r over instants within a step, of a row of :data:`engine_drops.ENGINES`."""
     bounce = answer.bounce
-    skin = BY_NUMBER[name].skin
     way = bounce.impact_speed * answer.time_step
     drops = bounce.impact_speed**2 / (2 * G) + way * (np.arange(INSTANTS) / INSTANTS - 0.5)
     steps = math.ceil(2.4 * bounce.impact_speed / G / answer.time_step) + 6
     turns = [{}]
-    if BY_NUMBER[name].turns:
+    if "turn" in BY_NUMBER[name].either[0]:
         # Half the angle between two corners of the coarsest polygon, which has ten.
         turns = [{"turn": float(turn)} for turn in np.linspace(0, math.pi / 10, 4)]
     found = []
     body = engine_drops.Body(mass=bounce.mass)
     for turn in turns:
         run = functools.partial(engine_drops.ENGINES[name], **turn)
-        heights = run(answer.snippet, skin + drops, bounce.size, steps, body) - skin
+        heights = run(answer.snippet, drops, bounce.size, steps, body)
         found += [
             math.sqrt(engine_runs.rebound(column) / drop)
             for column, drop in zip(heights.T, drops, strict=True)
@@ -153,6 +153,8 @@ def plans(table):
         cases = [*NUMBERS, WITHOUT_STEP] if row.springs else NUMBERS
         if table == "masses":
             cases = MASSES
+        # A ball rises to the skin, however low r is.
+        cases = [each._replace(height=each.height + 2 * row.skin) for each in cases]
         if name in engine_drops.ENGINES:
             yield name, name, by_number, cases
         else:
@@ -163,7 +165,7 @@ def plans(table):
 def reason(name):
     """Return why an engine is not run, as its row has it."""
     row = BY_NUMBER[name]
-    return next((note for note in row.notes if "was not run" in note), f"no program for {name}")
+    return ran_in(row) if row.borrows else f"no program for {name}"
 
 
 def ran(table):

@@ -1,7 +1,6 @@
 """Designs in the engines themselves, as their snippets are pasted.
 
-Each engine returns the motion of a body above a table, or of a ball above another free one, after
-each step.
+Each engine returns the motion of a body above a table after each step.
 """
 
 import ctypes
@@ -19,11 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bouncing_ball_contacts.engines import ENGINES
+from bouncing_ball_contacts.rows import ENGINES
 
 
 class Trial(NamedTuple):
-    """A design with the shape "ball", "box", "capsule" or "two", and how it starts.
+    """A design with the shape "ball", "box" or "capsule", and how it starts.
 
     A capsule lies along y, with four radii between its centres. In SI units: the gap and the speed
     downwards at the start, gravity, friction (None: that of the engine), the speed `slide` along x
@@ -57,9 +56,8 @@ class Trial(NamedTuple):
 
     @property
     def place(self):
-        """The centre at the start; a body that slides over another one meets it from above."""
-        is_oblique = self.shape == "two" and self.speed > 0
-        return [-self.slide * self.gap / self.speed if is_oblique else 0.0, 0.0, self.start]
+        """The centre at the start."""
+        return [0.0, 0.0, self.start]
 
     @property
     def start(self):
@@ -90,45 +88,35 @@ class Trial(NamedTuple):
         return self.design.bounce.mass
 
     @property
-    def other(self):
-        return self.design.bounce.other_mass
-
-    @property
     def step(self):
         return self.design.time_step
 
 
 class Motion(NamedTuple):
-    """Heights of the lowest point above a table, or of a ball above the other one, after each step.
+    """Heights of the lowest point above a table after each step.
 
     ``peak`` is the largest contact force, NaN if the engine reports none. ``poses`` are the centre
-    of the body and its quaternion (w, x, y, z), and ``others`` the centre of another free body; in
-    some engines nothing is recorded beside the heights.
+    of the body and its quaternion (w, x, y, z); in some engines only heights are recorded.
     """
 
     heights: np.ndarray
     peak: float = math.nan
     poses: np.ndarray | None = None
-    others: np.ndarray | None = None
 
 
-def moved(trial, poses, others=None, peak=math.nan):
-    """Return a motion from poses and from centres of the other body."""
+def moved(trial, poses, peak=math.nan):
+    """Return a motion from poses."""
     poses = np.asarray(poses, float)
-    below = trial.touching
-    if others is not None:
-        others = np.asarray(others, float)
-        below = others[:, 2] + 2 * trial.size
-    return Motion(poses[:, 2] - below, peak, poses, others)
+    return Motion(poses[:, 2] - trial.touching, peak, poses)
 
 
 def followed(trial, advance):
     """Return a motion of steps that ``advance`` makes one by one.
 
-    It returns the pose, the centre of the other body if there is one, and the contact force.
+    It returns the pose and the contact force.
     """
-    poses, others, forces = zip(*(advance() for _ in range(trial.steps)), strict=True)
-    return moved(trial, poses, others if trial.shape == "two" else None, max(forces))
+    poses, forces = zip(*(advance() for _ in range(trial.steps)), strict=True)
+    return moved(trial, poses, max(forces))
 
 
 def _mujoco_model(trial):
@@ -149,9 +137,6 @@ def _mujoco_model(trial):
     below = f'<geom {rough} type="plane" size="9 9 1"/>'
     if trial.table == "slab":
         below = f'<geom {rough} type="box" size="9 9 0.01" pos="0 0 -0.01"/>'
-    if trial.shape == "two":
-        ball = f'<geom {rough} {form} mass="{trial.other!r}"/>'
-        below = f'<body pos="0 0 {-r!r}"><freejoint/>{ball}</body>'
 
     def numbers(values):
         return " ".join(map(repr, values))
@@ -178,7 +163,7 @@ def mujoco(trial):
         for i in range(data.ncon):
             mujoco.mj_contactForce(model, data, i, force)
             total += force[0]
-        return data.qpos[:7].copy(), data.qpos[7:10].copy(), total
+        return data.qpos[:7].copy(), total
 
     return followed(trial, advance)
 
@@ -202,8 +187,7 @@ def mujoco_warp(trial):
 
     def advance():
         mujoco_warp.step(on_device, state)
-        found = state.qpos.numpy()[0].copy()
-        return found[:7], found[7:10], math.nan
+        return state.qpos.numpy()[0, :7].copy(), math.nan
 
     return followed(trial, advance)
 
@@ -223,9 +207,7 @@ def pybullet(trial):
         form = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[r, r, r])
     if trial.shape == "capsule":
         form = pybullet.createCollisionShape(pybullet.GEOM_CAPSULE, radius=r, height=4 * r)
-    if trial.shape == "two":
-        one = pybullet.createMultiBody(trial.other, form, basePosition=[0, 0, -r])
-    elif trial.table in ("slab", "block") or (trial.shape, trial.table) == ("box", "plane"):
+    if trial.table in ("slab", "block") or (trial.shape, trial.table) == ("box", "plane"):
         # On a box a box gets its four points at once, on a plane one by one.
         half = 0.01 if trial.table == "slab" else 9
         table = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=[9, 9, half])
@@ -246,9 +228,8 @@ def pybullet(trial):
     def advance():
         pybullet.stepSimulation()
         center, (*xyz, w) = pybullet.getBasePositionAndOrientation(other)
-        below, _ = pybullet.getBasePositionAndOrientation(one)
         force = sum(contact[9] for contact in pybullet.getContactPoints(one, other))
-        return [*center, w, *xyz], below, force
+        return [*center, w, *xyz], force
 
     return followed(trial, advance)
 
@@ -264,24 +245,18 @@ def drake(trial):
     r = trial.size
     shapes = {"box": pydrake.Box(2 * r, 2 * r, 2 * r), "capsule": pydrake.Capsule(r, 4 * r)}
     shape = shapes.get(trial.shape, pydrake.Sphere(r))
-    bodies = []
-    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
-    for i, mass in enumerate(masses):
-        inertia = pydrake.SpatialInertia.SolidSphereWithMass(mass, r)
-        if trial.shape == "box":
-            inertia = pydrake.SpatialInertia.SolidBoxWithMass(mass, 2 * r, 2 * r, 2 * r)
-        if trial.shape == "capsule":
-            inertia = pydrake.SpatialInertia.SolidCapsuleWithMass(mass, r, 4 * r, [0, 0, 1])
-        body = plant.AddRigidBody(f"body{i}", inertia)
-        here = pydrake.RigidTransform()
-        plant.RegisterCollisionGeometry(body, here, shape, f"shape{i}", names["properties"])
-        bodies.append(body)
-    if trial.shape != "two":
-        # Its surface is at the height of 0, and the body starts above.
-        table = pydrake.Box(18, 18, 0.02) if trial.table == "slab" else pydrake.HalfSpace()
-        here = pydrake.RigidTransform([0, 0, -0.01 if trial.table == "slab" else 0])
-        world = plant.world_body()
-        plant.RegisterCollisionGeometry(world, here, table, "table", names["properties"])
+    inertia = pydrake.SpatialInertia.SolidSphereWithMass(trial.mass, r)
+    if trial.shape == "box":
+        inertia = pydrake.SpatialInertia.SolidBoxWithMass(trial.mass, 2 * r, 2 * r, 2 * r)
+    if trial.shape == "capsule":
+        inertia = pydrake.SpatialInertia.SolidCapsuleWithMass(trial.mass, r, 4 * r, [0, 0, 1])
+    body = plant.AddRigidBody("body", inertia)
+    here = pydrake.RigidTransform()
+    plant.RegisterCollisionGeometry(body, here, shape, "shape", names["properties"])
+    # The surface of the table is at the height of 0, and the body starts above.
+    table = pydrake.Box(18, 18, 0.02) if trial.table == "slab" else pydrake.HalfSpace()
+    here = pydrake.RigidTransform([0, 0, -0.01 if trial.table == "slab" else 0])
+    plant.RegisterCollisionGeometry(plant.world_body(), here, table, "table", names["properties"])
     plant.Finalize()
     log = pydrake.LogVectorOutput(plant.get_state_output_port(), builder, trial.step)
     simulator = pydrake.Simulator(builder.Build())
@@ -290,15 +265,11 @@ def drake(trial):
     velocities = plant.GetVelocities(context)
     velocities[:6] = [0, trial.spin, 0, trial.slide, 0, -trial.speed]
     positions[:7] = [*trial.turned, *trial.place]
-    if trial.shape == "two":
-        positions[13] = -r
     plant.SetPositions(context, positions)
     plant.SetVelocities(context, velocities)
     simulator.AdvanceTo((trial.steps + 0.5) * trial.step)
     found = log.FindLog(simulator.get_context()).data()[:, 1:].T
-    return moved(
-        trial, found[:, [4, 5, 6, 0, 1, 2, 3]], found[:, 11:14] if trial.shape == "two" else None
-    )
+    return moved(trial, found[:, [4, 5, 6, 0, 1, 2, 3]])
 
 
 def lammps(trial):
@@ -318,28 +289,18 @@ def lammps(trial):
         "create_box 1 all",
         f"create_atoms 1 single {' '.join(map(repr, trial.place))}",
     ]
-    bodies = ["up"]
-    if trial.shape == "two":
-        lines += [
-            f"create_atoms 1 single 0 0 {-r!r}",
-            f"set atom 2 diameter {2 * r!r} density {trial.other / trial.volume!r}",
-            "group low id 2",
-        ]
-        bodies.append("low")
     # With friction the tangential damper is that of the normal force, and is cut off at μ times it.
     recipe = re.sub(r"( \S+) 0 0 0", rf"\1\1 {trial.friction!r} 1", trial.design.snippet)
     recipe = recipe.replace("linear_nohistory 0 0", f"linear_nohistory 1 {trial.friction!r}")
     lines += [
         f"set atom 1 diameter {2 * r!r} density {trial.mass / trial.volume!r}",
-        "group up id 1",
-        "velocity all set 0 0 0",
-        f"velocity up set {trial.slide!r} 0 {-trial.speed!r}",
-        f"set group up omega 0 {trial.spin!r} 0",
+        f"velocity all set {trial.slide!r} 0 {-trial.speed!r}",
+        f"set group all omega 0 {trial.spin!r} 0",
         "fix move all nve/sphere",
         f"fix down all gravity {trial.gravity!r} vector 0 0 -1",
         *(recipe if trial.friction else trial.design.snippet).splitlines(),
     ]
-    centers = " ".join(f"$(xcm({body},{x}):%20.15g)" for body in bodies for x in "xyz")
+    centers = " ".join(f"$(xcm(all,{x}):%20.15g)" for x in "xyz")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "centers.txt")
         lines += [
@@ -350,7 +311,7 @@ def lammps(trial):
         engine.commands_string("\n".join(lines))
         engine.close()
         found = np.loadtxt(file)[1:]
-    return moved(trial, found[:, :3], found[:, 3:] if trial.shape == "two" else None)
+    return moved(trial, found)
 
 
 def newton(trial):
@@ -378,20 +339,14 @@ def newton(trial):
         builder.add_shape_capsule(body, radius=r, half_height=2 * r, cfg=material, **more)
     else:
         builder.add_shape_sphere(body, radius=r, cfg=material, **more)
-    at_rest = []
-    if trial.shape == "two":
-        below = warp.transform(warp.vec3(0.0, 0.0, -r), warp.quat_identity())
-        material.density = trial.other / trial.volume
-        builder.add_shape_sphere(builder.add_body(xform=below), radius=r, cfg=material, **more)
-        at_rest = [0.0] * 6
-    elif trial.table == "slab":
+    if trial.table == "slab":
         below = warp.transform(warp.vec3(0.0, 0.0, -0.01), warp.quat_identity())
         sides = dict(hx=9.0, hy=9.0, hz=0.01)
         builder.add_shape_box(-1, xform=below, cfg=material, **sides, **more)
     else:
         builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
     model = builder.finalize(device="cpu")
-    model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0, *at_rest])
+    model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0])
     kinds = {
         "newton": newton.solvers.SolverSemiImplicit,
         "newton-mujoco": newton.solvers.SolverMuJoCo,
@@ -408,10 +363,8 @@ def newton(trial):
         pipeline.collide(states[0], contacts)
         solver.step(states[0], states[1], control, contacts, names["time_step"])
         states.reverse()
-        found = states[0].body_q.numpy()
-        *center_and_axis, w = found[0]
-        pose = [*center_and_axis[:3], w, *center_and_axis[3:]]
-        return pose, found[-1, :3].copy(), math.nan
+        *center_and_axis, w = states[0].body_q.numpy()[0]
+        return [*center_and_axis[:3], w, *center_and_axis[3:]], math.nan
 
     return followed(trial, advance)
 
@@ -436,37 +389,29 @@ def ode(trial):
     world = odepy.dWorldCreate()
     odepy.dWorldSetGravity(world, *trial.weight)
     space = odepy.dSimpleSpaceCreate(0)
-    shapes = []
-    bodies = []
     sides = (2 * r, 2 * r, 2 * r)
-    masses = [trial.mass] + ([trial.other] if trial.shape == "two" else [])
-    for mass, place in zip(masses, (trial.place, [0, 0, -r]), strict=False):
-        body = odepy.dBodyCreate(world)
-        inertia = odepy.dMass()
-        if trial.shape == "box":
-            odepy.dMassSetBoxTotal(ctypes.byref(inertia), mass, *sides)
-            shape = odepy.dCreateBox(space, *sides)
-        elif trial.shape == "capsule":
-            odepy.dMassSetCapsuleTotal(ctypes.byref(inertia), mass, 3, r, 4 * r)
-            shape = odepy.dCreateCapsule(space, r, 4 * r)
-        else:
-            odepy.dMassSetSphereTotal(ctypes.byref(inertia), mass, r)
-            shape = odepy.dCreateSphere(space, r)
-        odepy.dBodySetMass(body, ctypes.byref(inertia))
-        odepy.dBodySetPosition(body, *place)
-        odepy.dGeomSetBody(shape, body)
-        bodies.append(body)
-        shapes.append(shape)
-    odepy.dBodySetLinearVel(bodies[0], trial.slide, 0, -trial.speed)
-    odepy.dBodySetAngularVel(bodies[0], 0, trial.spin, 0)
-    odepy.dBodySetQuaternion(bodies[0], (ctypes.c_double * 4)(*trial.turned))
-    if trial.shape != "two":
-        bodies.append(0)
-        if trial.table == "slab":
-            shapes.append(odepy.dCreateBox(space, 18, 18, 0.02))
-            odepy.dGeomSetPosition(shapes[1], 0, 0, -0.01)
-        else:
-            shapes.append(odepy.dCreatePlane(space, 0, 0, 1, 0))
+    body = odepy.dBodyCreate(world)
+    inertia = odepy.dMass()
+    if trial.shape == "box":
+        odepy.dMassSetBoxTotal(ctypes.byref(inertia), trial.mass, *sides)
+        shape = odepy.dCreateBox(space, *sides)
+    elif trial.shape == "capsule":
+        odepy.dMassSetCapsuleTotal(ctypes.byref(inertia), trial.mass, 3, r, 4 * r)
+        shape = odepy.dCreateCapsule(space, r, 4 * r)
+    else:
+        odepy.dMassSetSphereTotal(ctypes.byref(inertia), trial.mass, r)
+        shape = odepy.dCreateSphere(space, r)
+    odepy.dBodySetMass(body, ctypes.byref(inertia))
+    odepy.dBodySetPosition(body, *trial.place)
+    odepy.dGeomSetBody(shape, body)
+    odepy.dBodySetLinearVel(body, trial.slide, 0, -trial.speed)
+    odepy.dBodySetAngularVel(body, 0, trial.spin, 0)
+    odepy.dBodySetQuaternion(body, (ctypes.c_double * 4)(*trial.turned))
+    if trial.table == "slab":
+        table = odepy.dCreateBox(space, 18, 18, 0.02)
+        odepy.dGeomSetPosition(table, 0, 0, -0.01)
+    else:
+        table = odepy.dCreatePlane(space, 0, 0, 1, 0)
     group = odepy.dJointGroupCreate(0)
     contact = odepy.dContact()
     # A contact of C has no default.
@@ -480,16 +425,14 @@ def ode(trial):
     points = (odepy.dContactGeom * 8)()
 
     def advance():
-        for point in points[: odepy.dCollide(*shapes, len(points), points, size)]:
+        for point in points[: odepy.dCollide(shape, table, len(points), points, size)]:
             contact.geom = point
             joint = odepy.dJointCreateContact(world, group, ctypes.byref(contact))
-            odepy.dJointAttach(joint, *bodies)
+            odepy.dJointAttach(joint, body, 0)
         exec(advances, names)
         odepy.dJointGroupEmpty(group)
-        center = odepy.dBodyGetPosition(bodies[0])[:3]
-        turned = odepy.dBodyGetQuaternion(bodies[0])[:4]
-        below = odepy.dBodyGetPosition(bodies[1])[:3] if trial.shape == "two" else None
-        return [*center, *turned], below, math.nan
+        center = odepy.dBodyGetPosition(body)[:3]
+        return [*center, *odepy.dBodyGetQuaternion(body)[:4]], math.nan
 
     return followed(trial, advance)
 
@@ -579,15 +522,23 @@ def _physx():
     return engine, ovphysx.types.TensorType.RIGID_BODY_POSE, ovstage
 
 
-def _isaac_lab(text):
-    """Return what a snippet for Isaac Lab sets, by the names of a stage."""
-    given = {}
+def _of_snippet(text):
+    """Return what a snippet for PhysX or Isaac Lab sets, by the names of a stage."""
+    made = []
 
     def configuration(**values):
-        given.update(values)
+        made.append(SimpleNamespace(**values))
+        return made[-1]
 
-    kinds = dict.fromkeys(("SimulationCfg", "PhysxCfg", "RigidBodyMaterialCfg"), configuration)
-    exec(text, {**kinds, "sim_utils": SimpleNamespace(**kinds)})
+    if "sceneDesc.solverType = PxSolverType::ePGS;" in text:
+        numbers = re.findall(r"(?:simulate|Restitution|Damping)\(-?([^f)]+)", text)
+        step, stiffness, damping = map(float, numbers)
+        springs = {"compliant_contact_stiffness": stiffness, "compliant_contact_damping": damping}
+        configuration(**springs, dt=step, solver_type=0)
+    else:
+        kinds = ("SimulationCfg", "PhysxCfg", "PhysxRigidBodyMaterialCfg")
+        exec(text, dict.fromkeys(kinds, configuration))
+    given = {name: value for each in made for name, value in vars(each).items()}
     names = {
         "compliant_contact_stiffness": "compliantContactStiffness",
         "compliant_contact_damping": "compliantContactDamping",
@@ -611,7 +562,7 @@ def physx(trial, other=None):
     }
     friction = 0.5 if trial.friction is None else trial.friction
     snippet = trial.design.snippet
-    one = defaults | (_isaac_lab(snippet) if snippet else trial.design.parameters)
+    one = defaults | (_of_snippet(snippet) if snippet else trial.design.parameters)
     step = one.get("dt", trial.step)
     of_table = one if other is None else defaults | other
     r = trial.size
@@ -634,17 +585,7 @@ def physx(trial, other=None):
         mass=trial.mass,
         **both,
     )
-    if trial.shape == "two":
-        bodies += _BODY.format(
-            name="Other",
-            place=(0.0, 0.0, -r),
-            turned=(1.0, 0.0, 0.0, 0.0),
-            velocity=(0.0, 0.0, 0.0),
-            spin=0.0,
-            mass=trial.other,
-            **both,
-        )
-    elif trial.table == "slab":
+    if trial.table == "slab":
         bodies += _TABLE.format(table="Cube", of_table=_SLAB, **both)
     else:
         bodies += _TABLE.format(table="Plane", of_table='uniform token axis = "Z"', **both)
@@ -670,22 +611,16 @@ def physx(trial, other=None):
     engine.wait_all()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
-        found = [
-            engine.create_tensor_binding(pattern=f"/World/{name}", tensor_type=poses)
-            for name in (("Body", "Other") if trial.shape == "two" else ("Body",))
-        ]
-    read = np.zeros((len(found), *found[0].shape), np.float32)
+        body = engine.create_tensor_binding(pattern="/World/Body", tensor_type=poses)
+    read = np.zeros(body.shape, np.float32)
 
     def advance():
         engine.step_sync(step)
-        for body, pose in zip(found, read, strict=True):
-            body.read(pose)
-        pose = read[0, 0]
-        return [*pose[:3], pose[6], *pose[3:6]], read[-1, 0, :3].copy(), math.nan
+        body.read(read)
+        return [*read[0, :3], read[0, 6], *read[0, 3:6]], math.nan
 
     motion = followed(trial, advance)
-    for body in found:
-        body.destroy()
+    body.destroy()
     engine.wait_task(engine.detach_ovstage())
     stage.destroy()
     return motion
@@ -707,8 +642,6 @@ def _genesis_scene(options, shape, table, size):
     below = genesis.morphs.Plane()
     if table == "slab":
         below = genesis.morphs.Box(size=(18.0, 18.0, 0.02), pos=(0.0, 0.0, -0.01), fixed=True)
-    if shape == "two":
-        below = genesis.morphs.Sphere(radius=size)
     one = scene.add_entity(below)
     other = scene.add_entity(form)
     scene.build()
@@ -729,14 +662,10 @@ def genesis(trial):
     other.set_pos(trial.place)
     other.set_quat(trial.turned)
     other.set_dofs_velocity([trial.slide, 0.0, -trial.speed, 0.0, trial.spin, 0.0])
-    if trial.shape == "two":
-        one.set_mass(trial.other)
-        one.set_pos([0.0, 0.0, -trial.size])
 
     def advance():
         scene.step()
-        pose = [*map(float, other.get_pos()), *map(float, other.get_quat())]
-        return pose, [*map(float, one.get_pos())], math.nan
+        return [*map(float, other.get_pos()), *map(float, other.get_quat())], math.nan
 
     return followed(trial, advance)
 
@@ -746,8 +675,7 @@ def _by_program(name, trial, *values):
     program = shutil.which(name)
     if program is None:
         raise ModuleNotFoundError(name, name=name)
-    other = trial.other if trial.shape == "two" else 0.0
-    body = (trial.size, trial.mass, other, trial.gap, trial.speed, trial.gravity)
+    body = (trial.size, trial.mass, trial.gap, trial.speed, trial.gravity)
     command = [program, *map(str, (*body, *values, trial.step, trial.steps))]
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(command, cwd=folder, capture_output=True, check=True)
@@ -851,7 +779,7 @@ def measure(design, shape, slide=0.0, instants=13):
     step = design.time_step
     outcome = design.outcome
     speed = bounce.impact_speed
-    g = bounce.load
+    g = bounce.gravity
     rubs = bounce.friction
     deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
     found = []
@@ -885,11 +813,11 @@ def measure(design, shape, slide=0.0, instants=13):
             r = (heights[end + 1] - heights[end]) / step / speed
         if math.isnan(peak):
             # From the positions, as in the scheme v⁺ = v - h g + h a, z⁺ = z + h v⁺.
-            peak = bounce.reduced_mass * (np.diff(heights, 2).max() / step**2 + g)
+            peak = bounce.mass * (np.diff(heights, 2).max() / step**2 + g)
         found.append((r, depth, peak))
     r, depth, force = np.array(found).T
     rest = math.nan
-    if shape != "two" and outcome.rest > 0:
+    if outcome.rest > 0:
         # Laid where it should rest, it stays there, or swings about where it rests.
         period = 2 * math.pi * math.sqrt(outcome.rest / g)
         steps = max(20, int(4 * period / step))

@@ -22,8 +22,7 @@ from engine_page import KEPT, save
 
 from bouncing_ball_contacts import Bounce, design
 from bouncing_ball_contacts.designs import Problem
-from bouncing_ball_contacts.engines import ENGINES
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 
 INSTANTS = 9
 DESIGNS = {
@@ -66,9 +65,8 @@ def by_spring(name, floor, found, drops, steps, kind):
 
 
 def by_number(run, found, drops, steps, kind):
-    """Return the heights above those at which a body lies, in an engine of engine_drops.py."""
-    # Each polygon has a skin.
-    skin = BY_NUMBER[found.engine].skin * (2 if kind.shape == "box" else 1)
+    """Return the heights above the floor, or above the skins of a box, in engine_drops.py."""
+    skin = 2 * BY_NUMBER[found.engine].skin * (kind.shape == "box")
     return run(found.snippet, drops + skin, found.bounce.size, steps, kind) - skin
 
 
@@ -123,6 +121,10 @@ def measured(run, found, kind):
 def promise(found, kind):
     """Return the smallest and the largest r of an answer; a ball that spins slides."""
     low, _, high = found.outcome.restitution
+    row = BY_NUMBER.get(found.engine)
+    if row and kind.shape == "box":
+        share = row.skin / found.bounce.drop_height
+        low, high = (math.sqrt((each**2 - share) / (1 - share)) for each in (low, high))
     along = abs(kind.spin) * found.bounce.size / found.bounce.impact_speed
     if along and "stiffness" in found.numbers:
         low, high = Problem(found.bounce, ENGINES[found.engine]).promised(found.outcome, along)

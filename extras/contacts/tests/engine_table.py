@@ -16,9 +16,7 @@ from bouncing_ball_contacts import ENGINES, Bounce, design
 from bouncing_ball_contacts.designs import Problem
 from bouncing_ball_contacts.schemes import exact, offsets
 
-EQUAL = dict(mass="1 kg", restitution=0.8, other_mass="1 kg", speed="2 m/s", radius="5 cm")
 BOX = dict(mass="1 kg", restitution=0.8, radius="5 cm", points=4)
-UNEQUAL = dict(mass="1 kg", restitution=0.8, other_mass="3 kg", speed="2 m/s", radius="5 cm")
 CASES = [
     ("mujoco", "ball", dict(mass="50 g", restitution=0.8), "2 ms", {}),
     ("mujoco", "ball", dict(mass="50 g", restitution=0.8, penetration="2 mm"), "2 ms", {}),
@@ -28,14 +26,6 @@ CASES = [
     ("mujoco", "ball", dict(mass="2 t", restitution=0.3, radius="0.5 m"), "10 ms", {}),
     ("mujoco", "ball", dict(mass="2 mg", restitution=0.7, drop_height="5 cm"), "20 us", {}),
     ("mujoco", "box", BOX, "1 ms", {}),
-    ("mujoco", "two", EQUAL, None, {}),
-    (
-        "mujoco",
-        "two",
-        dict(mass="1 kg", restitution=0.5, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        "1 ms",
-        {},
-    ),
     ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("pybullet", "ball", dict(mass="50 g", restitution=0.8), "1/240", {}),
     (
@@ -62,7 +52,6 @@ CASES = [
         None,
         {},
     ),
-    ("pybullet", "two", EQUAL, None, {}),
     ("drake-sap", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     (
         "drake-sap",
@@ -74,7 +63,6 @@ CASES = [
     ("drake-sap", "ball", dict(mass="2 t", restitution=0.6, radius="0.5 m"), "10 ms", {}),
     ("drake-sap", "ball", dict(mass="5 g", restitution=0.95, density="rubber"), "20 us", {}),
     ("drake-sap", "box", BOX, "1 ms", {}),
-    ("drake-sap", "two", EQUAL, None, {}),
     ("drake-sap", "ball", dict(mass="1 kg", restitution=0, radius="5 cm"), None, {}),
     (
         "drake",
@@ -86,7 +74,6 @@ CASES = [
     ("lammps", "ball", dict(mass="50 g", restitution=0.8, radius="30 mm"), "1 ms", {}),
     ("lammps", "ball", dict(mass="2 mg", restitution=0.99, drop_height="5 cm"), "20 us", {}),
     ("lammps", "ball", dict(mass="1 kg", restitution=0.05, radius="5 cm"), "200 us", {}),
-    ("lammps", "two", UNEQUAL, None, {}),
     (
         "lammps-limit-damping",
         "ball",
@@ -98,13 +85,6 @@ CASES = [
         "lammps-hertz",
         "ball",
         dict(mass="50 g", restitution=0.8, penetration="3 mm", radius="30 mm"),
-        None,
-        {},
-    ),
-    (
-        "lammps-hertz",
-        "two",
-        dict(mass="1 kg", restitution=0.6, other_mass="1 kg", speed="2 m/s", radius="5 cm"),
         None,
         {},
     ),
@@ -129,24 +109,10 @@ CASES = [
     ("physx", "box", BOX, "1 ms", {}),
     ("ode", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("ode", "box", BOX, "1 ms", {}),
-    (
-        "ode",
-        "two",
-        dict(mass="1 kg", restitution=0.5, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
     ("gazebo", "ball", dict(mass="50 g", restitution=0.8), "1 ms", {}),
     ("gazebo", "ball", dict(mass="1 kg", restitution=0.3, radius="5 cm"), None, {}),
     ("gazebo", "ball", dict(mass="1 kg", restitution=0.97, radius="10 cm"), "20 us", {}),
     ("gazebo", "box", BOX, "1 ms", {}),
-    (
-        "gazebo",
-        "two",
-        dict(mass="1 kg", restitution=0.5, other_mass="3 kg", speed="2 m/s", radius="5 cm"),
-        None,
-        {},
-    ),
     ("genesis", "ball", dict(mass="500 g", restitution=0.75, radius="10 cm"), "1 ms", {}),
     ("genesis", "box", BOX, "1 ms", {}),
 ]

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball_contacts import cli
-
 BALL = 'design --mass "50 g" --restitution 0.8'
 # A contact that is given is not searched for.
 SHORT = f'{BALL} --contact-time "2 ms"'
@@ -85,25 +83,6 @@ def test_a_full_device_is_one_line():
     assert done.stderr.startswith("bounce: ") and done.stderr.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    ("line", "offered"),
-    [
-        ("design --engine muj", "plain,mujoco\nplain,mujoco-warp"),
-        ("diagnose --engine pyb", "plain,pybullet"),
-        ("fit croquet --engine drake-", "plain,drake-sap"),
-        ("fit croq", "file,croq"),
-    ],
-)
-def test_names_are_completed(line, offered, monkeypatch, capsys):
-    words = line.split()
-    monkeypatch.setenv("COMP_WORDS", f"bounce {line}")
-    monkeypatch.setenv("COMP_CWORD", str(len(words)))
-    monkeypatch.setenv("_BOUNCE_COMPLETE", "bash_complete")
-    with pytest.raises(SystemExit):
-        cli.main(prog_name="bounce")
-    assert capsys.readouterr().out.strip() == offered
-
-
 COMMANDS = ("", "design", "diagnose", "fit", "engines")
 HELP = {f"{command} {option}": "Usage" for command in COMMANDS for option in ("--help", "-h")}
 HELP |= {"": "Examples:\n    bounce design --mass", "--version": "bounce, version "}
@@ -156,7 +135,6 @@ MISTAKES = {
     f"{BALL} --density cheese": "or 'rubber'",
     f"{BALL} --points 0": "no whole number from 1 to 1000",
     f"{BALL} --points two": "is not a valid integer",
-    f'{BALL} --other-mass "1 kg"': "approach each other: --speed '2 m/s'",
     f'{BALL} --radius "2 mm" --penetration "5 mm"': "is deeper than the radius of 2 mm",
     f"{BALL} --gravity 0": "give the speed, --speed '2 m/s'",
     f"{BALL} --gravity -1": "not positive",
@@ -179,15 +157,13 @@ MISTAKES = {
     f"{MUJOCO} solref=": "two numbers",
     f"{MUJOCO} solref=1,2,3": "two numbers",
     f"{MUJOCO} solreff=0.02": "did you mean solref",
-    f"{MUJOCO} solref='0.02 1' dt=1ms": "the time step is given twice, as 1ms and as 2ms",
+    f"{MUJOCO} solref='0.02 1' dt=1ms": "; the time step is --time-step",
     f"{MUJOCO} integrator=RK4": "mujoco: 'integrator' is not computed here",
     f"{MUJOCO} kn=1": "computed are solref, solimp, refsafe",
     f"{PYBULLET} contactStiffness=1e4": "give both",
     f"{PYBULLET} contactStiffness='1e4 kg' contactDamping=1": "write it as in '100 kN/m'",
     f"{PYBULLET} restitution='0.8 m'": "write a number without a unit as in '0.8'",
     "diagnose --engine ode boun=0.8 --mass 1 --time-step 1ms": "did you mean bounce",
-    "diagnose --engine drake-sap hunt_crossley_dissipation=1 --mass 1 --time-step 1ms": "; "
-    "drake has it",
     LAMMPS: "kn is missing: give kn and gamma_n; lammps has no default",
     f"{LAMMPS} kn=1e5": "gamma_n is missing",
     f"{LAMMPS} kn=1e5 gamma_n=soft": "does not begin",
@@ -244,7 +220,7 @@ EXTREME = [
     ),
     *(
         f"{SHORT} --engine mujoco --{option}={{}}"
-        for option in ("gravity", "other-mass", "friction", "time-step")
+        for option in ("gravity", "friction", "time-step")
     ),
     *(f"{BALL} --{option}={{}}" for option in ("penetration", "stiffness", "contact-time")),
     "design --engine jolt --restitution {} --time-step 1/60",
@@ -267,13 +243,14 @@ def test_an_extreme_number_has_an_answer_or_one_line(typed, line):
 
 
 def test_the_command_starts_quickly():
-    """SciPy is not imported for a design."""
+    """Neither SciPy nor what reads recordings is imported for a design."""
     code = (
         "import sys; sys.argv = ['bounce', 'design', '--mass', '50 g', '--restitution', '0.8']\n"
         "from bouncing_ball_contacts.cli import run\n"
         "try: run()\n"
         "except SystemExit: pass\n"
-        "print(sorted({'scipy', 'mujoco'} & set(sys.modules)))"
+        "halves = {f'bouncing_ball_contacts.{each}' for each in ('fits', 'tables', 'recordings')}\n"
+        "print(sorted(({'scipy', 'mujoco'} | halves) & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

@@ -8,7 +8,7 @@ import pytest
 
 from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
 from bouncing_ball_contacts.engines import MEAN, PAIR, PRODUCT, SERIES, SUM
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 UNDISTURBED = {**BY_NUMBER["pybullet"].designed[0], "restitutionVelocityThreshold": 0.0}
 STILL = {name: value for name, value in UNDISTURBED.items() if name in ENGINES["pybullet"].defaults}
@@ -205,13 +205,13 @@ def test_an_r_that_is_kept_is_said_so():
 
 
 def test_a_restitution_by_number_is_that_of_pybullet():
-    """It was 0.496 ± 0.503 with any restitution. Drops of PyBullet 3.2.7, of a ball of steel."""
+    """It was 0.496 ± 0.503 with any restitution. 400 drops of a ball of steel in PyBullet 3.2.7."""
     ball = Bounce(mass="1 kg")
     found = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240")
-    assert found.outcome.restitution == pytest.approx((0.737, 0.812, 0.849), abs=0.003)
+    assert found.outcome.restitution == pytest.approx((0.730, 0.814, 0.850), abs=0.003)
     assert "linearDamping = 0.04 lowers r" in str(found)
     half = diagnose(ball, "pybullet", {"restitution": 0.5}, "1/240")
-    assert half.outcome.restitution == pytest.approx((0.202, 0.267, 0.295), abs=0.003)
+    assert half.outcome.restitution == pytest.approx((0.196, 0.269, 0.297), abs=0.003)
     assert diagnose(ball, "pybullet", None, "1/240").outcome.restitution == (0, 0, 0)
     # One body's restitution counts for nothing if the other one has none.
     alone = diagnose(ball, "pybullet", {"restitution": 0.9}, "1/240", other={})
@@ -256,14 +256,12 @@ def test_a_depth_at_rest_that_the_engine_does_not_resolve_is_none():
             "1 ms",
             other={**damped, "compliantContactStiffness": other},
         )
-        is_vague = "its positions have single precision" in found.explained
-        assert is_vague == math.isnan(found.outcome.rest) == (measured is None)
-        assert is_vague or found.outcome.rest == pytest.approx(measured, rel=2e-3)
+        assert ("At rest" not in found.explained) == (measured is None)
+        assert measured is None or found.outcome.rest == pytest.approx(measured, rel=2e-3)
     # A design for so slow a body that the spring is as stiff.
     slow = Bounce(**KILO, restitution=0.8, speed="1 cm/s", stiffness="1 GN/m")
-    for engine, is_single in (("physx", True), ("newton", True), ("mujoco", False)):
-        found = design(slow, ENGINES[engine], "5 us")
-        assert ("its positions have single precision" in found.explained) == is_single
+    for engine in ("physx", "newton"):
+        assert math.isnan(design(slow, ENGINES[engine], "5 us").outcome.rest)
 
 
 @pytest.mark.parametrize(
@@ -384,8 +382,6 @@ def test_the_linear_damping_of_pybullet_is_in_the_answer_with_its_effect():
     [
         (0.5, {}, 1 / 240, {"contactStiffness": 1e5, "contactDamping": 10}, (0.213, 0.228, 0.243)),
         (1.0, {}, 1e-3, {"contactStiffness": 1e6, "contactDamping": 5}, (0.329, 0.336, 0.343)),
-        (0.05, {"other_mass": 3}, 1e-3, {"restitution": 0.9}, (0.807, 0.849, 0.888)),
-        (0.05, {"other_mass": 1}, 1e-3, {"restitution": 0.5}, (0.247, 0.289, 0.328)),
         (
             0.1,
             {"points": 4},
@@ -395,12 +391,12 @@ def test_the_linear_damping_of_pybullet_is_in_the_answer_with_its_effect():
         ),
     ],
 )
-def test_pybullet_finds_a_ball_ahead_of_a_table_and_two_bodies_when_they_touch(
+def test_pybullet_finds_a_ball_ahead_of_a_table_and_boxes_when_they_touch(
     radius, more, step, parameters, measured
 ):
-    """Drops of PyBullet 3.2.7 from 1 m, and impacts at 1 m/s; all were found ahead."""
-    start = {"speed": 1} if "other_mass" in more else {"drop_height": 1}
-    found = diagnose(Bounce(mass=1, radius=radius, **start, **more), "pybullet", parameters, step)
+    """Drops of PyBullet 3.2.7 from 1 m; all were found ahead."""
+    ball = Bounce(mass=1, radius=radius, drop_height=1, **more)
+    found = diagnose(ball, "pybullet", parameters, step)
     low, mean, high = found.outcome.restitution
     # The diagnosis is for neighbouring contacts as well.
     assert low <= measured[0] and measured[2] <= high
@@ -674,8 +670,3 @@ def test_a_solimp_out_of_its_range_is_said_to_be(solimp, said):
 def test_a_name_of_another_engine_is_answered_by_the_one_here(engine, name, meant):
     with pytest.raises(Refused, match=f"did you mean {meant}?"):
         diagnose(Bounce(mass=1), engine, {name: 0.8}, "2 ms")
-
-
-def test_a_diameter_is_answered_by_the_radius(typed):
-    status, _, err = typed("design --mass 1 --restitution 0.8 --diameter '5 cm'")
-    assert status == 2 and "--radius" in err

@@ -11,15 +11,15 @@ from pathlib import Path
 
 import pytest
 
-from bouncing_ball_contacts import ENGINES, Bounce, Refused, design, diagnose
-from bouncing_ball_contacts.rebounds import BY_NUMBER
+from bouncing_ball_contacts import ENGINES, Bounce, design, diagnose
+from bouncing_ball_contacts.rows import BY_NUMBER
 
 G = 9.81
 WANTED = 0.6
 BALLS = [(1e-3, 1e-3, 0.02), (1e-3, 1.0, 5.0), (1e3, 1e-3, 5.0), (1e3, 1.0, 0.02)]
 """Mass in kg, radius in m and height in m."""
 STEP = 2e-3
-REFUSED = {("box2d-2.3", 0.02): "no number bounces in box2d-2.3 at 0.626 m/s"}
+WITHOUT = {("box2d-2.3", 0.04)}
 """Engines and heights in m for which no number bounces: the threshold is a constant of 1 m/s."""
 TURNS = {"matter-js"}
 """Engines whose small balls leave the tolerance, because they are polygons."""
@@ -111,13 +111,10 @@ OWN = {
     "cannon-es": of_cannon,
 }
 STANDS_FOR = {
-    "godot-jolt": "jolt",
-    "unity": "physx",
-    "isaac-sim": "physx",
-    "libgdx": "box2d-2.3",
     "gazebo": "ode",
+    **{name: row.borrows for name, row in BY_NUMBER.items() if row.borrows},
 }
-"""Rows that have the rule of another row, and were not run."""
+"""Rows that have the rule of another row, and were not run as what is pasted."""
 
 
 def recorded():
@@ -142,14 +139,14 @@ def dropped(step, p, m, h, height):
 
 @pytest.mark.parametrize("name", {**ENGINES, **BY_NUMBER})
 def test_what_is_written_for_a_ball_is_true(name):
-    for mass, radius, height in BALLS:
+    for mass, radius, fall in BALLS:
+        # A ball rises to the skin of Box2D 2, however low r is.
+        height = fall + 2 * (BY_NUMBER[name].skin if name in BY_NUMBER else 0)
         ball = dict(mass=mass, radius=radius, drop_height=height, gravity=G)
-        refusal = REFUSED.get((name, height))
-        if refusal:
-            with pytest.raises(Refused, match=refusal):
-                design(Bounce(**ball, restitution=WANTED), name, STEP)
-            continue
         found = design(Bounce(**ball, restitution=WANTED), name, STEP)
+        if (name, height) in WITHOUT:
+            assert not found.snippet and not found.also
+            continue
         found = next(each for each in (found, *found.also) if each.snippet)
         low, mean, high = found.outcome.restitution
         assert 0 <= low <= mean <= high <= 1.05
@@ -175,4 +172,4 @@ def test_what_is_written_for_a_ball_is_true(name):
 def test_every_engine_has_a_truth_of_its_own():
     known = {*OWN, *recorded()}
     assert {STANDS_FOR.get(name, name) for name in {**ENGINES, **BY_NUMBER}} <= known
-    assert not STANDS_FOR.keys() & known
+    assert STANDS_FOR.keys() & known <= {"isaac-lab"}

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING, Any
 
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce
-from bouncing_ball_contacts.engines import ENGINES
 from bouncing_ball_contacts.questions import design, diagnose
+from bouncing_ball_contacts.rows import ENGINES
 from bouncing_ball_contacts.units import Refused
 
 if TYPE_CHECKING:

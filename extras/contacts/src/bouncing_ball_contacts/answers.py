@@ -66,6 +66,8 @@ class Answer:
     Attributes
     ----------
     engine : str
+    ran : str
+        In which version the engine was run, or "not run" and whose rule it borrows.
     bounce : Bounce
     time_step : float
         In s.
@@ -93,6 +95,7 @@ class Answer:
     """
 
     engine: str
+    ran: str
     bounce: Bounce
     time_step: float
     parameters: Mapping[str, Any]
@@ -149,7 +152,8 @@ class Answer:
         warnings = [f"! {each}" for each in self.warnings]
         first = [*warnings[: most - bool(not_for)], *not_for]
         more = [*warnings[most - bool(not_for) :], *(f"{each}." for each in self.remarks)]
-        return [self.result, *least, *filter(None, [*paste, *also]), *first, *more]
+        not_run = [f"! {self.ran}"] * self.ran.startswith("not run")
+        return [self.result, *not_run, *least, *filter(None, [*paste, *also]), *first, *more]
 
     @property
     def explained(self) -> str:

@@ -1,4 +1,4 @@
-"""A bounce: a body that falls on a surface, or meets another free body."""
+"""A bounce: a body that falls on a surface."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -34,7 +34,6 @@ _QUANTITIES: Mapping[str, tuple[str, Callable[[str, Quantity, str], float]]] = {
     "stiffness": ("N/m", positive),
     "contact_time": ("s", positive),
     "points": ("", lambda _, value, __: value),
-    "other_mass": ("kg", positive),
     "friction": ("", lambda name, value, _: within(name, value, 0, math.inf)),
     "gravity": ("m/s^2", in_si),
 }
@@ -56,7 +55,7 @@ def _is_bare(typed: Quantity) -> bool:
 
 @dataclass(frozen=True)
 class Bounce:
-    """Bounce that is wanted: a body falls on a surface, or meets another free body.
+    """Bounce that is wanted: a body falls on a surface.
 
     Give quantities as numbers in SI units, or as texts with units. The attributes are numbers in SI
     units.
@@ -76,8 +75,6 @@ class Bounce:
     points : int
         The number of contact points that share the force, 4 for the face of a box. Without a radius
         a body with several points is a cube.
-    other_mass : Quantity, optional
-        Of a second free body, in an impact without gravity.
     friction : Quantity, optional
         The coefficient of friction, for the snippet and a word of warning; r is computed without.
     gravity : Quantity
@@ -99,7 +96,6 @@ class Bounce:
     stiffness: Quantity = None
     contact_time: Quantity = None
     points: int = 1
-    other_mass: Quantity = None
     friction: Quantity = None
     gravity: Quantity = STANDARD_GRAVITY
     given: Mapping[str, str] = field(init=False, repr=False, compare=False)
@@ -118,7 +114,7 @@ class Bounce:
                 ),
             ]
         )
-        typed = {name: getattr(self, name) for name in ("density", "contact_time")}
+        density = self.density
         given = {}
         for name, (unit, read) in _QUANTITIES.items():
             default = getattr(Bounce, name)
@@ -130,21 +126,12 @@ class Bounce:
                 if number != default:
                     given[words] = show(number, unit, 6)
         object.__setattr__(self, "given", given)
-        # A gravity that is not positive is refused below.
-        falls = _is_bare(typed["contact_time"]) and (self.speed or self.gravity > 0)
-        depth = self.impact_speed * (self.contact_time or 0.0) / math.pi if falls else 0.0
         refuse(
             [
                 (
-                    _is_bare(typed["density"]) and (self.density or math.inf) < _FOAM,
-                    f"is the density of {typed['density']} in g/cm^3, or in kg/m^3? "
-                    f"write the unit: --density '{typed['density']} g/cm^3'",
-                ),
-                (
-                    depth > self.size,
-                    f"a contact of {show(self.contact_time or 0, 's')} is {show(depth, 'm')} deep, "
-                    f"more than the {self.size_name} of {show(self.size, 'm')}: if ms are meant, "
-                    f"--contact-time '{typed['contact_time']} ms'",
+                    _is_bare(density) and (self.density or math.inf) < _FOAM,
+                    f"is the density of {density} in g/cm^3, or in kg/m^3? "
+                    f"write the unit: --density '{density} g/cm^3'",
                 ),
             ]
         )
@@ -165,27 +152,12 @@ class Bounce:
                     "the speed, --speed '2 m/s'",
                 ),
                 (
-                    self.other_mass is not None and self.speed is None,
-                    "two free bodies need the speed at which they approach each other: "
-                    "--speed '2 m/s'",
-                ),
-                (
                     self.penetration is not None and self.penetration > self.size,
                     f"the penetration of {show(self.penetration or 0, 'm')} is deeper than the "
                     f"{self.size_name} of {show(self.size, 'm')}",
                 ),
             ]
         )
-
-    @property
-    def reduced_mass(self) -> float:
-        """Mass m in kg; of two free bodies their reduced mass m M/(m + M)."""
-        return self.mass if self.other_mass is None else 1 / (1 / self.mass + 1 / self.other_mass)
-
-    @property
-    def load(self) -> float:
-        """Gravity during the contact in m/s²; 0 between free bodies."""
-        return self.gravity if self.other_mass is None else 0.0
 
     @property
     def impact_speed(self) -> float:
@@ -224,21 +196,9 @@ class Bounce:
         return (self.mass / (self.density or DENSITIES["steel"]) / self.solid) ** (1 / 3)
 
     @property
-    def other_size(self) -> float:
-        """Size of a second free body of the same density in m; infinite for the ground."""
-        if self.other_mass is None or self.mass is None:
-            return math.inf
-        return self.size * (self.other_mass / self.mass) ** (1 / 3)
-
-    @property
-    def reduced_radius(self) -> float:
-        """Reduced radius R of a contact of spheres in m."""
-        return 1 / (1 / self.size + 1 / self.other_size)
-
-    @property
     def limit(self) -> float:
         """Maximum penetration in m."""
-        fifth = self.impact_speed**2 / (10 * self.load) if self.load else math.inf
+        fifth = self.impact_speed**2 / (10 * self.gravity) if self.gravity else math.inf
         return self.penetration or min(self.size / 10, fifth)
 
     @property

@@ -10,17 +10,15 @@ import click
 
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce
-from bouncing_ball_contacts.engines import ENGINES, as_compared
-from bouncing_ball_contacts.questions import design, diagnose
-from bouncing_ball_contacts.rebounds import BY_NUMBER, rows_of
+from bouncing_ball_contacts.engines import PAIR, ran_in
+from bouncing_ball_contacts.questions import design, diagnose, rows_of
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
     holding,
     in_si,
-    positive,
     refuse,
-    step_in_si,
 )
 
 _DENSITY = click.Option(
@@ -28,12 +26,7 @@ _DENSITY = click.Option(
 )
 
 
-def _halve(_: click.Context, __: click.Parameter, typed: str | None) -> None:
-    refuse([(typed is not None, f"give the radius, half of the diameter {typed}: --radius")])
-
-
 _BODY = [
-    click.Option(["--diameter"], hidden=True, expose_value=False, callback=_halve),
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
     click.Option(["--restitution"], help="√(h′/h) that is wanted, 0 to 1."),
     click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),
@@ -41,9 +34,8 @@ _BODY = [
     click.Option(["--radius"], help="Radius, or half the height of a box."),
     _DENSITY,
     click.Option(
-        ["--points"], type=int, default=1, help="Contact points: 4 for the face of a box."
+        ["--points"], type=int, default=1, help="4 for the face of a box, in engines with springs."
     ),
-    click.Option(["--other-mass"], help="Mass of a second free body; needs the speed of approach."),
     click.Option(
         ["--gravity"],
         default=str(STANDARD_GRAVITY),
@@ -60,15 +52,7 @@ _CONTACT = [
 _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
 
-def _engines(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
-    return [name for name in {**ENGINES, **BY_NUMBER} if name.startswith(typed)]
-
-
-_TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
-"""What engines call the time step, as it is compared."""
-_ENGINE = click.Option(
-    ["--engine"], default="generic", help="One of 'bounce engines'.", shell_complete=_engines
-)
+_ENGINE = click.Option(["--engine"], default="generic", help="One of 'bounce engines'.")
 _EXPLAIN = click.Option(["--explain"], is_flag=True, help="All remarks.")
 _JSON = click.Option(["--json", "as_json"], is_flag=True, help="All numbers, in SI units.")
 
@@ -125,12 +109,19 @@ def _print(
     click.echo("\n\n".join(text.lstrip("\n") for text in texts))
 
 
+def _status(found: Answer) -> int:
+    """Return the exit status: 1 if r is not kept and nothing is written to paste."""
+    return int(not (found.is_kept or found.snippet or found.change or found.also))
+
+
 @main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _EXPLAIN, _JSON])
 def design_command(
     engine: str, time_step: str | None, explain: bool, as_json: bool, **bounce: Any
-) -> None:
+) -> int:
     """Write the contact of an engine, or its restitution number, for the bounce that you want."""
-    _print(design(Bounce(**bounce), engine, time_step), as_json, explain)
+    found = design(Bounce(**bounce), engine, time_step)
+    _print(found, as_json, explain)
+    return _status(found)
 
 
 def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
@@ -149,24 +140,6 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
         )
         found[name] = value
     return found
-
-
-def _step_of(typed: dict[str, str], time_step: str | None) -> tuple[dict[str, str], str | None]:
-    """Separate the time step from the parameters."""
-    steps = {name: value for name, value in typed.items() if as_compared(name) in _TIME_STEPS}
-    values = [*steps.values(), *filter(None, [time_step])]
-    if len(values) > 1:
-        raise Refused(f"the time step is given twice, as {' and as '.join(values)}")
-    return {name: typed[name] for name in typed if name not in steps}, next(iter(values), None)
-
-
-def _own_of_ode(spring: dict[str, str], time_step: str | None) -> dict[str, Any]:
-    """Return ODE's numbers of a spring and a damper: ERP = h k/(h k + c), CFM = 1/(h k + c)."""
-    if time_step is None:
-        raise Refused("the time step is missing: ODE's soft_erp and soft_cfm depend on it")
-    pull = step_in_si(time_step) * positive("kp", spring["kp"], "N/m")
-    both = pull + in_si("kd", spring["kd"], "N s/m")
-    return {"soft_erp": pull / both, "soft_cfm": 1 / both}
 
 
 @main.command(
@@ -194,16 +167,16 @@ def diagnose_command(
     explain: bool,
     as_json: bool,
     **bounce: Any,
-) -> None:
+) -> int:
     """Print what bounce the numbers of an engine give, why, and the least change for yours.
 
     Without numbers they are the engine's defaults, if it has some.
     """
-    typed, time_step = _step_of(_assigned(parameters), time_step)
-    if engine.lower() == "ode" and typed.keys() == {"kp", "kd"}:
-        typed = _own_of_ode(typed, time_step)
     beside = _assigned(other) if other or one_body else None
-    _print(diagnose(Bounce(**bounce), engine, typed, time_step, other=beside), as_json, explain)
+    typed = _assigned(parameters)
+    found = diagnose(Bounce(**bounce), engine, typed, time_step, other=beside)
+    _print(found, as_json, explain)
+    return _status(found)
 
 
 def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Path]]:
@@ -253,9 +226,7 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
         click.Option(["--ball"], help="One of several in the file."),
         click.Option(["--from", "begin"], help="Begin of the fall in a sound, such as '1.4 s'."),
         click.Option(["--to", "end"], help="End of the fall in a sound."),
-        click.Option(
-            ["--engine"], help="For which the contact is written.", shell_complete=_engines
-        ),
+        click.Option(["--engine"], help="For which the contact is written."),
         _STEP,
         _DENSITY,
         *_CONTACT,
@@ -329,17 +300,22 @@ def engines_command() -> None:
     """List the engines, their parameters and the versions in which they were run."""
     click.echo("With a stiffness; the parameters are of both bodies alike:")
     for row in ENGINES.values():
-        combined = ", ".join(dict.fromkeys(row.rules[name].text for name in row.names))
+        both: dict[str, list[str]] = {}
+        for name in dict.fromkeys((*row.names, *row.beside)):
+            both.setdefault(row.rules[name].text, []).append(name)
+        rules = [f"{', '.join(names)} {rule}" for rule, names in both.items() if rule != PAIR.text]
         click.echo(f"{row.name}: {row.meaning}")
-        click.echo(f"    two bodies: {combined}; run in {row.ran}")
+        click.echo(f"    {ran_in(row)}")
+        click.echo(f"    two bodies: {'; '.join(rules) or PAIR.text}")
     click.echo("\nWith a restitution by number, which counts above the threshold:")
     for each in BY_NUMBER.values():
         click.echo(f"{each.name}: {each.parameter}, threshold {each.limit(each.threshold)}")
-        click.echo(f"    two bodies: {each.pair.text}; run in {each.ran}")
+        click.echo(f"    {ran_in(each)}")
+        click.echo(f"    two bodies: {each.pair.text}")
 
 
 def run() -> None:
-    """Run the command; a mistake is one line, and the exit status is 2."""
+    """Run the command; a mistake is one line with the exit status 2."""
     try:
         sys.exit(main(standalone_mode=False))
     except (Refused, click.ClickException, OSError, ArithmeticError) as mistake:

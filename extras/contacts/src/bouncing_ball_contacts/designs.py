@@ -19,7 +19,6 @@ within a step. Implicit steps, gravity and strong damping therefore need no form
 
 import functools
 import math
-import re
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -29,7 +28,13 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.engines import Engine, Parameters, Setting, filled, snippet_of
+from bouncing_ball_contacts.engines import (
+    Engine,
+    Parameters,
+    Setting,
+    ran_in,
+    snippet_of,
+)
 from bouncing_ball_contacts.schemes import (
     Array,
     Drops,
@@ -44,8 +49,6 @@ from bouncing_ball_contacts.units import LONGEST_STEP, holding, refuse, show, sp
 
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
-STEP_ONLY = "The numbers take back what this time step damps, and hold for it only"
-VAGUE = "The depth at rest is less than the engine resolves: its positions have single precision"
 
 # Steps in a contact: of those that choose the step, and of those that choose the stiffness.
 _COUNTS = (2.5, 4, 6, 8, 10, 13, 17, 20, 25, 32, 40, 50, 65, 85, 120, 170, 250)
@@ -84,11 +87,6 @@ def _up_to(most: float) -> Array:
     return np.concatenate([[0.0], np.geomspace(1e-3, most, 31)])
 
 
-def _same(step: float, _: float) -> float:
-    """Return a step, whatever the depth."""
-    return step
-
-
 @dataclass(frozen=True)
 class Problem:
     """Search for the contact of an engine that bounces as wanted.
@@ -110,36 +108,22 @@ class Problem:
         refuse([(self.bounce.mass is None, missing)])
 
     @property
-    def usable_depth(self) -> float:
-        """Largest depth in m at which a contact works in a scene.
-
-        A ball that sinks by more than its radius may leave a table on its other side, and two free
-        bodies that overlap by more than a quarter of one slide past each other.
-        """
-        share = 1 if self.bounce.other_mass is None else 4
-        return min(self.bounce.size, self.bounce.other_size) / share
-
-    @property
     def deepest(self) -> float:
-        """Depth in m above which the engine loses the body, or two bodies pass each other."""
-        size = self.bounce.size
-        return min(self.engine.deepest * size, size + self.bounce.other_size)
+        """Depth in m above which the engine loses the body."""
+        return self.engine.deepest * self.bounce.size
 
     @property
     def lost(self) -> str:
         """Message for depths above the deepest one."""
-        if self.bounce.other_mass is None:
-            return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
-        return f"bodies that sink more than {show(self.deepest, 'm')} pass through each other"
+        return f"{self.engine.name} loses a body that sinks more than {show(self.deepest, 'm')}"
 
     def setting(self, step: float) -> Setting:
         """Return the setting of a contact at a time step in s."""
         return Setting(
-            mass=self.bounce.reduced_mass,
+            mass=self.bounce.mass,
             step=step,
             points=self.bounce.points,
-            radius=self.bounce.reduced_radius,
-            both_free=self.bounce.other_mass is not None,
+            radius=self.bounce.size,
         )
 
     def law(self, depth: Any, ratio: Any) -> Law:
@@ -154,15 +138,15 @@ class Problem:
     def drops(self, law: Law, step: float, trials: Trials = _ALL) -> Drops:
         """Return the drops of contacts at a time step in s."""
         bounce = self.bounce
-        return drop(law, self.engine.scheme, step, bounce.impact_speed, bounce.load, trials)
+        return drop(law, self.engine.scheme, step, bounce.impact_speed, bounce.gravity, trials)
 
     def outcome(self, law: Law, step: float, trials: Trials = _ALL) -> Outcome:
         """Return the outcome of a contact at a time step in s."""
         found = self.drops(law, step, trials)
-        force = found.peak * self.bounce.reduced_mass
-        rest = float(np.max(law.rest(self.bounce.load))) if self.bounce.load else 0.0
+        force = found.peak * self.bounce.mass
+        rest = float(np.max(law.rest(self.bounce.gravity))) if self.bounce.gravity else 0.0
         # A contact of MuJoCo hardly feels gravity: the body hops by what this moves it in a step.
-        hop = self.bounce.load * step**2 if isinstance(law, Impedance) else 0.0
+        hop = self.bounce.gravity * step**2 if isinstance(law, Impedance) else 0.0
         is_resolved = rest == 0 or rest >= max(self.engine.resolution * self.bounce.size, hop)
         return Outcome(
             # A body that creeps is not followed until it is at rest.
@@ -172,22 +156,24 @@ class Problem:
             restitution=Range.of(found.restitution),
         )
 
-    def hops(self, law: Law, step: float, found: Outcome) -> str:
-        """Return by how much a body at rest hops in MuJoCo; empty if it hardly does.
+    def at_rest(self, law: Law, step: float, found: Outcome) -> tuple[str, bool]:
+        """Return what a body at rest does, and whether it hops by more than 1 % of its size.
 
-        Each step of gravity adds the speed g h, which the contact throws back. A rebound keeps r of
-        a speed, so the body leaves with about g h/(1 - r).
+        A contact of MuJoCo throws back the speed g h of each step of gravity. A rebound keeps r of
+        a speed, so the body leaves with up to g h/(1 - r). In MuJoCo 4.0.0 bodies lie still if they
+        lie deeper than 8 g h², and some also above.
         """
-        fall = self.bounce.load * step
-        speed = 0.0
-        if isinstance(law, Impedance):
-            speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
-        height = speed**2 / (2 * self.bounce.load) if speed else 0.0
-        # All bodies hop a little in MuJoCo.
-        return (height > self.bounce.size / 100) * (
-            f"it never lies still, but hops by up to about {show(height, 'm', 2)}: less at a "
-            "shorter step"
-        )
+        lies = f"at rest it lies {show(found.rest, 'm')} deep"
+        fall = self.bounce.gravity * step
+        if not fall:
+            return "", False
+        if not isinstance(law, Impedance) or found.rest >= 8 * fall * step:
+            return ("" if math.isnan(found.rest) else lies), False
+        speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
+        height = speed**2 / (2 * self.bounce.gravity)
+        hops = f"hops by up to about {show(height, 'm', 2)}: less at a shorter step"
+        said = f"at rest it {hops}" if math.isnan(found.rest) else f"{lies}, or {hops}"
+        return said, height > self.bounce.size / 100
 
     def slides(self, law: Law, step: float) -> str:
         """Return how weakly friction acts in MuJoCo.
@@ -198,7 +184,7 @@ class Problem:
         share = float(law.damping) / math.sqrt(float(law.stiffness))
         if not share:
             return "friction acts as a damper: nothing of a sliding speed is taken"
-        creeps = 2e3 * self.bounce.load * math.sin(math.radians(10)) * step / (math.pi * share)
+        creeps = 2e3 * self.bounce.gravity * math.sin(math.radians(10)) * step / (math.pi * share)
         return (
             f"friction acts as a damper: a bounce leaves {100 * math.exp(-math.pi * share):.2g} % "
             "of a sliding speed that Coulomb's friction would take"
@@ -215,7 +201,7 @@ class Problem:
         """Undamped depth δ in m of a contact that was given; None without one."""
         time = self.bounce.contact_time
         if self.bounce.stiffness is not None:
-            time = math.pi * math.sqrt(self.bounce.reduced_mass / self.bounce.stiffness)
+            time = math.pi * math.sqrt(self.bounce.mass / self.bounce.stiffness)
         return None if time is None else time / self.duration
 
     def ratio(self, depth: float, step: float, guess: float = 0.0) -> float:
@@ -310,7 +296,7 @@ class Problem:
         If no contact does, return the contact with the nearest r.
         """
         tried = []
-        shares = (1.0, _SHARE) if self.bounce.load and self.given_depth is None else (1.0,)
+        shares = (1.0, _SHARE) if self.bounce.gravity and self.given_depth is None else (1.0,)
         for share in shares:
             contact = None
             for count in _COUNTS:
@@ -363,16 +349,16 @@ class Problem:
             shorter = _written(step / 2**halvings)
             # With the fewest steps a contact is the least deep.
             found = self.at(_FINE_COUNTS[0] * shorter / self.duration, shorter)
-            if found.outcome.depth[1] <= self.usable_depth:
-                found = self.keeping(functools.partial(_same, shorter), near=short)
+            if found.outcome.depth[1] <= self.bounce.size:
+                found = self.keeping(lambda _: shorter, near=short)
                 if not self.keeps(found.outcome, self.permitted):
-                    found = self.stiffest(shorter, self.usable_depth)
+                    found = self.stiffest(shorter, self.bounce.size)
             return found
 
         def is_held(halvings: int) -> bool:
             found = contact(halvings).outcome
-            # Beyond its size the ground swallows a body at rest.
-            return self.keeps(found, self.usable_depth) and not found.rest >= self.bounce.size
+            # A ball that sinks by more than its radius may leave a table on its other side.
+            return self.keeps(found, self.bounce.size) and not found.rest >= self.bounce.size
 
         longer = max(math.ceil(math.log2(step / short.step)), 1)
         place = bisect_left(range(longer), True, key=is_held)
@@ -404,7 +390,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     refuse(
         [
             (
-                bounce.stiffness is not None and engine.unit != "N/m",
+                bounce.stiffness is not None and engine.units.get(engine.names[0]) == "Pa",
                 f"{engine.name} has no stiffness in N/m: give the penetration",
             ),
         ]
@@ -414,7 +400,7 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
     short = replace(problem, tolerance=problem.tolerance / 2).wanted()
     chosen = short
     if asked is not None:
-        yours = problem.keeping(functools.partial(_same, asked))
+        yours = problem.keeping(lambda _: asked)
         if problem.keeps(yours.outcome, problem.permitted):
             chosen = yours
         elif not bounce.gives_contact:
@@ -441,6 +427,7 @@ def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:
     outcome = problem.outcome(law, step)
     return Answer(
         engine=engine.name,
+        ran=ran_in(engine),
         bounce=bounce,
         time_step=step,
         asked_step=asked,
@@ -451,7 +438,7 @@ def answer(problem: Problem, contact: Candidate, asked: float | None) -> Answer:
         not_for=not_for(problem, outcome),
         remarks=tuple(_remarks(problem, law, step, asked, outcome)),
         numbers={
-            "stiffness": float(deep.stiffness) * bounce.reduced_mass,
+            "stiffness": float(deep.stiffness) * bounce.mass,
             "damping_ratio": float(deep.damping / deep.stiffness**0.5 / 2),
         },
     )
@@ -461,20 +448,22 @@ def snippet(problem: Problem, parameters: Parameters, step: float, asked: float 
     """Return what to paste; the parameters of an engine that has no snippet here."""
     engine = problem.engine
     bounce = problem.bounce
-    bodies = "ground" if bounce.other_mass is None else "pair"
-    template = snippet_of(f"{engine.name}-{bodies}") or snippet_of(engine.name)
+    template = snippet_of(engine.name)
     if not template:
         return "\n".join(f"{name} = {value}" for name, value in parameters.items())
     mu = bounce.friction or 0.0
+    law = problem.law_of(parameters, step)
     values = {
         "step": step,
+        "k": float(law.stiffness) * bounce.mass / bounce.points,
+        "c": float(law.damping) * bounce.mass / bounce.points,
         "friction": mu,
         "rubs": engine.rubs.format(mu=mu, root=math.sqrt(mu))
         if bounce.friction is not None
         else "",
         "condim": 1 if bounce.friction == 0 else 3,
     }
-    return filled(template, {**values, **parameters}).rstrip()
+    return template.format(**values, **parameters).rstrip()
 
 
 def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
@@ -485,15 +474,13 @@ def not_for(problem: Problem, outcome: Outcome) -> tuple[str, ...]:
     is_wider = max(outcome.restitution.low - low, high - outcome.restitution.high) > TOLERANCE
     # The widest range is that of the largest speed.
     low, high = problem.promised(outcome, max(engine.sliding.speeds, default=None))
-    is_ball = bounce.points == 1 and not bounce.other_mass
     return tuple(
         holding(
             [
                 (is_wider, f"bodies that slide (r = {span(low, high)})"),
                 (bounce.points > 1, "boxes off flat or that slide fast"),
-                (bounce.other_mass, "bodies that slide past each other"),
                 *((True, text) for text in engine.not_for),
-                *((is_ball, text) for text in engine.not_of_one_point),
+                *((bounce.points == 1, text) for text in engine.not_of_one_point),
             ]
         )
     )
@@ -508,7 +495,7 @@ def _warnings(
     slower = replace(bounce, drop_height=None, speed=bounce.impact_speed / 3)
     slow = replace(problem, bounce=slower).outcome(law, step).restitution
     is_undamped = float(law.damping) == 0 and r.mean < bounce.restitution
-    hops = problem.hops(law, step, outcome)
+    rests, hops = problem.at_rest(law, step, outcome)
     size = f"{bounce.size_name} of {show(bounce.size, 'm')}"
     moves = f"it moves {show(bounce.impact_speed * (asked or step), 'm')} in a step"
     is_other = asked is not None and step != asked
@@ -539,7 +526,7 @@ def _warnings(
                 f"at {show(asked or 0, 's', 4)} a contact with this r is too deep: {moves}",
             ),
             (depth > bounce.size, f"it sinks deeper than its {size}"),
-            (hops, hops),
+            (hops, rests),
         ]
     )
 
@@ -557,21 +544,17 @@ def _remarks(
     share = f"a tenth of the {bounce.size_name}" if is_tenth else "a fifth of the drop height"
     depth = f"it may sink {show(bounce.limit, 'm')}, {share} (--penetration)"
     assumed = bounce.assumed + holding([(not bounce.gives_contact, depth)])
-    is_vague = math.isnan(outcome.rest) and not isinstance(law, Impedance)
+    rests, hops = problem.at_rest(law, step, outcome)
     ranges = [
         f"{span(*problem.promised(outcome, speed))} at up to {speed:g} times the speed of the fall"
         for speed in engine.sliding.speeds
     ]
     is_sliding = ranges and bounce.friction != 0
-    is_pasted = re.search("@friction@|@rubs@", snippet_of(engine.name))
+    is_pasted = "{rubs}" in snippet_of(engine.name)
     return holding(
         [
-            (
-                outcome.rest > 0 and bounce.load,
-                f"At rest it lies {show(outcome.rest, 'm')} deep; the largest force is "
-                f"{show(outcome.force[1], 'N')}",
-            ),
-            (is_vague, VAGUE),
+            (rests and not hops, rests[:1].upper() + rests[1:]),
+            (True, f"The largest force is {show(outcome.force[1], 'N')}"),
             (is_sliding, f"Of bodies that slide r is {', '.join(ranges)}"),
             (bounce.friction and engine.friction, engine.friction),
             (bounce.friction and isinstance(law, Impedance), problem.slides(law, step)),
@@ -580,14 +563,11 @@ def _remarks(
                 f"The friction of {bounce.friction or 0:g} is not in what is pasted",
             ),
             *((True, note) for note in engine.notes),
-            (isinstance(engine.scheme, Implicit), STEP_ONLY),
-            (bounce.points > 1 and engine.box, engine.box),
             (
-                bounce.other_mass,
-                f"Two free bodies act as one of {show(bounce.reduced_mass, 'kg', 4)}, their "
-                "reduced mass; r is along the line of their centres",
+                isinstance(engine.scheme, Implicit),
+                "The numbers take back what this time step damps, and hold for it only",
             ),
-            (not engine.ran, f"The row of {engine.name} was never run in its engine"),
+            (bounce.points > 1 and engine.box, engine.box),
             (True, f"Given: {', '.join(given)}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),
         ]

@@ -23,17 +23,19 @@ import numpy as np
 
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome
 from bouncing_ball_contacts.bounces import Bounce, Quantity
-from bouncing_ball_contacts.designs import LEAST_RESTITUTION, VAGUE, Problem
+from bouncing_ball_contacts.designs import LEAST_RESTITUTION, Problem
 from bouncing_ball_contacts.engines import (
-    CONES,
-    ENGINES,
     MODES,
+    PAIR,
     Engine,
     Parameters,
+    Setting,
     as_compared,
     one_of,
     parameters_of,
+    ran_in,
 )
+from bouncing_ball_contacts.rows import CONES, ENGINES
 from bouncing_ball_contacts.schemes import (
     MOST_STEPS,
     SHORT_STEPS,
@@ -183,7 +185,7 @@ def diagnose_spring(
     refuse(
         [
             (
-                engine.sets_pair and other is not None,
+                other is not None and all(rule is PAIR for rule in engine.rules.values()),
                 f"{engine.name} sets the contact of a pair of bodies, and not of one body",
             ),
             (
@@ -192,6 +194,7 @@ def diagnose_spring(
             ),
         ]
     )
+    given = _converted(engine, given, problem.setting(bounce.step(time_step)))
     contact = Contact(
         problem=problem,
         one={**engine.defaults, **given},
@@ -201,9 +204,9 @@ def diagnose_spring(
     spring = _spring(contact.law)
     found = Found(
         outcome=contact.outcome(),
-        limit=_in_short_steps(contact, bounce.load),
+        limit=_in_short_steps(contact, bounce.gravity),
         free=_in_short_steps(contact, 0.0),
-        stiffness=float(spring.stiffness) * bounce.reduced_mass,
+        stiffness=float(spring.stiffness) * bounce.mass,
         damping_ratio=float(spring.damping / spring.stiffness**0.5 / 2),
     )
     wanted = bounce.restitution
@@ -222,6 +225,7 @@ def diagnose_spring(
             )
     return Answer(
         engine=engine.name,
+        ran=ran_in(engine),
         bounce=bounce,
         time_step=contact.step,
         parameters=contact.one,
@@ -258,8 +262,7 @@ def _remarks(
             *((True, each) for each in bounce.assumed),
         ]
     )
-    law = contact.law
-    lies = bounce.load > 0 and math.isfinite(found.outcome.rest)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
     return holding(
         [
             (
@@ -267,15 +270,13 @@ def _remarks(
                 f"The contact has k = {show(found.stiffness, 'N/m')} and a damping ratio of "
                 f"{found.damping_ratio:.3g}; in short steps r is {found.limit:.3f}",
             ),
-            (lies, f"At rest it lies {show(found.outcome.rest, 'm')} deep"),
-            (math.isnan(found.outcome.rest) and not isinstance(law, Impedance), VAGUE),
-            (engine.caution, engine.caution[:1].upper() + engine.caution[1:]),
+            (rests and not hops, rests[:1].upper() + rests[1:]),
+            *((True, note) for note in engine.notes),
             (bounce.points > 1 and engine.box, engine.box),
             (
                 bounce.restitution is None,
                 "With --restitution there is a least change, for the r that is wanted",
             ),
-            (not engine.ran, f"The row of {engine.name} was never run in its engine"),
             (True, f"Given: {'; '.join(filter(None, known))}"),
             (assumed, f"Assumed: {'; '.join(assumed)}"),
         ]
@@ -290,8 +291,8 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     Refused
         If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
-    names = {as_compared(name): name for name in engine.rules}
-    raw = parameters_of(engine.name, names, list(engine.rules), typed)
+    known = [*engine.rules, *engine.spring]
+    raw = parameters_of(engine.name, {as_compared(name): name for name in known}, known, typed)
     found = {name: _value(engine, name, value) for name, value in raw.items()}
     body = {**engine.defaults, **found}
     missing = [name for name in engine.rules if name not in body]
@@ -311,6 +312,24 @@ def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
+def _converted(engine: Engine, given: dict[str, Any], at: Setting) -> dict[str, Any]:
+    """Return parameters with a spring and a damper as the engine has them at a step."""
+    springs = given.keys() & set(engine.spring)
+    both = " and ".join(engine.spring)
+    refuse(
+        [
+            (
+                springs and len(given) != 2 or len(springs) == 1,
+                f"give {both}, and nothing beside them",
+            )
+        ]
+    )
+    if not springs:
+        return given
+    k, c = (np.asarray(given[name] * at.points / at.mass) for name in engine.spring)
+    return engine.write(Linear(k, c), at)
+
+
 def _value(engine: Engine, name: str, value: Any) -> Any:
     """Return a parameter as a number, as several numbers or as a word."""
     if name in _WORDS:
@@ -325,7 +344,7 @@ def _value(engine: Engine, name: str, value: Any) -> Any:
         return number
     if name == "min_depth":
         raise Refused(f"min_depth = {value} is not computed: a min_depth above 0 lowers r")
-    if number == 0 and name in (engine.names[0], *_DIVISORS):
+    if number == 0 and name in (engine.names[0], *engine.spring[:1], *_DIVISORS):
         raise Refused(f"{name} = 0 is not computed: give a small number")
     return within(name, number, 0, 1 if name in _SHARES else math.inf)
 
@@ -468,8 +487,7 @@ def _friction(contact: Contact, found: Found) -> list[str]:
 def _facts(contact: Contact, found: Found) -> list[str]:
     """Return further warnings."""
     row = contact.problem.engine
-    law = contact.law
-    hops = contact.problem.hops(law, contact.step, found.outcome)
+    rests, hops = contact.problem.at_rest(contact.law, contact.step, found.outcome)
     time = contact.combined.get("timeconst", contact.combined.get("solref", (0.0,))[0])
     raised = max(time, 2 * contact.step)
     return holding(
@@ -488,7 +506,7 @@ def _facts(contact: Contact, found: Found) -> list[str]:
                 f"the damping ratio of {found.damping_ratio:.3g} is that of a contact without "
                 "oscillation",
             ),
-            (hops, hops),
+            (hops, rests),
         ]
     )
 
@@ -550,6 +568,7 @@ def _nearest(contact: Contact) -> Answer:
     outcome = found.outcome()
     return Answer(
         engine=contact.problem.engine.name,
+        ran=ran_in(contact.problem.engine),
         bounce=bounce,
         time_step=contact.step,
         parameters={contact.damper: value},

@@ -1,8 +1,8 @@
-"""Physics engines as rows of a table: what each calls a stiffness and a damping, and how it steps.
+"""What a row of an engine is: the names of its parameters, their rule for two bodies, its steps.
 
-A row says how a contact with k, c and m is written in the parameters of an engine, how the
-parameters of two bodies are combined into those of their contact, and which scheme then moves the
-body. Laws are per unit of mass (:mod:`.schemes`); for two free bodies m is their reduced mass.
+A row of :data:`.ENGINES` says how a contact with k, c and m is written in the parameters of an
+engine, and which scheme then moves the body. Laws are per unit of mass (:mod:`.schemes`). A row of
+:data:`.BY_NUMBER` has the restitution number and the rule of its steps (:mod:`.step_rules`).
 """
 
 import difflib
@@ -13,34 +13,11 @@ from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from bouncing_ball_contacts.schemes import (
-    Array,
-    Bullet,
-    Capped,
-    Hertz,
-    HuntCrossley,
-    Impedance,
-    Implicit,
-    Law,
-    Linear,
-    SemiImplicit,
-)
-from bouncing_ball_contacts.units import Refused
+from bouncing_ball_contacts.schemes import Array, Implicit, Law, Linear, SemiImplicit
+from bouncing_ball_contacts.step_rules import Fall, Steps
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Refused, show
 
 Parameters = Mapping[str, Any]
-IMPEDANCE = 0.999
-"""MuJoCo's of a design, at every depth.
-
-Near 1 the reference acceleration of a contact is followed whatever else acts on the body: r depends
-neither on the load and the number of points, nor on the friction, its cone and condim. The edges of
-a friction pyramid turn an impedance d into d/(d + (1 - d) μ² (1 + μ²)/2).
-"""
-_LEAST_IMPEDANCE = 1e-4
-_LEAST_FRICTION = 1e-5
-CONES = ("pyramidal", "elliptic")
-"""Of friction in MuJoCo, the default first."""
 
 
 @dataclass(frozen=True)
@@ -50,20 +27,17 @@ class Setting:
     Attributes
     ----------
     mass, radius
-        Mass in kg and radius in m; for two free bodies the reduced ones.
+        Mass in kg and radius in m.
     step
         Time step in s.
     points
         Number of contact points that share the force.
-    both_free
-        Whether both bodies are free.
     """
 
     mass: float
     step: float
     points: int = 1
     radius: float = 0.01
-    both_free: bool = False
 
 
 @dataclass(frozen=True)
@@ -124,6 +98,8 @@ class Engine:
         How the engine combines each parameter of two bodies.
     write : callable
         The combined parameters of a law in a setting.
+    spring : tuple of str
+        Names of a spring in N/m and a damper in N s/m, which `write` converts at a step.
     beside : mapping
         What is written beside them.
     read : callable
@@ -136,20 +112,16 @@ class Engine:
         The SI units of the parameters that have one.
     defaults : mapping
         The parameters of a body for which none are set.
-    sets_pair : bool
-        Whether the snippet sets the contact of a pair, and not of each body.
     deepest : float
         The largest penetration in radii at which the engine still sees the contact.
     resolution : float
         The least depth at rest in radii that the precision of the engine's positions resolves.
-    ran : str
-        The version in which designs of this row were run; empty if none was.
+    ran, borrows : str
+        See :func:`ran_in`.
     notes : tuple of str
         What a user has to know.
     box : str
         What a user has to know of a body with several points.
-    flat_only : bool
-        Whether r is that of a box which falls flat on a plane and does not slide; `box` says so.
     friction : str
         What friction does to r.
     rubs : str
@@ -157,8 +129,6 @@ class Engine:
         if those of two bodies are multiplied. Without it the friction is the engine's own.
     sliding : Sliding
         By how much r of a body that slides may leave the range of one that does not.
-    caution : str
-        What a diagnosis takes for granted.
     not_for : tuple of str
         Scenes in which r is another one.
     not_of_one_point : tuple of str
@@ -172,22 +142,20 @@ class Engine:
     read: Callable[[Parameters, Setting], Law]
     meaning: str
     rules: Mapping[str, Rule]
+    spring: tuple[str, ...] = ()
     beside: Parameters = field(default_factory=dict)
     of_depth: Callable[[Array, Array, float], Law] = Linear.of_depth
     units: Mapping[str, str] = field(default_factory=dict)
     defaults: Parameters = field(default_factory=dict)
-    sets_pair: bool = False
     deepest: float = math.inf
     resolution: float = 0.0
-    unit: str = "N/m"
     ran: str = ""
+    borrows: str = ""
     notes: tuple[str, ...] = ()
     box: str = ""
-    flat_only: bool = False
     sliding: Sliding = Sliding()
     rubs: str = ""
     friction: str = "friction acts along the surface only, and leaves r as it is"
-    caution: str = ""
     not_for: tuple[str, ...] = ()
     not_of_one_point: tuple[str, ...] = ()
 
@@ -203,48 +171,8 @@ class Engine:
         return {name: self.rules[name].alike(value) for name, value in combined.items()}
 
 
-@dataclass(frozen=True)
-class DrakeDissipation(Engine):
-    """Drake averages dissipations, weighted by the share of each body in the penetration."""
-
-    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        stiffness, dissipation = self.names
-        k1 = one[stiffness]
-        k2 = other[stiffness]
-        mean = (k2 * one[dissipation] + k1 * other[dissipation]) / (k1 + k2)
-        return {stiffness: SERIES.of(k1, k2), dissipation: mean}
-
-
 MODES = {"average": MEAN, "min": LEAST, "multiply": PRODUCT, "max": LARGER}
 """How PhysX combines a restitution; of two materials the later one in this list counts."""
-
-
-@dataclass(frozen=True)
-class PhysX(Engine):
-    """PhysX combines stiffnesses and dampings by the mode of the restitutions.
-
-    A stiffness is a negative restitution there, so that "min" takes the larger one. Of a compliant
-    and a rigid material the stiffness is that of the former, and the damping the larger one.
-    """
-
-    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        modes = [body["restitutionCombineMode"] for body in (one, other)]
-        of_mode = MODES[max(modes, key=list(MODES).index)].of
-        found = super().combined(one, other)
-        stiffness, damping = self.names
-        if min(one[stiffness], other[stiffness]) > 0:
-            return found | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
-        return found | {name: max(one[name], other[name]) for name in (stiffness, damping)}
-
-
-@dataclass(frozen=True)
-class NewtonMujoco(Engine):
-    """Newton's MuJoCo solver averages time constants and damping ratios, instead of ke and kd."""
-
-    def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        a, b = (np.array(_solref(each["ke"], each["kd"])) for each in (one, other))
-        time, ratio = (a + b) / 2
-        return super().combined(one, other) | {"ke": 1 / (time * ratio) ** 2, "kd": 2 / time}
 
 
 def as_compared(name: str) -> str:
@@ -257,12 +185,147 @@ def as_compared(name: str) -> str:
     return last if len(last) == 1 else re.sub(r"^(set|geom_)(?!$)|[\W_]", "", last.lower())
 
 
+# In 1/s², the default gravity of matter-js.
+PIXELS = 1000.0
+
+
+@dataclass(frozen=True)
+class ByNumber:
+    """An engine whose restitution is a number.
+
+    Attributes
+    ----------
+    name : str
+    ran, borrows : str
+        See :func:`ran_in`.
+    rule : callable
+        Steps of a ball, see :mod:`.step_rules`.
+    parameter, pair, default
+        Name of the number, how the engine combines the numbers of two bodies, and the number of a
+        body for which none is set.
+    threshold : float
+        Speed in m/s below which an impact has no restitution; with ``is_of_rebound`` the speed of
+        the rebound counts.
+    set_by : str
+        Name of the threshold; empty if it has none.
+    has_defaults : bool
+        Whether the threshold has a default. A contact of ODE is a struct of C, which has none.
+    lines : mapping
+        Lines to paste, by the names of the number, the threshold, the settings, and "step" in s. A
+        threshold without a line is a constant.
+    settings : mapping
+        Other parameters that change r, with their defaults.
+    designed : tuple of mappings
+        Values of the settings that are tried, one after the other, if r is not kept without them.
+    damped_by, kept
+        Name of the linear damping, and the share of a velocity that it leaves in a step.
+    free : callable
+        Velocity after a step of free flight, if its damping is not linear.
+    ahead : callable
+        Height in m below which a contact is found, of the settings, the size and the points.
+    springs : str
+        Row of the same engine in :data:`.ENGINES`, for a stiffness.
+    sinks, remembers
+        How many times g h² a body falls farther in a step than with the velocity before it, and how
+        many steps before an impact matter.
+    depends_on_mass : bool
+        Whether r depends on the mass, because contacts have a softness. Without a mass it is 1 kg.
+    is_physx : bool
+        Whether materials say how their numbers are combined.
+    is_restless, calmed_by
+        Whether each step of gravity is thrown back, so that only a threshold above g h/(1 - r) lets
+        a body come to rest; and a setting with which it comes to rest.
+    pixels : float
+        Number of pixels in a metre, of an engine whose lengths are pixels.
+    either : tuple of mappings
+        Settings that nobody chooses, over which r is taken: how a ball that is a polygon is turned,
+        in half sides, 0 with a corner below; and how the engine rounds.
+    skin : float
+        Height in m above a polygon at which a ball touches it.
+    reach : float
+        Height in m above which a body that rises flies freely, and below which a contact is found.
+    ignored_by : str
+        A backend of the product that ignores the number.
+    """
+
+    name: str
+    rule: Callable[[Fall, float, float], Steps]
+    ran: str
+    lines: Mapping[str, str]
+    parameter: str = "restitution"
+    pair: Rule = MEAN
+    default: float = 0.0
+    threshold: float = 0.0
+    is_of_rebound: bool = False
+    set_by: str = ""
+    has_defaults: bool = True
+    settings: Mapping[str, float] = field(default_factory=dict)
+    designed: tuple[Mapping[str, float], ...] = ()
+    damped_by: str = ""
+    kept: Callable[[float, float], float] = lambda damping, step: 1.0
+    free: Callable[[Fall, Array], Array] | None = None
+    ahead: Callable[[Parameters, float, int], float] | None = None
+    springs: str = ""
+    sinks: float = 1.0
+    remembers: int = 2
+    depends_on_mass: bool = False
+    is_physx: bool = False
+    is_restless: bool = False
+    calmed_by: str = ""
+    pixels: float = 0.0
+    either: tuple[Mapping[str, float], ...] = ({},)
+    skin: float = 0.0
+    reach: float = 0.06
+    borrows: str = ""
+    ignored_by: str = ""
+    notes: tuple[str, ...] = ()
+    not_for: tuple[str, ...] = ()
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether the threshold cannot be set."""
+        return self.set_by not in self.lines
+
+    @property
+    def names(self) -> dict[str, str]:
+        """Meaning of the names that may be typed, by their compared forms."""
+        modes = ("combine", "bounceCombine", "restitutionCombineMode")
+        typed = {
+            "number": ("restitution", self.parameter),
+            "threshold": ("threshold", "" if self.pixels else self.set_by) if self.set_by else (),
+            "threshold in pixels": (self.set_by,) if self.pixels else (),
+            "combine": modes if self.is_physx else (),
+            "pixels": ("pixels",) if self.pixels else (),
+            **{name: (name,) for name in self.settings},
+        }
+        return {as_compared(name): what for what, names in typed.items() for name in names}
+
+    @property
+    def unit(self) -> float:
+        """Unit of the threshold in m/s; with pixels one pixel in 1/60 s."""
+        return 60 / self.pixels if self.pixels else 1.0
+
+    def limit(self, threshold: float) -> str:
+        """Return a threshold in m/s with its name."""
+        pixels = f"{threshold / self.unit:.3g} pixels in 1/60 s" if self.pixels else ""
+        return ", ".join(filter(None, [show(threshold, "m/s"), pixels, self.set_by]))
+
+    def scaled(self, gravity: float, pixels: float | None = None) -> "ByNumber":
+        """Return the engine with `pixels` in a metre; by default its own gravity sets them."""
+        if not self.pixels:
+            return self
+        scale = pixels or PIXELS / (gravity or STANDARD_GRAVITY)
+        return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
+
+
 _SAME = {
     **dict.fromkeys(("e", "cor", "bounciness", "bounce", "elasticity"), "restitution"),
     "k": "stiffness",
     "c": "damping",
 }
 """What other engines and papers call a parameter, as names are compared."""
+_TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize", "stepsize")
+"""What engines call the time step, as names are compared."""
 
 
 def parameters_of(
@@ -283,10 +346,10 @@ def parameters_of(
         name = known.get(as_compared(str(each)))
         if name is None:
             near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
-            others = [f"; {row.name} has it" for row in ENGINES.values() if each in row.rules]
+            said = ["; the time step is --time-step, or time_step= in Python"]
             same = _SAME.get(as_compared(str(each)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
-            hint = "".join(meant or near or others)
+            hint = "".join(said * (as_compared(str(each)) in _TIME_STEPS) or meant or near)
             known_here = ", ".join(names)
             raise Refused(
                 f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
@@ -295,6 +358,16 @@ def parameters_of(
             raise Refused(f"{each!r} gives {name} twice")
         found[name] = value
     return found
+
+
+def ran_in(row: Engine | ByNumber) -> str:
+    """Return the version in which a row was compared with its engine.
+
+    A product that was not run itself ``borrows`` the rule of another row.
+    """
+    if not row.borrows:
+        return f"run in {row.ran}" if row.ran else "not run"
+    return f"not run: the rule of {row.borrows}, run in {row.ran}"
 
 
 def one_of(name: str, value: Any, words: Iterable[str]) -> str:
@@ -309,566 +382,3 @@ def snippet_of(name: str) -> str:
     """Return the text of a snippet; empty if there is none."""
     path = files(__package__).joinpath("snippets", f"{name}.txt")
     return path.read_text("utf-8") if path.is_file() else ""
-
-
-def filled(text: str, values: Mapping[str, Any]) -> str:
-    """Replace ``@name@`` and ``@name.0@`` in a text by numbers."""
-
-    def number(place: re.Match[str]) -> str:
-        name, _, index = place[1].partition(".")
-        value = values[name][int(index)] if index else values[name]
-        return value if isinstance(value, str) else f"{value:.6g}"
-
-    return re.sub(r"@([\w.]+)@", number, text)
-
-
-def _forces(names: tuple[str, str], per_mass: bool = False) -> dict[str, Any]:
-    """Return `names`, `units`, `write` and `read` of a stiffness and a damping, both as forces."""
-
-    def write(law: Law, at: Setting) -> dict[str, Any]:
-        c = float(law.damping) * (1 if per_mass else at.mass)
-        return {names[0]: float(law.stiffness) * at.mass / at.points, names[1]: c / at.points}
-
-    def read(p: Parameters, at: Setting) -> Law:
-        c = p[names[1]] * at.points / (1 if per_mass else at.mass)
-        return Linear(np.asarray(p[names[0]] * at.points / at.mass), np.asarray(c))
-
-    units = dict(zip(names, ("N/m", "1/s" if per_mass else "N s/m"), strict=True))
-    return {"names": names, "units": units, "write": write, "read": read}
-
-
-def _impedance_of_depth(depth: Array, ratio: Array, speed: float) -> Impedance:
-    """Return the contact of an undamped depth in MuJoCo, whose k is K d² and whose c is b d."""
-    d = IMPEDANCE
-    spring = Linear.of_depth(depth, ratio, speed)
-    return Impedance(spring.stiffness / d**2, spring.damping / d, low=d, high=d)
-
-
-def _write_mujoco(law: Law, at: Setting) -> dict[str, Any]:
-    return {"solref": (-float(law.deep.stiffness), -float(law.deep.damping))}
-
-
-def _solimp(values: Any) -> tuple[float, ...]:
-    given = [float(value) for value in np.atleast_1d(values)]
-    low, high, width, middle, power = given + [0.9, 0.95, 0.001, 0.5, 2.0][len(given) :]
-
-    # MuJoCo keeps impedances and the middle within these bounds.
-    low, high, middle = np.clip([low, high, middle], _LEAST_IMPEDANCE, 1 - _LEAST_IMPEDANCE)
-    return float(low), float(high), max(width, 1e-15), float(middle), max(power, 1.0)
-
-
-def _read_mujoco(p: Parameters, at: Setting, least: float = 1e-15) -> Law:
-    """Return the law; raise a product of times below `least` to it."""
-    first, second = p["solref"]
-    low, high, width, middle, power = _solimp(p["solimp"])
-    if first > 0:
-        time = max(first, 2 * at.step) if p.get("refsafe", 1) else first
-        k = 1 / max((high * time * second) ** 2, least)
-        b = 2 / (high * time)
-    else:
-        k = -first / high**2
-        b = abs(second) / high
-    friction = max(p.get("friction", 1.0), _LEAST_FRICTION)
-    is_pyramid = p.get("cone", CONES[0]) == CONES[0] and p.get("condim", 3) > 1
-    return Impedance(
-        stiffness=np.asarray(k),
-        damping=np.asarray(b),
-        points=at.points,
-        low=low,
-        high=high,
-        width=width,
-        middle=middle,
-        power=power,
-        edges=friction**2 * (1 + friction**2) / (p.get("condim", 3) - 1) if is_pyramid else 1.0,
-    )
-
-
-def _mix_solref(one: Any, other: Any) -> tuple[float, ...]:
-    a = np.asarray(one, float)
-    b = np.asarray(other, float)
-    return tuple((a + b) / 2 if min(a[0], b[0]) > 0 else np.minimum(a, b))
-
-
-def _mix_solimp(one: Any, other: Any) -> tuple[float, ...]:
-    return tuple((np.asarray(_solimp(one)) + np.asarray(_solimp(other))) / 2)
-
-
-_BY_TIMES = replace(MEAN, text="by averaged time constants and damping ratios")
-_SOLIMP = Rule("averaged", _mix_solimp, lambda x: x)
-_DEFAULT_SOLIMP = (0.9, 0.95, 0.001)
-_DESIGNED_SOLIMP = (IMPEDANCE, IMPEDANCE, 0.001)
-_MUJOCO_RULES = {
-    "solref": Rule("least of both", _mix_solref, lambda x: x),
-    "solimp": _SOLIMP,
-    "refsafe": PAIR,
-    "friction": LARGER,
-    "condim": LARGER,
-    "cone": PAIR,
-}
-
-
-def _write_genesis(law: Law, at: Setting) -> dict[str, Any]:
-    c = float(law.deep.damping)
-    if c <= 0:
-        raise Refused("genesis has no contact without damping: its time constant is 2 m/c")
-    return {"timeconst": 2 / c, "dampratio": c / (2 * math.sqrt(law.deep.stiffness))}
-
-
-def _read_genesis(p: Parameters, at: Setting) -> Law:
-    # Genesis has MuJoCo's formula, but not its least product.
-    return _read_mujoco({**p, "solref": (p["timeconst"], p["dampratio"])}, at, 0.0)
-
-
-def _solref(ke: float, kd: float) -> tuple[float, float]:
-    """Return the time constant and the damping ratio that Newton makes of ke and kd."""
-    return (2 / kd, kd / (2 * math.sqrt(ke))) if min(ke, kd) > 0 else (0.02, 1.0)
-
-
-def _write_newton_mujoco(law: Law, at: Setting) -> dict[str, Any]:
-    if float(law.damping) <= 0:
-        raise Refused("newton-mujoco has no contact without damping: kd = 0 stands for a default")
-    return {"ke": float(law.deep.stiffness), "kd": float(law.deep.damping)}
-
-
-def _read_newton_mujoco(p: Parameters, at: Setting) -> Law:
-    return _read_mujoco({"solref": _solref(p["ke"], p["kd"]), "solimp": p["solimp"]}, at)
-
-
-_BULLET = _forces(("contactStiffness", "contactDamping"))
-_BULLET_BESIDE = {
-    "linearDamping": 0.04,
-    "contactSlop": 1e-5,
-    "contactProcessingThreshold": 1e18,
-    "contactBreakingThreshold": 0.02,
-}
-
-
-def _read_pybullet(p: Parameters, at: Setting) -> Law:
-    spring = _BULLET["read"](p, at)
-    return Bullet(
-        stiffness=spring.stiffness,
-        damping=spring.damping,
-        slop=p["contactSlop"],
-        ahead=found_ahead(p, at.radius, at.both_free or at.points > 1),
-        drag=p["linearDamping"],
-    )
-
-
-def found_ahead(p: Parameters, radius: float, when_touching: bool) -> float:
-    """Return the height in m below which PyBullet finds a contact.
-
-    A ball is found within a share of half the diagonal of the box around it, 2 % by default; two
-    balls, or two boxes, when they touch.
-    """
-    share = 0.0 if when_touching else p["contactBreakingThreshold"]
-    return float(min(share * math.sqrt(3) * radius, p["contactProcessingThreshold"]))
-
-
-def _write_drake(law: Law, at: Setting) -> dict[str, Any]:
-    return {
-        "point_contact_stiffness": float(law.stiffness) * at.mass,
-        "relaxation_time": float(law.damping / law.stiffness),
-    }
-
-
-def _read_drake(p: Parameters, at: Setting) -> Law:
-    k = p["point_contact_stiffness"] / at.mass
-    return Linear(np.asarray(k), np.asarray(p["relaxation_time"] * k))
-
-
-def _write_dissipation(law: Law, at: Setting) -> dict[str, Any]:
-    return {
-        "point_contact_stiffness": float(law.stiffness) * at.mass,
-        "hunt_crossley_dissipation": float(law.damping),
-    }
-
-
-def _read_dissipation(p: Parameters, at: Setting) -> Law:
-    k = p["point_contact_stiffness"] / at.mass
-    return HuntCrossley(np.asarray(k), np.asarray(p["hunt_crossley_dissipation"]))
-
-
-def _damping_ratio(e: float) -> float:
-    """Return Tsuji's β of a restitution coefficient; LAMMPS divides by the logarithm of it."""
-    log = math.log(max(e, 1e-12))
-    return -log / math.hypot(math.pi, log)
-
-
-def _write_hertz(law: Law, at: Setting) -> dict[str, Any]:
-    beta = float(law.damping)
-    return {
-        "kn": float(law.stiffness) * at.mass / at.points / math.sqrt(at.radius),
-        "e": math.exp(-math.pi * beta / math.sqrt(1 - beta**2)),
-    }
-
-
-def _read_hertz(p: Parameters, at: Setting) -> Law:
-    k = p["kn"] * math.sqrt(at.radius) * at.points / at.mass
-    return Hertz(np.asarray(k), np.asarray(_damping_ratio(p["e"])))
-
-
-def _hertz_of_depth(depth: Array, ratio: Array, speed: float) -> Hertz:
-    return Hertz.of_depth(depth, np.minimum(ratio, _damping_ratio(0.0)), speed)
-
-
-def _write_ode(law: Law, at: Setting) -> dict[str, Any]:
-    kp, kd = _GAZEBO["write"](law, at).values()
-    both = at.step * kp + kd
-    return {"soft_cfm": 1 / both, "soft_erp": at.step * kp / both}
-
-
-def _read_ode(p: Parameters, at: Setting) -> Law:
-    kp = p["soft_erp"] / (p["soft_cfm"] * at.step)
-    return _GAZEBO["read"]({"kp": kp, "kd": (1 - p["soft_erp"]) / p["soft_cfm"]}, at)
-
-
-_GAZEBO = _forces(("kp", "kd"))
-_UNCAPPED = {"max_vel": 1e9, "contact_max_correcting_vel": 1e9}
-
-
-def _read_gazebo(p: Parameters, at: Setting) -> Law:
-    linear = _GAZEBO["read"](p, at)
-    fastest = min(p["max_vel"], p["contact_max_correcting_vel"])
-    return Capped(linear.stiffness, linear.damping, fastest, at.step)
-
-
-_PHYSX = _forces(("compliantContactStiffness", "compliantContactDamping"))
-
-
-_WEIGHTLESS = (
-    "These contacts feel 0.1 % of gravity: a load does not press them in by its weight over k, and "
-    "a body at rest hops a little"
-)
-# In MuJoCo the damper acts along the surface as well.
-_PUSHED_UP = Sliding(
-    adds=lambda r, speed: 0.006 + 0.1 * speed**1.3 * (1 - r) ** 2, speeds=(2.0, 4.0)
-)
-_EVERY_FRICTION = "without sliding it holds at every friction, cone and condim"
-_MANIFOLD = (
-    "a spring keeps r as long as the body "
-    "slides less than a third of its radius in a step, and a box that slides on springs may gain "
-    "energy"
-)
-_DRAKE_BOX = (
-    "A pair of shapes has one contact: r is that of a box which falls flat on a HalfSpace and does "
-    "not slide; on a Box, on an edge or sliding it had 0.77 to 0.84 for 0.80"
-)
-_VERLET = SemiImplicit(pulls=True)
-# A depth is the difference of two rounded numbers: below ten of their spacings no digit is certain.
-_SINGLE = 10 * float(np.finfo(np.float32).eps)
-# Drops in MuJoCo 4.0.0 at 1 and 2 ms: the last of three balls that touch left with 0.63 for 0.90;
-# on cells of a tenth of the radius r was 0.70, on those of a twentieth 0.65 and 1.00; of capsules
-# and cylinders at 20° and 45° 0.55 to 0.73; at twice the step 0.77 to 0.85, for 0.80.
-# On a free plate of 0.5 times its mass a ball had 0.86 to 0.88, and 0.81 to 0.83 on one of 5 times,
-# at 1 ms. The lowest point of a sphere's hull had 0.46 to 0.78 with 12 vertices, 0.69 to 0.81 with
-# 42, 0.76 to 0.81 with 162 and 0.78 to 0.81 with 642, where 0.78 to 0.82 was designed.
-# With a ball's spring at each of its points a box had 0.36 to 0.43 and a capsule 0.48 to 0.52 for
-# 0.60, in ODE, PhysX and Newton.
-_SPRING_OF_ONE_POINT = ("boxes or lying capsules (--points 4 or 2)",)
-_NOT_MUJOCO = (
-    "three touching bodies",
-    "free plates",
-    "hulls under 600 vertices",
-    "heightfield cells under radius/5",
-    "tilted capsules or cylinders",
-)
-ON_BOXES = "boxes on boxes"
-"""In single precision MuJoCo loses their contacts for a step: at 3 of 31 instants a box on a table
-of 2 cm had 0.74 to 0.88 where 0.784 to 0.819 was designed."""
-_MUJOCO = Engine(
-    name="mujoco",
-    names=("solref", "solref"),
-    scheme=SemiImplicit(),
-    write=_write_mujoco,
-    beside={"solimp": _DESIGNED_SOLIMP},
-    read=_read_mujoco,
-    meaning="solref = -k/m -c/m, solimp = 0.999 0.999 0.001",
-    rules=_MUJOCO_RULES,
-    of_depth=_impedance_of_depth,
-    defaults={
-        "solref": (0.02, 1.0),
-        "solimp": _DEFAULT_SOLIMP,
-        "refsafe": 1.0,
-        "friction": 1.0,
-        "condim": 3.0,
-        "cone": CONES[0],
-    },
-    ran="MuJoCo 4.0.0",
-    notes=(
-        "The numbers of solref are per unit of mass: they hold for every mass, and for two free "
-        "bodies that meet on the line of their centres (a light box that was hit near its edge had "
-        "up to 0.05 more)",
-        "Give both geoms the class, because MuJoCo averages their solimp",
-        _WEIGHTLESS,
-    ),
-    friction=f"{_EVERY_FRICTION}; a pair of geoms with a solreffriction of its own grips more",
-    rubs=' friction="{mu:g} 0.005 0.0001"',
-    sliding=_PUSHED_UP,
-    not_for=_NOT_MUJOCO,
-)
-ENGINES: Mapping[str, Engine] = {
-    engine.name: engine
-    for engine in (
-        _MUJOCO,
-        replace(
-            _MUJOCO,
-            name="mujoco-warp",
-            ran="MuJoCo Warp 4.0.0",
-            resolution=_SINGLE,
-            notes=(*_MUJOCO.notes, "Without friction it needs condim = 1, or there are no numbers"),
-            not_for=(*_NOT_MUJOCO, ON_BOXES),
-        ),
-        Engine(
-            name="pybullet",
-            scheme=Implicit(),
-            names=_BULLET["names"],
-            write=_BULLET["write"],
-            beside={
-                "linearDamping": 0.0,
-                "contactSlop": 0.0,
-                "contactProcessingThreshold": 0.0,
-                "contactBreakingThreshold": 0.2,
-            },
-            read=_read_pybullet,
-            units=_BULLET["units"]
-            | {"linearDamping": "1/s", "contactSlop": "m", "contactProcessingThreshold": "m"},
-            meaning="contactStiffness = 2 k, contactDamping = c/2",
-            rules={
-                "contactStiffness": SERIES,
-                "contactDamping": SUM,
-                **dict.fromkeys(_BULLET_BESIDE, PAIR),
-            },
-            # A body for which no spring is set.
-            defaults={"contactStiffness": 1e18, "contactDamping": 0.1, **_BULLET_BESIDE},
-            ran="PyBullet 3.2.7",
-            box="A box has its four points at once on a box; on GEOM_PLANE it has one or two, and "
-            "r is wrong (0.20 to 0.79 for 0.80); on springs a box that slides gains energy",
-            friction=_MANIFOLD,
-            rubs=", lateralFriction={root:.6g}",
-            # On a plate of 1 to 5 times its mass a ball had 0.60 to 0.78 for 0.80; a box with a
-            # ball's spring at each of its points had 0.39 to 0.42 for 0.60.
-            not_for=("free plates",),
-            not_of_one_point=("boxes (--points 4)",),
-        ),
-        Engine(
-            name="drake-sap",
-            rubs=", CoulombFriction({mu:g}, {mu:g})",
-            names=("point_contact_stiffness", "relaxation_time"),
-            scheme=Implicit(),
-            write=_write_drake,
-            read=_read_drake,
-            meaning="point_contact_stiffness = 2 k, relaxation_time = c/(2 k)",
-            units={"point_contact_stiffness": "N/m", "relaxation_time": "s"},
-            rules={"point_contact_stiffness": SERIES, "relaxation_time": SUM},
-            defaults={"point_contact_stiffness": 1e6, "relaxation_time": 0.1},
-            ran="Drake 1.51.1",
-            caution='the discrete_contact_approximation is taken as "sap"; with the default, '
-            '"lagged", Drake ignores relaxation_time, and the row is drake; '
-            "sap_near_rigid_threshold is taken as 0, because Drake makes strongly damped contacts "
-            "softer by the default of 1; a body that slides may have up to 0.08 less",
-            box=_DRAKE_BOX,
-            flat_only=True,
-            notes=("The lagged approximation, the row drake, keeps r of bodies that slide",),
-            friction="",
-            sliding=Sliding(takes=0.08, adds=lambda r, speed: 0.07 * (r <= 0.5), speeds=(1.4,)),
-        ),
-        DrakeDissipation(
-            name="drake",
-            rubs=", CoulombFriction({mu:g}, {mu:g})",
-            names=("point_contact_stiffness", "hunt_crossley_dissipation"),
-            scheme=Implicit(),
-            write=_write_dissipation,
-            read=_read_dissipation,
-            meaning="point_contact_stiffness = 2 k, hunt_crossley_dissipation = d in k p (1 + d w)",
-            units={"point_contact_stiffness": "N/m", "hunt_crossley_dissipation": "s/m"},
-            rules={"point_contact_stiffness": SERIES, "hunt_crossley_dissipation": MEAN},
-            defaults={"point_contact_stiffness": 1e6, "hunt_crossley_dissipation": 50.0},
-            of_depth=HuntCrossley.of_depth,
-            ran="Drake 1.51.1",
-            notes=("r falls with the speed: it is as wanted at this speed only",),
-            box=_DRAKE_BOX,
-            flat_only=True,
-        ),
-        Engine(
-            name="lammps",
-            scheme=_VERLET,
-            **_forces(("kn", "gamma_n"), per_mass=True),
-            meaning="kn = k, gamma_n = c/m",
-            rules={"kn": PAIR, "gamma_n": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            ran="LAMMPS 2025.7.22",
-            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
-        ),
-        Engine(
-            name="lammps-limit-damping",
-            scheme=SemiImplicit(),
-            **_forces(("kn", "gamma_n"), per_mass=True),
-            meaning="kn = k, gamma_n = c/m, with limit_damping",
-            rules={"kn": PAIR, "gamma_n": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            ran="LAMMPS 2025.7.22",
-            notes=("The damping is per unit of the (reduced) mass, and holds for this one only",),
-        ),
-        Engine(
-            name="lammps-hertz",
-            scheme=_VERLET,
-            names=("kn", "e"),
-            write=_write_hertz,
-            read=_read_hertz,
-            of_depth=_hertz_of_depth,
-            units={"kn": "Pa"},
-            meaning="kn = (4/3) E* in Pa, e = r",
-            rules={"kn": PAIR, "e": PAIR},
-            sets_pair=True,
-            deepest=1.0,
-            unit="N/m^1.5",
-            ran="LAMMPS 2025.7.22",
-            notes=("The modulus kn is for this radius; e is the same at every speed",),
-        ),
-        Engine(
-            name="newton",
-            scheme=SemiImplicit(approach=True),
-            **_forces(("ke", "kd")),
-            meaning="ke = k, kd = c, in SolverSemiImplicit and SolverFeatherstone",
-            rules={"ke": MEAN, "kd": MEAN},
-            defaults={"ke": 2500.0, "kd": 100.0},
-            resolution=_SINGLE,
-            ran="Newton 1.8.0",
-            notes=("The damper acts while the bodies approach only",),
-            rubs=", mu={mu:g}",
-            box="The points are those of a face: r is that of a box which falls flat on a plane "
-            "and does not slide; on a box, on an edge or sliding it had 0.78 to 0.91 for 0.80",
-            flat_only=True,
-            not_of_one_point=_SPRING_OF_ONE_POINT,
-        ),
-        NewtonMujoco(
-            name="newton-mujoco",
-            names=("ke", "kd"),
-            scheme=SemiImplicit(),
-            write=_write_newton_mujoco,
-            read=_read_newton_mujoco,
-            beside={"solimp": _DESIGNED_SOLIMP},
-            meaning="ke = k/m, kd = c/m, solimp = 0.999 0.999 0.001, in SolverMuJoCo",
-            units={"ke": "1/s^2", "kd": "1/s"},
-            rules={"ke": _BY_TIMES, "kd": _BY_TIMES, "solimp": _SOLIMP},
-            of_depth=_impedance_of_depth,
-            defaults={"ke": 2500.0, "kd": 100.0, "solimp": _DEFAULT_SOLIMP},
-            resolution=_SINGLE,
-            ran="Newton 1.8.0",
-            notes=("Without friction it needs condim = 1, or there are no numbers", _WEIGHTLESS),
-            rubs=", mu={mu:g}",
-            friction=_EVERY_FRICTION,
-            sliding=_PUSHED_UP,
-            not_for=(ON_BOXES,),
-        ),
-        Engine(
-            name="genesis",
-            names=("timeconst", "dampratio"),
-            scheme=SemiImplicit(),
-            write=_write_genesis,
-            beside={"solimp": _DESIGNED_SOLIMP},
-            read=_read_genesis,
-            of_depth=_impedance_of_depth,
-            meaning="timeconst = 2 m/c, dampratio = c/√(4 k m), solimp = 0.999 0.999 0.001",
-            ran="Genesis 1.4.5",
-            units={"timeconst": "s"},
-            rules={"timeconst": MEAN, "dampratio": MEAN, "solimp": _SOLIMP},
-            defaults={"solimp": _DEFAULT_SOLIMP},
-            notes=("The numbers hold for every mass", _WEIGHTLESS),
-            friction=_EVERY_FRICTION,
-            sliding=_PUSHED_UP,
-        ),
-        PhysX(
-            name="physx",
-            scheme=Implicit(ahead=True),
-            names=_PHYSX["names"],
-            write=_PHYSX["write"],
-            read=_PHYSX["read"],
-            units=_PHYSX["units"],
-            rubs="static_friction={mu:g}, dynamic_friction={mu:g}, ",
-            meaning="compliantContactStiffness = k, compliantContactDamping = c",
-            ran="PhysX 5.12 (ovphysx 0.7.0)",
-            rules={
-                "compliantContactStiffness": MEAN,
-                "compliantContactDamping": MEAN,
-                "restitutionCombineMode": PAIR,
-            },
-            defaults={
-                "compliantContactStiffness": 0.0,
-                "compliantContactDamping": 0.0,
-                "restitutionCombineMode": "average",
-            },
-            resolution=_SINGLE,
-            notes=(
-                "Use the solver PGS",
-                "The contactOffset has to be longer than the way of the body in a step",
-            ),
-            box="r is that of a box which falls flat on a plane and does not slide; on springs, "
-            "whose points are those of a face, it had 0.84 to 0.87 for 0.79 on an edge or sliding",
-            flat_only=True,
-            not_of_one_point=_SPRING_OF_ONE_POINT,
-            caution="the contactOffset is taken as longer than the way of the body in a step",
-        ),
-        Engine(
-            name="ode",
-            names=("soft_cfm", "soft_erp"),
-            scheme=Implicit(),
-            write=_write_ode,
-            read=_read_ode,
-            rubs="\ncontact.surface.mu = {mu:g};",
-            meaning="soft_erp = h k/(h k + c), soft_cfm = 1/(h k + c)",
-            ran="ODE 0.16.2",
-            units={"soft_cfm": "m/N/s"},
-            rules=dict.fromkeys(("soft_cfm", "soft_erp"), PAIR),
-            defaults={"soft_cfm": 1e-10, "soft_erp": 0.2},
-            sets_pair=True,
-            not_of_one_point=_SPRING_OF_ONE_POINT,
-            notes=("These are numbers of a contact joint",),
-            box="dCollide has to be asked for at least 4 contacts: with 1, 2 or 3 a box on a plane "
-            "tilts, and r is wrong (0.89, 0.85 and 0.83 for 0.80); on springs a box on an edge or "
-            "sliding had 0.84 to 1.10 for 0.80",
-        ),
-        Engine(
-            name="gazebo",
-            scheme=Implicit(),
-            names=_GAZEBO["names"],
-            write=_GAZEBO["write"],
-            beside=_UNCAPPED,
-            read=_read_gazebo,
-            units=_GAZEBO["units"] | dict.fromkeys(_UNCAPPED, "m/s") | {"min_depth": "m"},
-            meaning="kp = 2 k, kd = c/2, in Gazebo Classic with ODE",
-            ran="the ODE of Gazebo 11.10.2",
-            rules={
-                "kp": SERIES,
-                "kd": SUM,
-                **dict.fromkeys((*_UNCAPPED, "min_depth"), PAIR),
-            },
-            defaults={
-                "kp": 1e12,
-                "kd": 1.0,
-                "max_vel": 0.01,
-                "contact_max_correcting_vel": 100.0,
-                "min_depth": 0.0,
-            },
-            not_of_one_point=_SPRING_OF_ONE_POINT,
-            notes=(
-                "The snippet lifts max_vel, which caps every rebound, at 0.01 m/s by default, and "
-                "contact_max_correcting_vel of the world, which caps stiff contacts at short steps",
-            ),
-            box="max_contacts has to be at least 4, as by default: with 1, 2 or 3 a box on a plane "
-            "tilts, and r is wrong (0.91, 0.85 and 0.82 for 0.80)",
-        ),
-        Engine(
-            name="generic",
-            scheme=SemiImplicit(),
-            **_forces(("stiffness", "damping")),
-            meaning="stiffness = k, damping = c; semi-implicit Euler, a contact that never pulls",
-            rules={"stiffness": PAIR, "damping": PAIR},
-            sets_pair=True,
-            ran="a script of NumPy",
-        ),
-    )
-}
-"""The engines by name."""

@@ -1,14 +1,44 @@
 """The two questions: which parameters give a bounce, and which bounce parameters give."""
 
+import difflib
+import re
 from collections.abc import Mapping
 from typing import Any
 
 from bouncing_ball_contacts.answers import Answer
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.designs import design_spring
-from bouncing_ball_contacts.engines import ENGINES, Engine, as_compared
-from bouncing_ball_contacts.rebounds import design_number, diagnose_number, rows_of
-from bouncing_ball_contacts.units import Refused
+from bouncing_ball_contacts.engines import ByNumber, Engine, as_compared
+from bouncing_ball_contacts.rebounds import design_number, diagnose_number
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES, NAMES
+from bouncing_ball_contacts.units import Refused, refuse
+
+
+def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
+    """Return the row of an engine for springs, and the row for a restitution by number.
+
+    Raises
+    ------
+    Refused
+        If there is none; the message has the nearest name.
+    """
+    rows = {re.sub(r"\W", "", each): each for each in (*ENGINES, *BY_NUMBER)}
+    known = rows | NAMES
+    plain = re.sub(r"[\W_]", "", str(name).lower())
+    # A version at the end, and words such as "engine", belong to no name.
+    bare = re.sub(r"(physics|engine|js)*(v?\d+d?)?$", "", plain)
+    key = next((each for each in (plain, bare) if each in known), "")
+    found = known.get(key, "")
+    near = difflib.get_close_matches(plain, known, 1, 0.85)
+    meant = f"did you mean {known[near[0]] or near[0]}? " if near else ""
+    refuse(
+        [
+            (not key, f"engine {name!r} is not known; {meant}'bounce engines' lists the engines"),
+            (found not in rows.values(), f"{name} was not run{f', but {found}' * bool(found)}"),
+        ]
+    )
+    row = BY_NUMBER.get(found)
+    return ENGINES.get(row.springs if row else found), row
 
 
 def design(bounce: Bounce, engine: str | Engine = "generic", time_step: Quantity = None) -> Answer:
@@ -111,7 +141,7 @@ def diagnose(
     compared = set(map(as_compared, [*typed, *(other or {})]))
     of_number = number.names if number else {}
     of_springs = set(map(as_compared, springs.rules)) - of_number.keys() if springs else set()
-    of_springs |= set(map(as_compared, springs.names)) if springs else set()
+    of_springs |= set(map(as_compared, [*springs.names, *springs.spring])) if springs else set()
     is_number = "number" in {of_number.get(each) for each in compared}
     if number is None or (springs and not is_number and compared & of_springs):
         return diagnose_spring(bounce, springs or ENGINES["generic"], typed, time_step, other)

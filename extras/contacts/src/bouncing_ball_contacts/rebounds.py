@@ -8,42 +8,33 @@ gravity adds over that of the impact. It is given as its least, mean and greates
 instants.
 """
 
-import difflib
 import itertools
 import math
-import re
 from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
+from dataclasses import replace
 from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_contacts import step_rules
 from bouncing_ball_contacts.answers import TOLERANCE, Answer, Outcome, Range
 from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.engines import (
-    ENGINES,
     LARGER,
-    LEAST,
     MEAN,
     MODES,
-    PAIR,
-    PRODUCT,
-    Engine,
+    ByNumber,
     Rule,
-    as_compared,
-    found_ahead,
     one_of,
     parameters_of,
+    ran_in,
 )
+from bouncing_ball_contacts.rows import BY_NUMBER
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import (
     LONGEST_STEP,
-    STANDARD_GRAVITY,
     Refused,
     holding,
     in_si,
@@ -56,661 +47,15 @@ from bouncing_ball_contacts.units import (
 
 SETTLED = 1.1
 """Thresholds over the least with which a body comes to rest: near it, that takes many bounces."""
-_CLAMPED_SUM = Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2)
 INSTANTS = 24
 """Of the impact within a step, in a search; a sixth of them if gravity hardly acts in a step."""
 SHORTEST_STEP = 1e-4
 """Step in s below which no other step is tried: at shorter ones an answer takes minutes, and few
 users run so many steps."""
-MOST_INSTANTS = 96
+MOST_INSTANTS = 192
 """Of the impact within a step, in an answer."""
 # Steps without a move after which a ball has come to rest: no rebound takes so long to begin.
 _LYING = 50
-
-
-@dataclass(frozen=True)
-class ByNumber:
-    """An engine whose restitution is a number.
-
-    Attributes
-    ----------
-    name, ran : str
-        Name of the row, and the version in which its rule was compared with drops.
-    rule : callable
-        Steps of a ball, see :mod:`.step_rules`.
-    parameter, pair, default
-        Name of the number, how the engine combines the numbers of two bodies, and the number of a
-        body for which none is set.
-    threshold : float
-        Speed in m/s below which an impact has no restitution; with ``is_of_rebound`` the speed of
-        the rebound counts.
-    set_by : str
-        Name of the threshold; empty if it has none.
-    has_defaults : bool
-        Whether the threshold has a default. A contact of ODE is a struct of C, which has none.
-    lines : mapping
-        Lines to paste, by the names of the number, the threshold, the settings, and "step" in s. A
-        threshold without a line is a constant.
-    settings : mapping
-        Other parameters that change r, with their defaults.
-    designed : tuple of mappings
-        Values of the settings that are tried, one after the other, if r is not kept without them.
-    damped_by, kept
-        Name of the linear damping, and the share of a velocity that it leaves in a step.
-    free : callable
-        Velocity after a step of free flight, if its damping is not linear.
-    springs : str
-        Row of the same engine in :data:`.ENGINES`, for a stiffness.
-    sinks, remembers
-        How many times g h² a body falls farther in a step than with the velocity before it, and how
-        many steps before an impact matter.
-    depends_on_mass : bool
-        Whether r depends on the mass, because contacts have a softness. Without a mass it is 1 kg.
-    is_physx : bool
-        Whether materials say how their numbers are combined.
-    is_restless, calmed_by
-        Whether each step of gravity is thrown back, so that only a threshold above g h/(1 - r) lets
-        a body come to rest; and a setting with which it comes to rest.
-    pixels : float
-        Number of pixels in a metre, of an engine whose lengths are pixels.
-    turns : tuple of float
-        How a ball that is a polygon may be turned, in half sides: 0 with a corner below.
-    skin : float
-        Height in m above the surface at which a ball touches. A ball lies there, so heights are
-        counted from it.
-    reach : float
-        Height in m above which a body that rises flies freely, and below which a contact is found.
-    """
-
-    name: str
-    rule: Callable[[Fall, float, float], Steps]
-    ran: str
-    lines: Mapping[str, str]
-    parameter: str = "restitution"
-    pair: Rule = MEAN
-    default: float = 0.0
-    threshold: float = 0.0
-    is_of_rebound: bool = False
-    set_by: str = ""
-    has_defaults: bool = True
-    settings: Mapping[str, float] = field(default_factory=dict)
-    designed: tuple[Mapping[str, float], ...] = ()
-    damped_by: str = ""
-    kept: Callable[[float, float], float] = lambda damping, step: 1.0
-    free: Callable[[Fall, Array], Array] | None = None
-    springs: str = ""
-    sinks: float = 1.0
-    remembers: int = 2
-    depends_on_mass: bool = False
-    is_physx: bool = False
-    is_restless: bool = False
-    calmed_by: str = ""
-    pixels: float = 0.0
-    turns: tuple[float, ...] = ()
-    skin: float = 0.0
-    reach: float = 0.06
-    notes: tuple[str, ...] = ()
-    not_for: tuple[str, ...] = ()
-
-    @property
-    def is_constant(self) -> bool:
-        """Whether the threshold cannot be set."""
-        return self.set_by not in self.lines
-
-    @property
-    def names(self) -> dict[str, str]:
-        """Meaning of the names that may be typed, by their compared forms."""
-        modes = ("combine", "bounceCombine", "restitutionCombineMode")
-        typed = {
-            "number": ("restitution", self.parameter),
-            "threshold": ("threshold", "" if self.pixels else self.set_by) if self.set_by else (),
-            "threshold in pixels": (self.set_by,) if self.pixels else (),
-            "combine": modes if self.is_physx else (),
-            "pixels": ("pixels",) if self.pixels else (),
-            **{name: (name,) for name in self.settings},
-        }
-        return {as_compared(name): what for what, names in typed.items() for name in names}
-
-    @property
-    def unit(self) -> float:
-        """Unit of the threshold in m/s; with pixels one pixel in 1/60 s."""
-        return 60 / self.pixels if self.pixels else 1.0
-
-    def limit(self, threshold: float) -> str:
-        """Return a threshold in m/s with its name."""
-        pixels = f"{threshold / self.unit:.3g} pixels in 1/60 s" if self.pixels else ""
-        return ", ".join(filter(None, [show(threshold, "m/s"), pixels, self.set_by]))
-
-    def scaled(self, gravity: float, pixels: float | None = None) -> "ByNumber":
-        """Return the engine with `pixels` in a metre; by default its own gravity sets them."""
-        if not self.pixels:
-            return self
-        scale = pixels or _PIXELS / (gravity or STANDARD_GRAVITY)
-        return replace(self, pixels=scale, threshold=self.threshold * self.pixels / scale)
-
-
-# In 1/s², the default gravity of matter-js.
-_PIXELS = 1000.0
-_OLD_JOLT = "Before 5.3 (November 2024) Jolt had another rule, by which 1 gave 1.017 from 5 m"
-_CONSTANT = "The threshold is a constant of the library"
-_JOLT = ByNumber(
-    name="jolt",
-    rule=step_rules.jolt,
-    ran="Jolt 5 (jolt-physics 1.1.0 for JavaScript)",
-    parameter="mRestitution",
-    pair=LARGER,
-    threshold=1.0,
-    set_by="PhysicsSettings::mMinVelocityForRestitution",
-    lines={
-        "mRestitution": "bodySettings.mRestitution = {value}f;  // of {bodies}",
-        "PhysicsSettings::mMinVelocityForRestitution": "physicsSettings.mMinVelocityForRestitution "
-        "= {value}f;",
-        "mLinearDamping": "bodySettings.mLinearDamping = {value}f;",
-        "step": "physicsSystem.Update({value}f, 1, &allocator, &jobs);",
-    },
-    settings={"mLinearDamping": 0.05},
-    designed=({"mLinearDamping": 0.0},),
-    damped_by="mLinearDamping",
-    kept=lambda damping, step: max(1 - damping * step, 0.0),
-    notes=(_OLD_JOLT,),
-)
-_GODOT = "physics/jolt_physics_3d/simulation/bounce_velocity_threshold"
-_PHYSX = ByNumber(
-    name="physx",
-    rule=partial(step_rules.physx, ahead=0.04),
-    ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
-    threshold=2.0,
-    set_by="bounceThresholdVelocity",
-    lines={
-        "restitution": "material->setRestitution({value}f);  // of {bodies}",
-        "bounceThresholdVelocity": "sceneDesc.bounceThresholdVelocity = {value}f;",
-        "step": "scene->simulate({value}f);",
-    },
-    springs="physx",
-    is_physx=True,
-    is_restless=True,
-)
-_AHEAD = "The contact offset is taken as longer than the way of the body in a step"
-# Drops from 1 m at 1/60 s in PhysX 5.12: 0.34 to 0.66 for 0.70; slow balls did not bounce at all.
-_PGS = "The solver is PGS: with TGS, the default there, balls had 0.34 to 0.66 for 0.70, or stayed"
-_HAS_A_SKIN = (
-    "Heights are counted from where a ball lies, which is up to "
-    f"{1000 * step_rules.SKIN:g} mm above the surface of a polygon, because there is a skin around "
-    f"it; a polygon lies up to {2000 * step_rules.SKIN:g} mm above another one"
-)
-_BOX2D_2 = ByNumber(
-    name="box2d-2",
-    rule=step_rules.box2d_2,
-    ran="Box2D 2.4.1 (box2d-wasm 7.0.0)",
-    lines={
-        "restitution": "fixtureDef.restitution = {value}f;  // of {bodies}",
-        "restitutionThreshold": "fixtureDef.restitutionThreshold = {value}f;",
-        "step": "world.Step({value}f, 8, 3);",
-    },
-    pair=LARGER,
-    threshold=1.0,
-    is_restless=True,
-    set_by="restitutionThreshold",
-    skin=step_rules.SKIN,
-    reach=step_rules.SKIN,
-    notes=("Before 2.4.1 the threshold is a constant: --engine box2d-2.3", _HAS_A_SKIN),
-)
-_BOX2D_2_3 = replace(
-    _BOX2D_2,
-    name="box2d-2.3",
-    ran="Box2D 2.3.10 of Python",
-    set_by="b2_velocityThreshold",
-    lines={name: _BOX2D_2.lines[name] for name in ("restitution", "step")},
-    notes=(_CONSTANT, _HAS_A_SKIN),
-)
-_DART = ByNumber(
-    name="dart",
-    rule=step_rules.dart,
-    ran="DART 6.20 (dartpy)",
-    lines={
-        "restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}",
-        "step": "world->setTimeStep({value});",
-    },
-    pair=PRODUCT,
-    threshold=0.1,
-    is_of_rebound=True,
-    is_restless=True,
-    reach=0.0,
-    notes=(_CONSTANT,),
-    not_for=("lying capsules",),
-)
-_RAPIER = ByNumber(
-    name="rapier",
-    rule=step_rules.rapier,
-    ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
-    lines={
-        "restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}",
-        "step": "integration_parameters.dt = {value};",
-    },
-    sinks=(step_rules.SUBSTEPS + 1) / (2 * step_rules.SUBSTEPS),
-    remembers=2000,
-    notes=("Before 0.35 Rapier had another rule",),
-    # In Rapier and Box2D 3 a ball of 0.18 m with 30 rad/s had 0.656 to 0.710 where 0.667 to 0.691
-    # was designed, from 0.32 m at 1/50 s.
-    not_for=("flat boxes", "lying capsules", "spinning balls"),
-)
-_BULLET = "    pybullet.changeDynamics(body, -1, {name}={value})"
-_OF_BULLET = "pybullet.setPhysicsEngineParameter({name}={value})"
-# Elements with their places, because each one stands once in a world of SDF.
-_OF_GAZEBO = "<{name}>{value}</{name}>  <!-- in <surface><contact><ode> -->"
-_OF_GAZEBO_BODIES = "<{name}>{value}</{name}>  <!-- in <surface><bounce> of {bodies} -->"
-_OF_GAZEBO_STEP = "<max_step_size>{value}</max_step_size>  <!-- in <physics> -->"
-BY_NUMBER = {
-    each.name: each
-    for each in (
-        _JOLT,
-        replace(
-            _JOLT,
-            name="godot-jolt",
-            parameter="bounce",
-            pair=_CLAMPED_SUM,
-            set_by=_GODOT,
-            lines={
-                "bounce": "physics_material.bounce = {value}  # of {bodies}",
-                _GODOT: f"{_GODOT}={{value}}  # project setting",
-                "default_linear_damp": "physics/3d/default_linear_damp={value}  # project setting",
-                "step": "physics/common/physics_ticks_per_second={rate}  # project setting",
-            },
-            settings={"default_linear_damp": 0.1},
-            designed=({"default_linear_damp": 0.0},),
-            damped_by="default_linear_damp",
-            notes=(_OLD_JOLT, "Godot was not run: its source hands these numbers to Jolt"),
-        ),
-        _PHYSX,
-        replace(
-            _PHYSX,
-            name="unity",
-            rule=partial(step_rules.physx, ahead=0.02),
-            parameter="bounciness",
-            set_by="Physics.bounceThreshold",
-            lines={
-                "bounciness": "material.bounciness = {value}f;  // of {bodies}",
-                "Physics.bounceThreshold": "Physics.bounceThreshold = {value}f;",
-                "step": "Time.fixedDeltaTime = {value}f;",
-            },
-            springs="",
-            notes=("Unity was not run: it has PhysX 4.1 with a contact offset of 10 mm",),
-        ),
-        replace(
-            _PHYSX,
-            name="isaac-lab",
-            rule=partial(step_rules.physx, ahead=math.inf),
-            threshold=0.5,
-            set_by="PhysxCfg.bounce_threshold_velocity",
-            lines={
-                "restitution": "RigidBodyMaterialCfg(restitution={value})  # of {bodies}\n"
-                "PhysxCfg(solver_type=0)  # PGS, of SimulationCfg(physx=…)",
-                "PhysxCfg.bounce_threshold_velocity": "PhysxCfg(bounce_threshold_velocity={value})"
-                "  # of SimulationCfg(physx=…)",
-                "step": "SimulationCfg(dt={value})",
-            },
-            notes=("Isaac Lab was not run: it has PhysX 5", _AHEAD, _PGS),
-        ),
-        replace(
-            _PHYSX,
-            name="isaac-sim",
-            rule=partial(step_rules.physx, ahead=math.inf),
-            threshold=0.0,
-            set_by="physxScene:bounceThreshold",
-            lines={
-                "restitution": "PhysicsMaterial(restitution={value})  # of {bodies}\n"
-                'uniform token physxScene:solverType = "PGS"',
-                "physxScene:bounceThreshold": "float physxScene:bounceThreshold = {value}",
-                "step": "World(physics_dt={value})",
-            },
-            notes=(
-                "Isaac Sim was not run: it has PhysX 5, and by its USD schema no threshold",
-                _AHEAD,
-                _PGS,
-            ),
-        ),
-        _RAPIER,
-        ByNumber(
-            name="box2d",
-            rule=step_rules.box2d,
-            ran="Box2D 3 (box2d3-wasm 5.2.0)",
-            pair=LARGER,
-            threshold=1.0,
-            set_by="b2WorldDef.restitutionThreshold",
-            lines={
-                "restitution": "shapeDef.material.restitution = {value}f;  // of {bodies}",
-                "b2WorldDef.restitutionThreshold": "worldDef.restitutionThreshold = {value}f;",
-                "step": f"b2World_Step(world, {{value}}f, {step_rules.SUBSTEPS});",
-            },
-            sinks=_RAPIER.sinks,
-            reach=0.02,
-            notes=("Box2D 2 has another rule: --engine box2d-2",),
-            not_for=_RAPIER.not_for,
-        ),
-        _BOX2D_2,
-        _BOX2D_2_3,
-        replace(
-            _BOX2D_2_3,
-            name="libgdx",
-            set_by="World.setVelocityThreshold",
-            lines={
-                "restitution": _BOX2D_2.lines["restitution"],
-                "World.setVelocityThreshold": "World.setVelocityThreshold({value}f);",
-                "step": "world.step({value}f, 8, 3);",
-            },
-            notes=("libGDX was not run: it has Box2D 2.3, and sets its threshold", _HAS_A_SKIN),
-        ),
-        replace(
-            _BOX2D_2,
-            name="planck",
-            ran="planck 1.4.2",
-            set_by="Settings.velocityThreshold",
-            lines={
-                "restitution": "body.createFixture({{shape, restitution: {value}}})"
-                "  // of {bodies}",
-                "Settings.velocityThreshold": "Settings.velocityThreshold = {value};",
-                "step": "world.step({value});",
-            },
-            notes=(_HAS_A_SKIN,),
-            # The last of three balls that touch left with 0.63 for 0.90 in planck 1.4.2.
-            not_for=("three touching bodies",),
-        ),
-        ByNumber(
-            name="chipmunk",
-            rule=step_rules.chipmunk,
-            ran="Chipmunk 7 (pymunk 7.3.1)",
-            parameter="elasticity",
-            lines={
-                "elasticity": "shape.elasticity = {value}  # of {bodies}",
-                "step": "space.step({value})",
-            },
-            pair=PRODUCT,
-            sinks=0.0,
-            reach=0.0,
-        ),
-        _DART,
-        replace(
-            _DART,
-            name="gazebo-sim",
-            parameter="restitution_coefficient",
-            lines={
-                "restitution_coefficient": _OF_GAZEBO_BODIES,
-                "step": _OF_GAZEBO_STEP,
-            },
-            ran="Gazebo's physics with DART (Ignition Physics 5.1.0 of Debian)",
-            notes=(
-                "With its default engine Gazebo passes this number to DART, and ignores the "
-                "threshold of the same element",
-            ),
-        ),
-        ByNumber(
-            name="matter-js",
-            rule=step_rules.matter,
-            ran="matter-js 0.20.0",
-            pair=LARGER,
-            threshold=2 * 60 * STANDARD_GRAVITY / _PIXELS,
-            set_by="Resolver._restingThresh",
-            lines={
-                "restitution": "Bodies.circle(x, y, radius, {{restitution: {value}}})"
-                "  // of {bodies}",
-                "Resolver._restingThresh": "Matter.Resolver._restingThresh = {value};",
-                "frictionAir": "body.frictionAir = {value};",
-                "step": "Matter.Engine.update(engine, 1000 * {value});",
-            },
-            pixels=_PIXELS / STANDARD_GRAVITY,
-            turns=(0.0, 0.5, 1.0),
-            reach=0.03,
-            settings={"frictionAir": 0.01},
-            designed=({"frictionAir": 0.0},),
-            damped_by="frictionAir",
-            kept=lambda damping, step: max(1 - damping * step * 60, 0.0),
-            notes=(
-                "A circle is a polygon there, of 10 to 26 sides: r is over all ways to turn it, "
-                "which matter below a radius of 20 pixels. With inertia: Infinity it cannot turn, "
-                "and has the r of a large circle",
-                "Below the threshold a ball with a number above 0.98 may also leave faster than "
-                "it came",
-            ),
-            not_for=("boxes", "spinning circles"),
-        ),
-        ByNumber(
-            name="pybullet",
-            rule=step_rules.pybullet,
-            ran="PyBullet 3.2.7",
-            pair=PRODUCT,
-            threshold=0.2,
-            set_by="restitutionVelocityThreshold",
-            lines={
-                "restitution": "for body in (one, other):  # {bodies}\n"
-                "    pybullet.changeDynamics(body, -1, restitution={value})",
-                "linearDamping": _BULLET,
-                "contactProcessingThreshold": _BULLET,
-                "contactERP": _OF_BULLET,
-                "contactSlop": _OF_BULLET,
-                "restitutionVelocityThreshold": _OF_BULLET,
-                "step": "pybullet.setPhysicsEngineParameter(fixedTimeStep={value}, numSubSteps=1)",
-            },
-            settings={
-                "linearDamping": 0.04,
-                "contactERP": 0.08,
-                "contactSlop": 1e-5,
-                "contactProcessingThreshold": 1e18,
-                "contactBreakingThreshold": 0.02,
-            },
-            designed=(
-                dict.fromkeys(
-                    ("linearDamping", "contactProcessingThreshold", "contactERP", "contactSlop"),
-                    0.0,
-                ),
-            ),
-            free=step_rules.bullet_flight,
-            springs="pybullet",
-            is_restless=True,
-            calmed_by="contactProcessingThreshold",
-            notes=("Bullet's own bodies, as in C++ and ammo.js, have no linearDamping of 0.04",),
-            # The last of three balls that touch left with 0.63 for 0.90 in PyBullet 3.2.7; a box on
-            # a GEOM_PLANE had 0.61 to 0.65 and a capsule at 20° 0.76, for 0.80.
-            not_for=(
-                "three touching bodies",
-                "boxes or lying capsules on GEOM_PLANE",
-                "tilted capsules",
-            ),
-        ),
-        ByNumber(
-            name="ode",
-            rule=step_rules.ode,
-            ran="ODE 0.16.2",
-            parameter="bounce",
-            pair=PAIR,
-            set_by="bounce_vel",
-            has_defaults=False,
-            lines={
-                "bounce": "contact.surface.mode = dContactBounce | dContactApprox1;\n"
-                "contact.surface.bounce = {value};",
-                "bounce_vel": "contact.surface.bounce_vel = {value};",
-                "soft_cfm": "contact.surface.soft_cfm = {value};",
-                "step": "dWorldStep(world, {value});",
-            },
-            settings={"soft_cfm": 1e-10, "soft_erp": 0.2},
-            designed=({"soft_cfm": 1e-10},),
-            reach=0.0,
-            springs="ode",
-            depends_on_mass=True,
-            notes=("These are numbers of a contact joint",),
-        ),
-        ByNumber(
-            name="gazebo",
-            rule=step_rules.gazebo,
-            ran="the ODE of Gazebo 11.10.2",
-            parameter="restitution_coefficient",
-            pair=LEAST,
-            threshold=1e5,
-            set_by="threshold",
-            lines={
-                "restitution_coefficient": _OF_GAZEBO_BODIES,
-                "threshold": _OF_GAZEBO_BODIES,
-                "max_vel": _OF_GAZEBO,
-                "kd": _OF_GAZEBO,
-                "contact_max_correcting_vel": "<{name}>{value}</{name}>  "
-                "<!-- in <physics><ode><constraints> -->",
-                "step": _OF_GAZEBO_STEP,
-            },
-            settings={"kp": 1e12, "kd": 1.0, "max_vel": 0.01, "contact_max_correcting_vel": 100.0},
-            # With such a damper the default spring takes nothing of the penetration back.
-            designed=({"max_vel": 1e9, "contact_max_correcting_vel": 1e9, "kd": 1e12},),
-            springs="gazebo",
-            reach=0.0,
-            depends_on_mass=True,
-            notes=("Gazebo Classic, with ODE",),
-        ),
-        ByNumber(
-            name="newton-xpbd",
-            rule=step_rules.xpbd,
-            ran="Newton 1.8.0",
-            lines={
-                "restitution": "ShapeConfig(restitution={value})  # SolverXPBD(model, "
-                "enable_restitution=True)",
-                "step": "solver.step(state, following, control, contacts, {value})",
-            },
-            reach=0.0,
-            not_for=("flat boxes", "lying capsules", "spinning balls"),
-        ),
-        ByNumber(
-            name="cannon-es",
-            rule=step_rules.cannon,
-            ran="cannon-es 0.20.0",
-            pair=PAIR,
-            lines={
-                "restitution": "const contact = new ContactMaterial(a, b, {{restitution: "
-                "{value}}});",
-                "contactEquationRelaxation": "contact.contactEquationRelaxation = {value};",
-                "contactEquationStiffness": "contact.contactEquationStiffness = {value};",
-                "linearDamping": "body.linearDamping = {value};",
-                "step": "world.step({value});",
-            },
-            settings={
-                "contactEquationRelaxation": 3.0,
-                "contactEquationStiffness": 1e7,
-                "linearDamping": 0.01,
-            },
-            # With such a stiffness r does not depend on the mass.
-            designed=tuple(
-                {"contactEquationRelaxation": steps, "contactEquationStiffness": 1e15}
-                for steps in (10.0, 50.0)
-            ),
-            damped_by="linearDamping",
-            kept=lambda damping, step: (1 - min(damping, 1.0)) ** step,
-            reach=0.0,
-            depends_on_mass=True,
-        ),
-    )
-}
-"""Engines whose restitution is a number, and products on top of one, by their names."""
-NAMES = {
-    "bevyrapier": "rapier",
-    "box2d24": "box2d-2",
-    "box2d241": "box2d-2",
-    "box2d242": "box2d-2",
-    "bullet": "pybullet",
-    "bullet3": "pybullet",
-    "cannon": "cannon-es",
-    "dartpy": "dart",
-    "dartsim": "dart",
-    "drakelagged": "drake",
-    "gazeboclassic": "gazebo",
-    "gazeboharmonic": "gazebo-sim",
-    "genesisworld": "genesis",
-    "gz": "gazebo-sim",
-    "gzsim": "gazebo-sim",
-    "ignition": "gazebo-sim",
-    "ignitiongazebo": "gazebo-sim",
-    "isaac": "isaac-sim",
-    "jbox2d": "box2d-2.3",
-    "matter": "matter-js",
-    "mjwarp": "mujoco-warp",
-    "mjx": "mujoco",
-    "mujocomjx": "mujoco",
-    "newtonsemiimplicit": "newton",
-    "newtonfeatherstone": "newton",
-    "nvidiaphysx": "physx",
-    "omniverse": "isaac-sim",
-    "ovphysx": "physx",
-    "p5play": "planck",
-    "pybox2d": "box2d-2.3",
-    "pymunk": "chipmunk",
-    "xpbd": "newton-xpbd",
-    "adams": "",
-    "avian": "",
-    "bepu": "",
-    "bevy": "has several engines: take rapier for bevy_rapier",
-    "bevyxpbd": "",
-    "blender": "has Bullet: take pybullet",
-    "box3d": "",
-    "ammo": "is Bullet: take pybullet with linearDamping=0",
-    "babylon": "has several engines: take cannon-es for its Cannon",
-    "brax": "",
-    "chaos": "",
-    "chrono": "",
-    "construct": "has Box2D: take box2d-2.3, or box2d for Box2D 3",
-    "coppeliasim": "has several engines: take pybullet, ode or mujoco",
-    "gdevelop": "has Box2D: take box2d-2.3",
-    "godot": "has two engines: take godot-jolt for Jolt Physics",
-    "dojo": "",
-    "dyn4j": "",
-    "gymnasium": "has no engine of its own: take mujoco, or box2d-2.3",
-    "havok": "",
-    "haxball": "",
-    "isaacgym": "has another PhysX: take physx for PhysX 5",
-    "liggghts": "",
-    "maniskill": "has PhysX: take physx for PhysX 5",
-    "mercurydpm": "",
-    "p2": "",
-    "phaser": "has two engines: take matter-js for Matter",
-    "physac": "",
-    "physijs": "is Bullet: take pybullet with linearDamping=0",
-    "playcanvas": "has Bullet: take pybullet with linearDamping=0",
-    "physx3": "",
-    "reactphysics3d": "",
-    "rigidipc": "",
-    "sapien": "has PhysX: take physx for PhysX 5",
-    "simscape": "",
-    "siconos": "",
-    "three": "has no physics: take the engine beside it, such as cannon-es or rapier",
-    "unity2d": "has Box2D: take box2d-2, or box2d for Box2D 3",
-    "unreal": "",
-    "ue": "",
-    "warp": "has no contacts of its own: take mujoco-warp or newton",
-    "webots": "has an ODE of its own: take ode",
-    "yade": "",
-}
-"""Other names of rows; and products that were not run, with what may stand for them."""
-
-
-def rows_of(name: str) -> tuple[Engine | None, ByNumber | None]:
-    """Return the row of an engine for springs, and the row for a restitution by number.
-
-    Raises
-    ------
-    Refused
-        If there is none; the message has the nearest name.
-    """
-    rows = {re.sub(r"\W", "", each): each for each in (*ENGINES, *BY_NUMBER)}
-    known = rows | NAMES
-    plain = re.sub(r"[\W_]", "", str(name).lower())
-    # A version at the end, and words such as "engine", belong to no name.
-    bare = re.sub(r"(physics|engine|js)*(v?\d+d?)?$", "", plain)
-    key = next((each for each in (plain, bare) if each in known), "")
-    found = known.get(key, "")
-    near = difflib.get_close_matches(plain, known, 1, 0.85)
-    meant = f"did you mean {known[near[0]] or near[0]}? " if near else ""
-    refuse(
-        [
-            (not key, f"engine {name!r} is not known; {meant}'bounce engines' lists the engines"),
-            (found not in rows.values(), f"{name} was not run{f', but {found}' * bool(found)}"),
-        ]
-    )
-    row = BY_NUMBER.get(found)
-    return ENGINES.get(row.springs if row else found), row
 
 
 def _flight(engine: ByNumber, at: Fall, v: Array, steps: float) -> tuple[Array, Array]:
@@ -751,22 +96,60 @@ def _after(steps: Steps, z: float, way: float, reach: float = 0.0) -> tuple[floa
     return 0.0, 0.0
 
 
+def _rebounds(engine: ByNumber, at: Fall, z: Array, v: Array, speed: float) -> tuple[Array, Array]:
+    """Return heights and velocities of balls that fly up again, from those of their falls."""
+    way = speed * at.step
+    reach = _reach(engine, at)
+    most = 2000 + math.ceil(6 * (reach + 4 * way) / way)
+    after = [
+        _after(islice(engine.rule(at, *start), most), start[0], way, reach)
+        for start in zip(z.tolist(), v.tolist(), strict=True)
+    ]
+    z, v = np.array(after).T
+    return z, v
+
+
+def _reach(engine: ByNumber, at: Fall) -> float:
+    """Return the height in m below which a contact may be found."""
+    # PyBullet finds large balls farther ahead.
+    return max(engine.reach, at.settings.get("ahead", 0.0))
+
+
+def drops(engine: ByNumber, at: Fall, heights: Array, starts: Array) -> Array:
+    """Return √(h′/h) of drops from heights in m above the floor.
+
+    A drop starts after a share of a step, for which it has fallen already.
+
+    >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
+    >>> drops(BY_NUMBER["jolt"], at, np.array([0.1, 0.1]), np.array([0.0, 0.5])).round(2)
+    array([0.82, 0.84])
+    """
+    speed = math.sqrt(2 * at.gravity * heights.mean())
+    # As far as a ball falls in a number of steps.
+    z = heights - at.added * at.step * starts * ((starts - 1) / 2 + engine.sinks)
+    v = -at.added * starts
+    # Down to where a contact may be found the ball flies freely, longer if it is damped.
+    near = _reach(engine, at) + 4 * speed * at.step
+    ways, speeds = _flight(engine, at, v[:, None], 2 * speed / at.added)
+    n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
+    each = np.arange(len(n)), np.maximum(n, 0)
+    z, v = _rebounds(engine, at, z + ways[each], speeds[each], speed)
+    # And so it flies up to its top.
+    ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
+    return np.sqrt(np.maximum(z + ways.max(axis=1), 0.0) / heights)
+
+
 def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None = None) -> Array:
     """Return √(h′/h) of impacts with a speed in m/s, at instants within a step.
 
-    Without gravity it is the ratio of the speeds.
-
-    >>> at = Fall(number=0.8, step=1 / 60, gravity=9.81, threshold=1.0, radius=0.1)
-    >>> round(float(restitutions(BY_NUMBER["jolt"], at, speed=1.4).mean()), 2)
-    0.83
+    A fall meets the surface at another instant from another height, or if it starts at another one.
+    Without gravity r is the ratio of the speeds.
     """
     way = speed * at.step
-    # PyBullet finds large balls farther ahead.
-    reach = max(engine.reach, at.settings.get("ahead", 0.0))
     # Within a step r changes by about g h/v.
     is_short = 0 < at.added < 1e-3 * speed
     instants = instants or (INSTANTS // 6 if is_short else INSTANTS)
-    height = speed**2 / (2 * at.gravity) if at.gravity else reach + way
+    height = speed**2 / (2 * at.gravity) if at.gravity else math.inf
     refuse(
         [
             (
@@ -775,35 +158,24 @@ def restitutions(engine: ByNumber, at: Fall, speed: float, instants: int | None 
                 f"{show(at.step, 's')}: between 1 µm and 1 km are computed",
             ),
             (
-                height <= way / 2,
+                height <= engine.skin,
+                f"a drop from {show(height, 'm')} ends in the skin of {show(engine.skin, 'm')}: "
+                "give a greater height",
+            ),
+            (
+                height <= way / 2 + engine.skin,
                 f"a step of {show(at.step, 's')} is longer than the fall: give a shorter one, or a "
                 "greater height",
             ),
         ]
     )
-    heights = height + way * (np.arange(instants) / instants - 0.5)
-    z = engine.skin + heights
-    v = np.full(instants, -speed)
-    near = reach + 4 * way
-    if at.gravity:
-        # Down to where a contact may be found the ball flies freely, longer if it is damped.
-        longest = 2 * math.sqrt(2 * height / at.gravity) / at.step
-        ways, speeds = _flight(engine, at, np.zeros(1), longest)
-        n = np.argmax(ways < near - z[:, None], axis=1) - 1 - engine.remembers
-        n = np.maximum(n, 0)
-        z = z + ways[n]
-        v = speeds[n]
-    most = 2000 + math.ceil(6 * near / way)
-    after = [
-        _after(islice(engine.rule(at, *start), most), start[0], way, reach)
-        for start in zip(z.tolist(), v.tolist(), strict=True)
-    ]
-    z, v = np.array(after).T
+    places = np.arange(instants) / instants
     if not at.gravity:
-        return v / speed
-    # And so it flies up to its top.
-    ways, _ = _flight(engine, at, v[:, None], v.max() / at.added)
-    return np.sqrt(np.maximum(z + ways.max(axis=1) - engine.skin, 0.0) / heights)
+        z = _reach(engine, at) + way * (places + 0.5)
+        return _rebounds(engine, at, z, np.full(instants, -speed), speed)[1] / speed
+    half = places[::2]
+    of_heights = drops(engine, at, height + way * (half - 0.5), 0 * half)
+    return np.concatenate([of_heights, drops(engine, at, np.full(len(half), height), half)])
 
 
 def _number(value: float) -> str:
@@ -821,11 +193,11 @@ def _snippet(case: "Case", number: float) -> str:
     changed = {name: value for name, value in case.settings.items() if value != own.settings[name]}
     if case.threshold != row.threshold or not row.has_defaults:
         changed[row.set_by] = float(f"{case.threshold / row.unit:.2g}")
-    step = float(f"{case.step:.6g}")
-    values = {row.parameter: float(f"{number:.4g}"), **changed, "step": step}
+    rate = 1 / case.step
+    values = {row.parameter: float(f"{number:.4g}"), **changed, "step": float(f"{case.step:.6g}")}
     # In the order of the lines.
     return "\n".join(
-        line.format(name=name, value=_number(values[name]), bodies=bodies, rate=round(1 / step))
+        line.format(name=name, value=_number(values[name]), bodies=bodies, rate=f"{rate:.6g}")
         for name, line in row.lines.items()
         if name in values
     )
@@ -852,10 +224,10 @@ class Case(NamedTuple):
     other: float | None = None
 
     @property
-    def never_bounces(self) -> bool:
-        """Whether the impact is below a threshold that is a constant."""
-        fastest = self.bounce.impact_speed + self.bounce.load * self.step
-        return fastest <= self.threshold and self.engine.is_constant
+    def speed(self) -> float:
+        """Speed in m/s at which the ball touches, above the floor if there is a skin."""
+        bounce = self.bounce
+        return math.sqrt(max(bounce.impact_speed**2 - 2 * bounce.gravity * self.engine.skin, 0.0))
 
     def number(self, written: float) -> float:
         """Return the combined number of both bodies."""
@@ -872,24 +244,22 @@ class Case(NamedTuple):
         row = self.engine
         bounce = self.bounce
         settings = {**self.settings, "pixels": row.pixels}
-        if row.free and not bounce.load:
-            # The speeds of two free bodies are those at the impact.
+        if row.free and not bounce.gravity:
             settings["linearDamping"] = 0.0
-        if "contactProcessingThreshold" in settings:
-            touching = bounce.other_mass is not None or bounce.points > 1
-            settings["ahead"] = found_ahead(settings, bounce.size, touching)
+        if row.ahead:
+            settings["ahead"] = row.ahead(settings, bounce.size, bounce.points)
         at = Fall(
             number=self.number(written),
             step=self.step,
-            gravity=bounce.load,
+            gravity=bounce.gravity,
             threshold=self.threshold,
             radius=bounce.size,
             keeps=row.kept(settings.get(row.damped_by, 0.0), self.step),
-            mass=bounce.reduced_mass if bounce.mass else 1.0,
+            mass=bounce.mass or 1.0,
             settings=settings,
         )
-        turned = [replace(at, settings={**settings, "turn": turn}) for turn in row.turns] or [at]
-        return np.concatenate([restitutions(row, each, speed, instants) for each in turned])
+        falls = [replace(at, settings={**settings, **each}) for each in row.either]
+        return np.concatenate([restitutions(row, each, speed, instants) for each in falls])
 
     def slower(self, written: float) -> Range:
         """Return r at a third of the speed; NaN if the step is too long for it."""
@@ -922,7 +292,7 @@ class Case(NamedTuple):
         """
         best = self.nearest()
         row = self.engine
-        speed = self.bounce.impact_speed
+        speed = self.speed
         if row.is_constant or not row.set_by:
             return best
         if best.deviation > TOLERANCE and speed < 1.5 * self.threshold:
@@ -986,6 +356,7 @@ class Tried(NamedTuple):
         step = show(case.step, "s")
         return Answer(
             engine=row.name,
+            ran=ran_in(row),
             bounce=bounce,
             time_step=case.step,
             parameters={row.parameter: number, **settings},
@@ -993,7 +364,7 @@ class Tried(NamedTuple):
             snippet=_snippet(case, number),
             warnings=tuple(_warnings(case, number, r)),
             not_for=row.not_for,
-            remarks=tuple(_remarks(case, number)),
+            remarks=tuple(_remarks(case, number, r)),
             gives=f"{row.parameter} = {number:.4g}{named} at {step} gives r = {r}",
             numbers={"number": case.number(number), "threshold": case.threshold},
         )
@@ -1003,28 +374,26 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     """Return what changes r, the severest first."""
     row = case.engine
     bounce = case.bounce
-    speed = bounce.impact_speed
+    speed = case.speed
     number = case.number(written)
     slower = case.slower(written)
     slowest = case.threshold / (max(number, 1e-9) if row.is_of_rebound else 1.0)
     is_slow = 0 < speed <= slowest
-    lowest = slowest**2 / (2 * bounce.load) if bounce.load else 0.0
+    lowest = slowest**2 / (2 * bounce.gravity) + row.skin if bounce.gravity else 0.0
     slow = f"drops under {show(lowest, 'm')}" if lowest else f"impacts below {show(slowest, 'm/s')}"
     way = speed * case.step
     settling = case.settling(written)
-    hops = bounce.load and 0 < number < 1 and slowest < settling
-    height = settling**2 / (2 * bounce.load) if hops else 0.0
+    hops = bounce.gravity and 0 < number < 1 and slowest < settling
+    height = settling**2 / (2 * bounce.gravity) if hops else 0.0
     rests = (
         f"below a step of {show(case.step * slowest / settling, 's')}"
         if hops and row.is_constant
         else f"above a threshold of {show(settling, 'm/s')}"
     )
     limit = row.limit(case.threshold)
-    # Share of the drop that is within the skin.
-    skin = min(2 * bounce.load * row.skin / speed**2, 1.0)
-    from_floor = Range(*(math.sqrt(skin + (1 - skin) * each**2) for each in r))
     return holding(
         [
+            (row.ignored_by, f"{row.ignored_by} ignores this number"),
             (
                 number == 0 < written,
                 f"nothing bounces: the other body has 0, and the numbers are {row.pair.text}",
@@ -1040,11 +409,6 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
                 f"of {limit}",
             ),
             (r.high >= 1.0005, f"at some instants the ball gains energy: r is up to {r.high:.3f}"),
-            (
-                skin and from_floor.mean > r.high,
-                f"heights are counted from a skin of {show(row.skin, 'm')}: from the floor r is "
-                f"{from_floor}",
-            ),
             (
                 speed / 3 > slowest and abs(slower.mean - r.mean) > TOLERANCE / 2,
                 f"at a third of the speed r is {slower}",
@@ -1066,7 +430,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
     )
 
 
-def _remarks(case: Case, written: float) -> list[str]:
+def _remarks(case: Case, written: float, r: Range) -> list[str]:
     """Return remarks, what was given, and what was assumed."""
     row = case.engine
     bounce = case.bounce
@@ -1083,12 +447,21 @@ def _remarks(case: Case, written: float) -> list[str]:
     }
     defaulted = ", ".join(f"{name} = {value:g}" for name, value in defaults.items())
     bodies = "alike" if case.other is None else f"and {case.other:g} of the other body"
+    # Share of the drop that is within the skin.
+    skin = 2 * bounce.gravity * row.skin / bounce.impact_speed**2
+    of_skin = Range(*(math.sqrt(max(each**2 - skin, 0.0) / (1 - skin)) for each in r))
     return holding(
         [
             (
                 damping and bounce.gravity,
                 f"The flights are damped by {row.damped_by} = {damping:g}, which lowers r: it "
                 "holds for this height only",
+            ),
+            (
+                skin,
+                f"A ball lies up to {show(row.skin, 'm')} above a polygon, and a polygon up to "
+                f"{show(2 * row.skin, 'm')} above another one: from there r is "
+                f"{of_skin}",
             ),
             *((True, note) for note in row.notes),
             (
@@ -1132,9 +505,8 @@ def _refuse_springs(bounce: Bounce, engine: ByNumber) -> None:
                 (getattr(bounce, name) is not None, f"--{name.replace('_', '-')} {place}")
                 for name in springs
             ),
-            # Boxes and two free bodies were run where the engine has springs as well.
+            # Boxes were run where the engine has springs as well.
             (bounce.points != 1 and not engine.springs, f"--points {place}: a ball is dropped"),
-            (bounce.other_mass is not None and not engine.springs, f"--other-mass {place}"),
         ]
     )
 
@@ -1152,7 +524,7 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     if time_step is None and engine.springs:
         # The body moves by less than it may sink, and gravity adds less than the tolerance.
         speed = bounce.impact_speed
-        slow = TOLERANCE * speed / bounce.load if bounce.load else math.inf
+        slow = TOLERANCE * speed / bounce.gravity if bounce.gravity else math.inf
         asked = float(f"{min(0.9 * bounce.limit / speed, slow, LONGEST_STEP):.3g}")
     else:
         asked = _step(time_step)
@@ -1161,11 +533,6 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     while engine.springs and bounce.impact_speed * step > bounce.size:
         step /= 2
     case = Case(engine, bounce, step, engine.threshold, engine.settings)
-    if case.never_bounces:
-        raise Refused(
-            f"no number bounces in {engine.name} at {show(bounce.impact_speed, 'm/s')}: it has a "
-            f"threshold of {engine.limit(engine.threshold)}, a constant"
-        )
     best = case.wanted()
     also = _other_step(best)
     if time_step is None and also:
@@ -1179,6 +546,8 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     if best.does_it:
         return found
     nothing = f"at {show(step, 's')} no number gives this r"
+    rises = (bounce.restitution * bounce.impact_speed) ** 2 < 2 * bounce.gravity * engine.skin
+    nothing += f", because a ball rises to the skin of {show(engine.skin, 'm')}" * rises
     nothing += "" if also else ": nothing is written to paste"
     return replace(found, snippet="", parameters={}, warnings=(nothing, *warnings))
 
@@ -1263,7 +632,7 @@ def diagnose_number(
     causes = tuple(_causes(case, number, found.outcome.restitution.mean))
     # Nothing is to be pasted of what is given.
     found = replace(found, snippet="", not_for=(), warnings=causes + found.warnings)
-    if found.is_kept or case.never_bounces:
+    if found.is_kept:
         return found
     best = case.wanted()
     if other is not None and best.deviation > TOLERANCE:
@@ -1316,6 +685,8 @@ def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
     names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
     found = parameters_of(engine.name, engine.names, list(names), typed)
     return {
-        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(what, value)
+        what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(
+            engine.parameter if what == "number" else what, value
+        )
         for what, value in found.items()
     }

@@ -356,7 +356,7 @@ def test_the_branches_of_r_of_1_are_flat_and_bifurcations_beyond_the_axis_are_no
     heights = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
     assert {*heights[np.isfinite(heights)]} == {-0.5, 0.0, 0.5}
     entries = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert entries == ["unstable", "saddle-node"]
+    assert entries == ["stable", "unstable", "saddle-node"]
 
 
 def test_a_restitution_that_no_contact_of_the_release_has_is_one_line_or_has_no_number():

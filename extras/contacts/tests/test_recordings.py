@@ -347,7 +347,7 @@ def test_what_is_no_text_is_refused(tmp_path):
 
 
 def test_every_published_experiment_names_its_source():
-    assert len(experiments()) == 12
+    assert len(experiments()) == 8
     for name in experiments():
         head = read(name)[""].head
         assert {"title", "measured by", "published", "source", "read"} <= head.keys()

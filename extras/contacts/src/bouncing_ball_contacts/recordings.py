@@ -352,6 +352,8 @@ class _Film(NamedTuple):
     def impacts(self, way: int) -> list[tuple[int, Impact]]:
         """Return each impact with its line; `way` is -1 if positions grow downwards."""
         used = np.flatnonzero(~(self.is_copy | self.is_out))
+        if len(used) <= 2 * FEWEST:
+            return []
         found = impacts_of_track(self.t[used], way * self.y[used])
         return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
 
@@ -365,14 +367,15 @@ def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
     digit = columns[1].digit
     is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
     is_out = np.zeros(len(t), bool)
-    is_out[~is_copy] = outliers(t[~is_copy], y[~is_copy], digit)
+    left = np.flatnonzero(~is_copy)
+    if len(left) > 2 * FEWEST:
+        is_out[left] = outliers(t[left], y[left], digit)
     return _Film(t, y, lines, is_copy, is_out)
 
 
 def _films(table: Table, columns: list[Column]) -> list[_Film]:
     """Return the films; an empty line or a name divides films."""
     films = []
-    most = 0
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
@@ -387,14 +390,11 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
                 lines=part.lines[frames[1:]],
             )
             found = frames[~np.isnan(both[frames, 1])]
-            most = max(most, len(found))
             if len(found) > 2 * FEWEST:
                 t, y = both[found].T
                 films.append(_film(columns, t - t[0], y, part.lines[found]))
     if not films:
-        raise Refused(
-            f"{table.name}: too few lines of a track, {most}; tops are one column, height"
-        )
+        raise Refused(f"{table.name}: too few lines of a track; tops are one column, height")
     return films
 
 
@@ -406,9 +406,10 @@ def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> li
         "frames that are missing before": [],
     }
     for film, found in zip(films, impacts, strict=True):
-        during = np.zeros(len(film.t), bool)
-        for _, impact in found:
-            during |= (film.t >= impact.track[0, 0]) & (film.t <= impact.track[-1, 0])
+        if not found:
+            continue
+        begin, end = found[0][1].track[0, 0], found[-1][1].track[-1, 0]
+        during = (film.t >= begin) & (film.t <= end)
         steps = np.diff(film.t, prepend=film.t[0])
         of_kinds = film.is_copy, film.is_out, steps > 2.5 * np.median(steps)
         for lines, is_left in zip(left.values(), of_kinds, strict=True):
@@ -483,8 +484,11 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         there = ", ".join(
             f"{each.name!r} is {each.role or 'not known'}" for each in table.columns if each.name
         )
-        by_rate = "frames are times with a line above the headings, # frame rate: 30; "
-        film = by_rate if "frame" in roles else ""
+        film = (
+            "frames are times with a line above the headings, # frame rate: 30; "
+            if "frame" in roles
+            else ""
+        )
         raise Refused(
             f"{table.name}: no bounces, as {there}: {film}{HEADINGS}; a title or a comment begins "
             "with #"

@@ -486,7 +486,7 @@ def _below_each_other(
 
 def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
     """Take the headings out of the rows, and a row of units below them; return the headings."""
-    begin, first, *_ = rows
+    begin, first = list(rows)[:2]
     headings = rows.pop(begin)
     units = [re.sub(r"[()\[\]]", "", cell).strip("-") for cell in rows[first]]
     if not any(units) or not {*map(str.lower, filter(None, units))} <= _KNOWN_UNITS:
@@ -514,6 +514,7 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     unknown = set(leave_out) - set(lines)
     refuse(
         [
+            (not rows, f"{name} has no line of numbers below a heading"),
             (unknown, f"{name} has no line {min(unknown, default=0)} of numbers to leave out"),
             *(
                 (

@@ -60,9 +60,9 @@ def copies(y: Array, digit: float) -> NDArray[np.bool_]:
     """
     begins = np.flatnonzero(np.diff(y, prepend=math.nan) != 0)
     moves = np.diff(y[begins])
+    ways = np.sign(moves) * (np.abs(moves) > 2.5 * digit)
     goes_on = np.zeros(len(begins), bool)
-    smallest = np.minimum(np.abs(moves[:-1]), np.abs(moves[1:]))
-    goes_on[1:-1] = (moves[:-1] * moves[1:] > 0) & (smallest > 2.5 * digit)
+    goes_on[1:-1] = ways[:-1] * ways[1:] > 0
     is_copy = np.repeat(goes_on, np.diff([*begins, len(y)]))
     is_copy[begins] = False
     return is_copy
@@ -92,8 +92,7 @@ def flights_of(t: Array, up: Array) -> tuple[list[NDArray[np.intp]], list[int]]:
     from scipy.signal import find_peaks
 
     noise = float(np.median(_third_differences(t, up))) / _MEDIAN
-    prominence = max(0.02 * float(np.ptp(up)), 6 * noise)
-    bottoms = find_peaks(-up, prominence=prominence)[0].tolist()
+    bottoms = find_peaks(-up, prominence=max(0.02 * np.ptp(up), 6 * noise))[0].tolist()
     edges = [-2, *bottoms, len(up) + 1]
     flights = [np.arange(a + 2, b - 1) for a, b in itertools.pairwise(edges)]
     if bottoms:

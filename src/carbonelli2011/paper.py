@@ -183,6 +183,6 @@ def of_paper(datasets: Datasets) -> dict[str, xr.Dataset]:
     """Select the curves and rows of the paper, in its order, in the datasets that have them."""
     found = {}
     for name, data in datasets.items():
-        needed = PARAMETERS.get(name, {})
+        needed = PARAMETERS.get(name, {}) | TOLERANCES.get(name, {})
         found[name] = data if other_parameters(name, data, needed) else selected(data, needed)
     return found

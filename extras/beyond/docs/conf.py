@@ -155,7 +155,7 @@ def mathml(as_block):
 
 
 def home(app, failure):
-    """The results of the replication, with pictures and data, are the front page and the article."""
+    """The front page and the article are the results of the replication, with their data."""
     folder = Path(app.outdir)
     names = sorted((ROOT / "figures").glob("*.nc"))
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
-from latex2mathml.converter import convert
 
 from carbonelli2011 import article
 from carbonelli2011.claims import CLAIMS
@@ -72,7 +71,6 @@ def filled_in(
         datasets,
         kind,
         markdown=texts.markdown,
-        formula=convert,
         counts=judgements.counts(claims),
         unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),

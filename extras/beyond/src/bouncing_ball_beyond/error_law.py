@@ -185,11 +185,12 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 def law_errors(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
 ) -> dict:
-    """Use the error law to compute the signed relative errors of the restitution model.
+    """Use the error law to compute the signed errors of the restitution model.
 
     An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
-    (Eqs. 37 and 38). The remainder of the law is of the second order in the duration of contacts,
-    and of the order 3/2 next to the saddle-node.
+    (Eqs. 37 and 38). The error of the phase is (x_c - x)/2π, a share of a period. The remainder of
+    the law is of the second order in the duration of contacts, and of the order 3/2 next to the
+    saddle-node.
 
     Parameters
     ----------
@@ -206,8 +207,7 @@ def law_errors(
     Returns
     -------
     dict
-        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. At the
-        saddle-node of the restitution model the phase is 0, so its error is infinite. Above the
+        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. Above the
         period doubling the errors are those of unstable orbits. The function
         ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
 
@@ -237,7 +237,7 @@ def law_errors(
         return {
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
-            "phase": (turn - shift - delay) / reference["phase"],
+            "phase": (turn - shift - delay) / (2 * np.pi),
             "apparent_restitution": loaded * load / (r * impact.speed),
             "saddle_node": np.divide(-shift, impact.line) + 0 * reference["saddle_node"],
             "period_doubling": doubling + 0 * reference["period_doubling"],
@@ -305,7 +305,7 @@ def law_thresholds(
     amplitude, n, table
         As in :func:`law_errors`.
     tolerance : float
-        Largest modulus ε of the relative error.
+        Largest modulus ε of the error.
 
     Returns
     -------
@@ -317,7 +317,7 @@ def law_thresholds(
     >>> from bouncing_ball_beyond import SpringDamper
     >>> found = law_thresholds(SpringDamper(1.0, restitution=0.65), amplitude=1.0)
     >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
-    (82.18, 132.3)
+    (82.18, 17.8)
     """
     impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
     amplitude = off_rounding(impact, amplitude, table)
@@ -524,10 +524,7 @@ def exact_errors(
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
-    """Use exact orbits to compute the signed relative errors of a simple model.
-
-    An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
-    (Eqs. 37 and 38).
+    """Use exact orbits to compute the signed errors of a simple model, as in :func:`law_errors`.
 
     Parameters
     ----------
@@ -560,7 +557,8 @@ def exact_errors(
     else:
         reference = contact_values(simple(ball), **given)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return {name: exact[name] / reference[name] - 1 for name in quantities}
+        scales = {name: reference[name] for name in quantities} | {"phase": 2 * np.pi}
+        return {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
 
 
 def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
@@ -641,7 +639,7 @@ def error_thresholds(
     amplitude, n, simple, quantities, table
         As in :func:`exact_errors`.
     tolerance : float
-        Largest modulus of the relative error.
+        Largest modulus of the error.
     low, high : float
         Range of ϖ.
     samples : int
@@ -659,7 +657,7 @@ def error_thresholds(
     >>> ball = SpringDamper(1.0, restitution=0.65)
     >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
-    ['82.177 found', '132.569 found']
+    ['82.177 found', '18.054 found']
 
     Above the period doubling, unstable orbits are compared:
 

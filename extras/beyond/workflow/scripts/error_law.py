@@ -58,15 +58,12 @@ def left_by_law(ball: Ball, amplitude, n) -> tuple[NDArray, NDArray]:
 
 
 def left_at_saddle_node(ball: Ball, n) -> tuple[NDArray, NDArray]:
-    """The same at the saddle-node of the restitution model, NaN for the phase, which is 0 there.
+    """The same at the saddle-node of the restitution model.
 
     Rounding must not put Λ below the saddle-node, and a root of the share added is small next to
     what the contact changes at ϖ up to 10⁴.
     """
-    left, error = left_by_law(ball, (1 + 1e-9) * (free_impact(ball, n).speed - n * np.pi), n)
-    phase = QUANTITIES.index("phase")
-    left[phase] = error[phase] = np.nan
-    return left, error
+    return left_by_law(ball, (1 + 1e-9) * (free_impact(ball, n).speed - n * np.pi), n)
 
 
 def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:

@@ -12,7 +12,6 @@ import sys
 from dataclasses import replace
 from functools import partial
 from itertools import product
-from pathlib import Path
 from types import SimpleNamespace
 
 import matplotlib
@@ -21,13 +20,13 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 from tests.jobs import Named
+from tests.reference import ROOT
 
 from carbonelli2011 import variables
 from paper_replication import compare, datasets, provenance
 from paper_replication.drawing import save_picture
 
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
-ROOT = Path(__file__).resolve().parents[1]
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
 CONFIG = {"release": "force", "stage": ENTRIES}
 FILES = (
@@ -258,6 +257,8 @@ def test_a_picture_is_older_than_its_dataset(project):
         path.write_bytes(content)
     (project.top / "results/records/fig14.json").write_bytes(record)
     assert lines(project)[1] == f"fig14: {STALE} figures/fig14.nc"
+    (project.top / "src/drawing.py").unlink()
+    assert f"fig14: {STALE} figures/fig14.nc, src/drawing.py" in lines(project)
 
 
 def test_a_caption_of_the_checkout_makes_texts_stale(project):
@@ -411,10 +412,9 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
 
 
 def test_one_figure_is_compared_and_a_missing_one_is_named(project):
-    results = project.top / "results"
-    for folder in (project.top, results):
+    for folder in (project.top, project.top / "results"):
         (folder / "figures/fig14.png").unlink()
-    (results / "figures/claims.nc").write_text("damaged", "utf-8")
+    (project.top / "results/figures/claims.nc").write_text("damaged", "utf-8")
     missing = "figures/fig14.png in the reference, figures/fig14.png in the results"
     assert lines(project, names=["fig14"]) == [f"fig14: missing: {missing}"]
     assert lines(project)[0].startswith("claims: cannot be compared: figures/claims.nc in the res")
@@ -738,6 +738,11 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         found = replace(compared(), found={"figures/fig14.nc": data}).finding(file)
         situation = (old, new, stale, contents, file.endswith(".nc"), with_reference)
         assert found.verdict == wanted(*situation), situation
+        assert (
+            found.verdict != "differs"
+            or "edited" not in (old, new)
+            or compare.EDITED in found.causes
+        ), situation
         # Only what is fresh and recorded is accepted.
         assert (not found.wrong) == (new == "recorded" and not (stale and with_reference))
 
@@ -800,7 +805,11 @@ def test_the_reference_declares_a_tolerance_and_gives_its_scale():
     assert compare.differences("a.nc", data, data.assign(a=data.a.copy(data=[2.0]))) == told
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("**/figures/*.nc")), ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "path",
+    sorted([*ROOT.glob("figures/*.nc"), *ROOT.glob("extras/beyond/figures/*.nc")]),
+    ids=lambda path: path.name,
+)
 def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
     """A tenth more than the tolerance is named, and a tenth less is not."""
     whole = datasets.read(path)

@@ -293,21 +293,6 @@ def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model()
         assert any(each.shape == points.shape and np.allclose(each, points) for each in lines)
 
 
-def test_the_frequency_ratios_of_the_poincare_map_have_lines_to_their_points():
-    data = reference("fig13").isel(case=0)
-    axes = of_reference("fig13").axes[0]
-    names = [text.get_text() for text in axes.texts if text.get_text()]
-    once = ["$\\varpi=1$", "$\\varpi=2$", "$\\varpi=5$", "$\\varpi=10$", "$\\varpi\\geq100$"]
-    assert names == 2 * once
-    ends = [text.xy for text in axes.texts if text.arrow_patch]
-    shown = data.sel(frequency_ratio=[1, 2, 5, 10, 100], method="nearest")
-    starts = np.stack([shown.phase, shown.impact_velocity], axis=1)
-    releases = np.stack([shown.release_phase, shown.bounce_velocity], axis=1)
-    assert np.array(ends) == pytest.approx(np.concatenate([starts, releases]) / np.pi)
-    # One case needs no name of its colour.
-    assert "spring-damper model" not in words(of_reference("fig13"))
-
-
 def test_the_stiffest_contact_of_the_poincare_map_has_its_own_name_if_no_other_is_beside_it():
     (data,) = data_of("fig13")
     figure = figures.draw("fig13", data.isel(frequency_ratio=data.frequency_ratio <= 10.001))

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from functools import partial
-from itertools import product
+from itertools import chain, product
 from types import SimpleNamespace
 
 import matplotlib
@@ -115,8 +115,10 @@ def project(accepted, tmp_path, monkeypatch):
 
 
 def git(top, *arguments):
-    command = ["git", "-C", str(top), "-c", "user.name=A", "-c", "user.email=a@b.c", *arguments]
-    subprocess.run(command, check=True)
+    # Newer versions of git tidy up in the background, while a test copies the folder.
+    settings = ["user.name=A", "user.email=a@b.c", "maintenance.auto=false"]
+    options = chain.from_iterable(("-c", each) for each in settings)
+    subprocess.run(["git", "-C", str(top), *options, *arguments], check=True)
 
 
 def commit(top):

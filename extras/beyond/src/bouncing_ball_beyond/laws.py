@@ -23,7 +23,6 @@ from bouncing_ball_beyond.balls import (
     Impact,
     Signature,
     broadcast_named,
-    slopes_at_release,
 )
 from bouncing_ball_beyond.forces import Force
 from bouncing_ball_beyond.judge import FIRST_LOAD, FIRST_SPEED, check_force, judge
@@ -238,12 +237,6 @@ class ForceLaw(Force):
         state[:, moves] = integrate_contacts(*some, after=after[moves])[0][1:3]
         q, v = state.reshape(2, *rows.shape)
         return -(q**self.root), -v
-
-    def end_slopes(
-        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
-    ) -> NDArray:
-        """Derivatives as in :meth:`.Ball.end_slopes`."""
-        return slopes_at_release(self, tau, u, T, amplitude, table)
 
     def after_free_impacts(self, u: NDArray) -> NDArray:
         return self._followed(0.0, u, 0.0, 0.0)[1].speed

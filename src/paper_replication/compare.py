@@ -646,8 +646,8 @@ def accept(project: Project, results: Path) -> list[str]:
     committed = tree("HEAD", "--", *project.code)
     if edited := git("status", "--porcelain", "--untracked-files=all", "--", *project.code):
         raise ValueError(f"nothing is accepted, commit first: {edited}")
-    old, new = run_in(project.top, "the reference"), run_in(results, "the results")
-    report = compare(project, old, new, project.configuration())
+    new = run_in(results, "the results")
+    report = compare(project, run_in(project.top, "the reference"), new, project.configuration())
     for file, found in report.found.items():
         # A file that is missing, and that no record of the results names, is not made any more.
         if found.wrong and (file in new.records or MISSING not in found.wrong):
@@ -667,7 +667,7 @@ def accept(project: Project, results: Path) -> list[str]:
     removed = [
         file
         for file, found in report.found.items()
-        if found.wrong and file in old.records and git("ls-files", str(project.top / file))
+        if found.wrong and file in report.old.records and git("ls-files", str(project.top / file))
     ]
     for file in taken:
         write(project.top / file, (results / file).read_bytes())

@@ -56,8 +56,8 @@ def follow(
         Orbit, or several orbits, from which to start.
     along : str, optional
         "amplitude", "frequency", or a parameter of the ball or the table. "frequency" changes Ω at
-        a fixed stroke a; its values are Ω/√(g/a) = √Λ. The default is the parameter of the branch
-        that contains the orbit.
+        a fixed displacement amplitude a; its values are Ω/√(g/a) = √Λ. The default is the parameter
+        of the branch that contains the orbit.
     to : float, array_like or tuple (low, high), optional
         Value at which the branch ends, or one value for each orbit. With a tuple, the orbit is
         followed in both directions. If the parameter turns back at a saddle-node and passes its

@@ -54,7 +54,7 @@ AMPLITUDE = Path("amplitude")
 
 @dataclass(frozen=True)
 class Frequency(Path):
-    """A path along the frequency Ω of the table at a fixed stroke a.
+    """A path along the frequency Ω of the table at a fixed displacement amplitude a.
 
     The variable is Ω/√(g/a) = √Λ. Parameters of the ball change with the powers of Ω in
     `Ball.frequency_powers`.

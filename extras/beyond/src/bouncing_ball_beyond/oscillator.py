@@ -28,7 +28,7 @@ At half: 7 % faster. At twice: 17 % slower. The results are the same.
 """
 
 UNDERDAMPED = 0.99
-"""Damping ratio above which the search for a release computes contacts by doublings.
+"""Damping ratio above which contacts are computed by doublings.
 
 At half and at twice of 1 - ζ: no effect.
 """
@@ -71,22 +71,8 @@ def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Va
 
 
 def free_responses(s: Values, ratio: Values, zeta: Values) -> tuple:
-    """Return g, g′ and 1 - K. ζ must not be close to 1, where terms cancel."""
-    square = (1 - zeta) * (1 + zeta)
-    over = zeta.real > 1
-    if not np.any(over):
-        return _underdamped(s, ratio, zeta, ratio * np.sqrt(square))
-    if np.all(over):
-        return _overdamped(s, ratio, zeta, np.sqrt(-square))
-    omega = ratio * np.sqrt(np.where(over, 0.75, square))
-    under = _underdamped(s, ratio, np.where(over, 0.5, zeta), omega)
-    root = np.sqrt(np.where(over, -square, 3.0))
-    above = _overdamped(s, ratio, np.where(over, zeta, 2.0), root)
-    return tuple(np.where(over, x, y) for x, y in zip(above, under, strict=True))
-
-
-def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple:
-    """Return g, g′ and 1 - K for ζ < 1, where ``omega`` = ϖ√(1 - ζ²)."""
+    """Return g, g′ and 1 - K for ζ < 1. ζ must not be close to 1, where terms cancel."""
+    omega = ratio * np.sqrt((1 - zeta) * (1 + zeta))
     decay = zeta * ratio
     lost = -np.expm1(-decay * s)
     sine, versine = swing(omega * s)
@@ -95,15 +81,6 @@ def _underdamped(s: Values, ratio: Values, zeta: Values, omega: Values) -> tuple
     wave = envelope * versine
     drag = decay * g
     return g, envelope - wave - drag, lost + wave - drag
-
-
-def _overdamped(s: Values, ratio: Values, zeta: Values, root: Values) -> tuple:
-    """Return g, g′ and 1 - K for ζ > 1, where ``root`` = √(ζ² - 1)."""
-    slow = np.exp(-ratio * s / (zeta + root))
-    fast = np.exp(-ratio * s * (zeta + root))
-    g = (slow - fast) / (2 * ratio * root)
-    cosine = (slow + fast) / 2
-    return g, cosine - zeta * ratio * g, 1 - cosine - zeta * ratio * g
 
 
 def closed_motion(
@@ -177,8 +154,9 @@ def doubled_motion(
     """
     loss = 2 * zeta * ratio
     stiffness = ratio * ratio
-    size = np.max(np.abs(s) * (max(table.orders) + np.real(ratio) * (1 + 2 * np.real(zeta))))
-    doublings = int(np.ceil(np.log2(np.maximum(size, 1.0))))
+    size = np.abs(s) * (max(table.orders) + np.real(ratio) * (1 + 2 * np.real(zeta)))
+    largest = np.max(size, initial=1.0, where=np.isfinite(size))
+    doublings = int(np.ceil(np.log2(largest)))
     part = (s + 0 * loss) / 2.0**doublings
     square = part * part
     # Derivatives j of g′ at 0, times part^j. Below, `bends` contains the derivatives of C″.
@@ -245,34 +223,17 @@ def motion(
 ) -> tuple:
     """Return δ and δ′ at the time s after the start of a contact.
 
-    Each element is computed by the formula that keeps all digits: :func:`closed_motion` or
-    :func:`doubled_motion`.
+    They are computed by doublings if the closed form loses digits for one of the elements.
     """
     time, frequency, damping = np.real(s), np.real(ratio), np.real(zeta)
     square = time * time
-    damped = damping * damping
-    delicate = square * (frequency * frequency * np.abs(1 - damped)) < 1
+    delicate = square * (frequency * frequency * np.abs(1 - damping * damping)) < 1
+    delicate = delicate | (damping > UNDERDAMPED)
     for k in table.orders:
         apart = frequency - k
-        delicate = delicate | (square * (apart * apart + damped) < 1)
-    if not np.any(delicate):
-        return closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
-    if np.all(delicate):
-        return doubled_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
-    with np.errstate(all="ignore"):  # for elements whose closed form is replaced below
-        found = closed_motion(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)
-    position, rate = found.gap, found.speed
-    delicate = np.broadcast_to(delicate, position.shape)
-
-    def some(values: Values) -> Values:
-        return np.broadcast_to(values, position.shape)[delicate] if np.ndim(values) else values
-
-    start = some(s), some(gap), some(u)
-    of_contacts = some(gravity), some(ratio), some(zeta)
-    moved = [some(each) for each in waves]
-    doubled = doubled_motion(*start, table, moved, *of_contacts, loads=False)
-    position[delicate], rate[delicate] = doubled.gap, doubled.speed
-    return position, rate
+        delicate = delicate | (square * (apart * apart + damping * damping) < 1)
+    method = doubled_motion if np.any(delicate) else closed_motion
+    return method(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
 
 
 def forcing(

@@ -9,7 +9,7 @@ from functools import cache
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve, minimize_scalar
 
 from bouncing_ball_beyond.balls import Corrected, SpringDamper
 
@@ -85,6 +85,37 @@ def free_impact(ball, u):
     by_load = (impulse(u, load) - impulse(u, -load)) / (2 * load)
     by_speed = (impulse(u + step) - impulse(u - step)) / (2 * step)
     return w / u, duration, centroid, by_load - centroid * by_speed
+
+
+def weakest_grip(ball, amplitude, harmonics=SINE):
+    """The smallest depth, or force, of the steady motion in contact, divided by its value at rest.
+
+    The amplitude grows in four periods from 0, and the state after them is the first guess.
+    """
+    deep = brentq(lambda p: acceleration(ball, -p, 0.0) - 1, 0.0, 1.0, xtol=1e-16)
+
+    def moved(y, grown=1e-9, periods=1):
+        def motion(t, y):
+            share = np.sin(np.pi / 2 * min(t / grown, 1.0)) ** 4
+            pull = 1 + share * amplitude * waveform(harmonics, t, 2)
+            return [y[1], acceleration(ball, *y) - pull]
+
+        end = 2 * np.pi * periods
+        return solve_ivp(
+            motion, (0, end), deep * y, "DOP853", rtol=1e-12, atol=1e-15, dense_output=True
+        )
+
+    start = moved(np.array([-1.0, 0.0]), 8 * np.pi, 4).y[:, -1] / deep
+    steady = fsolve(lambda y: moved(y).y[:, -1] / deep - y, start, xtol=1e-10)
+    motion = moved(steady).sol
+
+    def grip(t):
+        gap, rate = motion(t)
+        return -gap / deep if ball.release == "displacement" else acceleration(ball, gap, rate)
+
+    times = np.linspace(0.1, 2 * np.pi + 0.1, 2001) % (2 * np.pi)
+    near = times[np.argmin([grip(t) for t in times])]
+    return minimize_scalar(grip, bounds=(near - 0.01, near + 0.01), options={"xatol": 1e-9}).fun
 
 
 @cache

@@ -11,7 +11,17 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pytest
-from integrated import around, flight, free_impact, heights, instant, leg, touching, waveform
+from integrated import (
+    around,
+    flight,
+    free_impact,
+    heights,
+    instant,
+    leg,
+    touching,
+    waveform,
+    weakest_grip,
+)
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
@@ -291,15 +301,6 @@ def orbit_over_two_periods(pair):
 
 
 @question
-def orbit_of_motion(pair):
-    found = bb.orbit_of_motion(pair.ball, **pair.thrown)
-    closes(found)
-    (_, u), impacts = pair.motion[-1], found.impacts
-    assert impacts == 1
-    assert_close(u, found.speeds, 0.05)
-
-
-@question
 def limits(pair):
     is_special(pair.limits.saddle_node, 1)
     is_special(pair.limits.period_doubling, -1)
@@ -476,6 +477,17 @@ def permanent_contact(pair):
     """The table never falls faster than a ball."""
     weak = pair.thrown | {"amplitude": 0.3}
     assert bb.motion_of(pair.ball, **weak).kind == "permanent contact"
+
+
+@question
+def threshold_of_permanent_contact(pair):
+    """The weakest grip of the steady motion is zero."""
+    found = bb.permanent_contact(pair.ball, table=pair.table)
+    if pair.ball.has_duration:
+        assert_close(weakest_grip(pair.ball, found, pair.harmonics), 0.0)
+    else:
+        tau = np.linspace(0, PERIOD, 20_001)
+        assert_close(found * waveform(pair.harmonics, tau, 2).min(), -1.0)
 
 
 @question

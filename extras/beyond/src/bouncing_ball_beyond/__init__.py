@@ -43,7 +43,6 @@ _MODULES = {
     "lyapunov": "motions",
     "motion_of": "motions",
     "orbit_diagram": "motions",
-    "orbit_of_motion": "motions",
     "OrbitNotFound": "periodic",
     "PeriodicOrbit": "periodic",
     "orbit": "periodic",

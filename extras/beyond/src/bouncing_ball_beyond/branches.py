@@ -23,12 +23,7 @@ from bouncing_ball_beyond.march import (
     newton,
 )
 from bouncing_ball_beyond.search import single
-from bouncing_ball_beyond.special_orbits import (
-    Crossings,
-    crossings_of,
-    halved_at,
-    located,
-)
+from bouncing_ball_beyond.special_orbits import crossings_of, halved_at, located
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -282,8 +277,6 @@ def followed(
             passed = [each for each in passed if each.number + 1 < len(orbits)]
         else:
             end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
-            if not equations.kind:
-                end += _in_words_of_symmetry(crossings, i, equations.along[0].name)
         special = tuple(each.orbit for each in passed)
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))
@@ -318,23 +311,3 @@ def _in_words(
     folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
     return f"{here} is reached, on the other side of the start than the goal{turned}"
-
-
-def _in_words_of_symmetry(crossings: Crossings, row: int, name: str) -> str:
-    """Text about points at which a multiplier passes 1, but the parameter does not turn back.
-
-    The text is "" if there are no such points.
-    """
-    rising = crossings.slopes[..., -1]
-    symmetric = (crossings.row == row) & (crossings.kind == "saddle-node")
-    symmetric &= rising[0] * rising[1] > 0
-    if not symmetric.any():
-        return ""
-    before, after = crossings.values[:, symmetric]
-    below, above = crossings.ends[:, symmetric, -1]
-    places = (below * after - above * before) / (after - before)
-    near = ", ".join(f"{place:.3g}" for place in places)
-    return (
-        f"; near {name} = {near} a multiplier passes 1 without a saddle-node: there orbits of less"
-        " symmetry branch off"
-    )

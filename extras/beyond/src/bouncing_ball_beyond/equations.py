@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, H, Impact
-from bouncing_ball_beyond.chains import dense, product_of, solve_bordered, solved_or_nan
+from bouncing_ball_beyond.chains import product_of, solve_bordered, solved_or_nan
 from bouncing_ball_beyond.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables import FUNDAMENTAL, SINE, Table
 
@@ -123,15 +123,6 @@ class Flights(NamedTuple):
         times = first[..., np.newaxis] + 2 * np.pi * np.arange(turns)
         times = times.reshape(*self.leaves.shape, phases.shape[-1] * turns)
         return np.fmin(times, self.flight[..., np.newaxis])
-
-
-def row_of(ball: Ball, times: NDArray, speeds: NDArray, T: Any, *values: Any) -> NDArray:
-    """Row z from the unknowns of impacts and the values of the parameters that may change.
-
-    T is left out if the impacts have no duration.
-    """
-    columns = np.stack([times, speeds, T][: ball.unknowns], axis=-1)
-    return np.append(columns.ravel(), values)
 
 
 def _some(values: Any, which: Any) -> Any:
@@ -365,12 +356,6 @@ class OrbitEquations:
             for name in self.kinds
         ]
         return np.stack(columns, axis=1)
-
-    def residuals(self, z: NDArray) -> tuple[NDArray, NDArray]:
-        """Residuals, shape (rows, kq), and their Jacobian, shape (rows, kq, N)."""
-        linear = self.linearized(z)
-        legs = linear.legs.reshape(len(z), self.size)
-        return legs, dense(linear.derivatives).reshape(len(z), self.size, self.length)
 
     def turn(self, linear: LinearizedLegs) -> NDArray:
         """tr/(1 + det). It is ±1 if a multiplier is ±1, and in between if orbits are stable."""

@@ -21,10 +21,8 @@ from scipy.special import stdtrit
 
 from bouncing_ball_beyond.balls import Ball, H, check_ball, checked, whole_number
 from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.equations import OrbitEquations, row_of
 from bouncing_ball_beyond.impact_map import impact_map
 from bouncing_ball_beyond.one_ball import PERIOD
-from bouncing_ball_beyond.periodic import OrbitNotFound, PeriodicOrbit, solved
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     axis,
@@ -579,7 +577,6 @@ OF_MOTIONS = DESCRIPTIONS | {
     "followed": ("number of impacts for which the ball was followed", "", "1"),
     "end_phase": ("phase of the table at an impact of the motion", "φ", "rad"),
     "end_velocity": ("velocity of the ball before that impact", "z′", "1"),
-    "in_words": ("the kind of the motion, and for how long the ball was followed", "", "1"),
     "speed": ("closing speed of the first impact", "u", "1"),
     "destination": ("number of the motion on which a start ends", "", "1"),
     "motion": ("number of a motion", "", "1"),
@@ -629,7 +626,6 @@ def motion_of(
         - ``followed``: number of impacts for which the ball was followed.
         - ``end_phase``, ``end_velocity``: phase of the table at one impact of the motion, and
           velocity of the ball before this impact.
-        - ``in_words``: description of the motion as text.
 
     Raises
     ------
@@ -652,26 +648,8 @@ def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) 
     found = ends.copy()
     found["end_velocity"] = amplitude * table(ends["end_phase"], 1) - found.pop("end_speed")
     del found["rested"]
-    words = zip(ends["kind"], ends["followed"], ends["reason"], strict=True)
-    found["in_words"] = np.array([in_words(*each) for each in words])
     found |= {name: ends[name].astype(str) for name in ("kind", "reason")}
     return dataset(grid, found, OF_MOTIONS)
-
-
-def in_words(kind: str, followed: int, reason: str) -> str:
-    """Describe a motion as text.
-
-    Examples
-    --------
-    >>> in_words("periodic", 50, "")
-    'periodic, found within 50 impacts'
-    """
-    if kind == CHAOTIC:
-        return f"{kind} in all {followed} impacts followed; more may show a long transient"
-    if kind == UNDECIDED:
-        return f"{kind} after {followed} impacts: {reason}"
-    unknown = f"; its period is not known: {reason}" if reason else ""
-    return f"{kind}, found within {followed} impacts{unknown}"
 
 
 def lyapunov(
@@ -966,57 +944,3 @@ def orbit_diagram(
     grid = grid.expand_dims(start=np.arange(len(passes) * starts), axis=1)
     recorded = dataset(grid, variables, OF_MOTIONS, impact=np.arange(samples))
     return dataset_of(grid, balls.amplitude, table, ends).merge(recorded)
-
-
-def orbit_of_motion(
-    ball: Ball,
-    *,
-    amplitude: Values,
-    phase: Values = 0.0,
-    velocity: Values = None,
-    relative_velocity: Values = None,
-    impacts: int = 2000,
-    table: Table = SINE,
-) -> PeriodicOrbit:
-    """Find the periodic orbit on which a ball ends, and correct it by Newton's method.
-
-    Parameters
-    ----------
-    ball, amplitude, phase, velocity, relative_velocity, impacts, table
-        As in :func:`motion_of`. All must be numbers.
-
-    Returns
-    -------
-    PeriodicOrbit
-
-    Raises
-    ------
-    OrbitNotFound
-        If the motion does not repeat, or if the ball comes to rest in its motion.
-    ValueError
-        As :func:`.simulate`.
-
-    Examples
-    --------
-    >>> from bouncing_ball_beyond import Rigid
-    >>> orbit = orbit_of_motion(Rigid(0.5), amplitude=1.6)
-    >>> orbit.impacts, orbit.periods
-    (2, 2)
-    """
-    grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
-    if grid.ndim:
-        raise ValueError("ball, amplitude, phase, velocity: must be a single ball and numbers")
-    ends = ends_of(balls, impacts)
-    words = in_words(*(ends[name][0] for name in ("kind", "followed", "reason")))
-    k = int(ends["impacts"][0])
-    m = int(ends["periods"][0])
-    if not k:
-        raise OrbitNotFound(f"the motion does not end on an orbit: {words}")
-    state = ends["end_phase"], ends["end_speed"]
-    on_orbit = Balls(ball, balls.amplitude, np.zeros(1), *state, table)
-    turns, tau, u, T, duration, *_ = bounce(on_orbit, k)[0][:, :, 0].T
-    if are_rests(T, duration).any():
-        raise OrbitNotFound(f"the ball rests on the table in its motion: {words}")
-    z = row_of(ball, PERIOD * turns + tau, u, T, balls.amplitude)
-    equations = OrbitEquations(ball, k, m, table=table)
-    return solved(equations, z, "the orbit on which the ball ends")

@@ -24,27 +24,13 @@ from bouncing_ball_beyond.equations import (
     PeriodicOrbit,
     alone,
 )
-from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import (
     all_orbits,
-    first_turn,
     near_instants,
     rows_of,
     shortest_contacts,
 )
 from bouncing_ball_beyond.tables import SINE, Table, check_table
-
-
-def solved(equations: OrbitEquations, z: NDArray, what: str) -> PeriodicOrbit:
-    """Return the orbit near a guess z, shape (N,).
-
-    Raises OrbitNotFound if Newton's method does not converge. ``what`` names the orbit in the
-    message.
-    """
-    solution = newton(equations, z[np.newaxis], iterations=40)
-    if not solution.found[0]:
-        raise OrbitNotFound(f"{what} is not found: Newton's method does not converge")
-    return equations.orbit(first_turn(equations, solution.z)[0])
 
 
 def orbit(

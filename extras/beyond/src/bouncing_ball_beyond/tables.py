@@ -444,10 +444,6 @@ class Table:
             for part in zip(*((k * x, k * k * y, k**3 * x) for k, x, y in waves), strict=True)
         )
 
-    def turned(self, waves: Values) -> Values:
-        """Return x and y of the harmonics of w′."""
-        return [each for k, x, y in self.each_wave(waves) for each in (-k * y, k * x)]
-
     def flights(self, t: Values, gap: Values, w: Values, waves: Values) -> tuple:
         """Return δ, δ′ and δ″ at the time t after a release. Short flights keep all digits.
 

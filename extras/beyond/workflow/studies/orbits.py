@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
+from bouncing_ball_beyond.chains import solve_bordered
 from bouncing_ball_beyond.continuation import follow
 from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
@@ -67,11 +68,10 @@ def solved(
     """
     steps = 1j * H * np.eye(z.shape[1])
     for _ in range(iterations):
-        residuals, jacobian = equations.residuals(z)
+        linear = equations.linearized(z)
         gradient = np.stack([conditions(z + step).imag / H for step in steps], axis=-1)
-        matrix = np.concatenate([jacobian, gradient], axis=1)
-        values = np.concatenate([residuals, conditions(z)], axis=1)
-        z = z - np.linalg.solve(matrix, values[..., np.newaxis])[..., 0]
+        values = linear.legs[..., np.newaxis], gradient, conditions(z)[..., np.newaxis]
+        z = z - solve_bordered(linear.derivatives, *values)[..., 0]
     return z
 
 

@@ -1,7 +1,5 @@
 """Curves of special orbits: closed forms, flights sampled anew, and orbits on both sides."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -155,19 +153,15 @@ def test_the_grazing_of_an_impact_is_that_of_a_flight(ball, to):
     assert more.values[-1] < grazing.amplitude
     vanishing = follow(more.orbits[-1], to=4.0).first("grazing of an impact")
     assert vanishing.impacts == 2
-    ranges = {"amplitude": (0.5, 4.0), "restitution": (0.4, 0.6)}
-    curves = [special_curve(each, ranges=ranges) for each in (grazing, vanishing)]
-    assert [each.impacts for each in curves] == [1, 1]
-    first, second = (np.sort(each.z[[0, -1], -2]) for each in curves)
-    assert first == pytest.approx(second, rel=1e-9)
+    assert vanishing.amplitude == pytest.approx(grazing.amplitude, rel=1e-9)
+    with pytest.raises(OrbitNotFound, match=r"a curve must start at .*: grazing of a flight"):
+        special_curve(vanishing)
 
 
 def test_wrong_arguments_are_named(rigid):
     doubling = rigid.first("period doubling")
     with pytest.raises(OrbitNotFound, match="kind = '': a curve must start at a special orbit"):
         special_curve(rigid.orbits[0])
-    with pytest.raises(OrbitNotFound, match="the only impact of the orbit vanishes"):
-        special_curve(replace(doubling, kind="grazing of an impact"))
     with pytest.raises(ValueError, match="along = 'stiffness'"):
         special_curve(doubling, along=("amplitude", "stiffness"))
     with pytest.raises(

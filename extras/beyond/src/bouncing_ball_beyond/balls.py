@@ -159,14 +159,6 @@ class Ball:
         """T of a free impact; 0 for impacts without a duration."""
         return 0.0 * np.asarray(u)
 
-    def elapsed_contact(self, u: Values) -> Values:
-        """Time from the start of a contact to the impact that replaces it; 0 for other balls."""
-        return 0.0 * u
-
-    def remaining_contact(self, u: Values) -> Values:
-        """Time from the impact that replaces a contact to the contact's end; 0 for other balls."""
-        return 0.0 * u
-
     def loop_parameters(self, table: Table) -> tuple | None:
         """Arguments (r, ϖ, ζ) of :func:`.one_ball.impacts`; None if loops cannot be used."""
         return None
@@ -830,15 +822,6 @@ class Corrected(Ball):
     def start(self, u: Values) -> Values:
         """Gap -u t_c(u) at which the impact takes place."""
         return -u * self.of.signature(u).centroid
-
-    def elapsed_contact(self, u: Values) -> Values:
-        """Time t_c from the start of the contact to the impact that replaces it."""
-        return self.of.signature(u).centroid
-
-    def remaining_contact(self, u: Values) -> Values:
-        """Time D - t_c from the impact that replaces the contact to the end of the contact."""
-        signature = self.of.signature(u)
-        return signature.duration - signature.centroid
 
     def contact(
         self,

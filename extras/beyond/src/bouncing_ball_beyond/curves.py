@@ -21,7 +21,7 @@ from bouncing_ball_beyond.equations import (
     OrbitNotFound,
     PeriodicOrbit,
 )
-from bouncing_ball_beyond.forms import SUCH, one_impact_less
+from bouncing_ball_beyond.forms import SUCH
 from bouncing_ball_beyond.march import newton, unit
 from bouncing_ball_beyond.paths import path_of, usual_range
 
@@ -45,8 +45,7 @@ def special_curve(
     ----------
     special : PeriodicOrbit
         Special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
-        followed as the period doubling of the orbit of half the period. The grazing of an impact is
-        followed as the grazing of a flight of the orbit without this impact.
+        followed as the period doubling of the orbit of half the period.
     along : tuple of two names
         Two parameters as in `follow`.
     ranges : mapping of names to (low, high), optional
@@ -90,7 +89,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
             f"along = {brief(along)}: must be the names of two different parameters, such as"
             " ('amplitude', 'restitution')"
         )
-    allowed = KINDS.keys() - {"lost release", "vanishing flight"}
+    allowed = KINDS.keys() - {"lost release", "vanishing flight", "grazing of an impact"}
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"
@@ -98,9 +97,6 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
         )
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     equations, z = special.on(*paths)
-    if special.kind == "grazing of an impact":
-        others, row = one_impact_less(equations, z)
-        return replace(others, kind="grazing of a flight"), row
     if special.kind == "period halving":
         half, rows = equations.halved(z[np.newaxis])
         return replace(half, kind="period doubling"), rows[0]

@@ -17,7 +17,6 @@ from bouncing_ball_beyond.equations import OrbitEquations
 from bouncing_ball_beyond.laws import ForceLaw
 from bouncing_ball_beyond.march import newton
 from bouncing_ball_beyond.search import AT_FOLD, guess_of_instants, rows_of
-from bouncing_ball_beyond.special_orbits import special_near
 from bouncing_ball_beyond.tables import SINE, Table, Values
 
 QUANTITIES = (
@@ -29,12 +28,6 @@ QUANTITIES = (
     "period_doubling",
 )
 """Quantities of the n-T orbit at an amplitude, and the amplitudes of its two bifurcations."""
-
-SAMPLES = 201
-"""Number of stretches at which the error law is sampled to bracket a threshold.
-
-At half and at twice: no effect on 12,000 thresholds on a sine.
-"""
 
 
 class FreeImpact(NamedTuple):
@@ -338,12 +331,29 @@ def law_thresholds(
 def _first_stretch(
     impact: FreeImpact, amplitude: NDArray, tolerance: float, name: str, table: Table
 ) -> NDArray:
-    """Find the smallest stretch γ at which an error exceeds the tolerance; see `SAMPLES`."""
+    """Find the smallest stretch γ at which an error exceeds the tolerance.
+
+    Samples bracket this γ.
+    """
     shift = impact.shift
     # The law has orbits if |C - s| is below Λ max W′. It does not apply to contacts as long as 4π.
     end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
     end = np.fmin(end, 4 * np.pi / impact.duration)
-    places = np.multiply.outer(np.linspace(0, 1, SAMPLES), end)
+    if table.is_sine:
+        # The error is concave. The error of the height is largest if -w″ rises as fast as the depth
+        # of the instant. The error of the phase is largest if ψ falls as fast as the delay grows.
+        # `turns` has the values of C - s at these maxima.
+        deeper = shift * impact.line + impact.speed * impact.centroid
+        share = shift / (shift + impact.centroid)
+        turns = {
+            "max_height": deeper * amplitude / np.hypot(shift, deeper),
+            "phase": np.sqrt(np.maximum(np.square(amplitude) - share**2, 0)),
+        }
+        largest = np.where(shift > 0, np.maximum((impact.line - turns[name]) / shift, 0), 0)
+        places = np.array(np.broadcast_arrays(0.0, largest, end))
+    else:
+        # Next to the saddle-node, errors leave the tolerance at short stretches.
+        places = np.multiply.outer(np.linspace(0, 1, 201) ** 3, end)
 
     def error(stretch: Values, amplitude: Values, *fields: NDArray) -> Values:
         stretched = FreeImpact(*fields).stretched(stretch)
@@ -471,13 +481,14 @@ def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArra
     if table.is_sine:
         # On a sine the velocity x and -w″ = y determine amplitude and phase.
         amplitude, phase = table.amplitude_at(x, y)
-    equations = OrbitEquations(row, 1, periods, table=table)
-    delay = impact.centroid - row.elapsed_contact(impact.speed)
+    equations = OrbitEquations(row, 1, periods, table=table, kind=kind)
+    delay = impact.centroid + row.start(impact.speed) / impact.speed
     speed = impact.half + x - (1 - y) * delay
     guess = [phase - delay, speed, row.free(speed)][: equations.unknowns]
     rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
-    z, good = special_near(equations, kind, rows)
-    return np.where(good & (z[:, -1] > 0), z[:, -1], np.nan)
+    solution = newton(equations, rows, iterations=20)
+    amplitude = solution.z[:, -1]
+    return np.where(solution.found & (amplitude > 0), amplitude, np.nan)
 
 
 def _values(equations: OrbitEquations, z: NDArray) -> dict:
@@ -490,8 +501,9 @@ def _values(equations: OrbitEquations, z: NDArray) -> dict:
     table = equations.table
     velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
     # An instantaneous impact replaces a contact that starts earlier and ends later.
-    before = equations.ball.elapsed_contact(speed)
-    after = equations.ball.remaining_contact(speed)
+    ball = equations.ball
+    before = -ball.start(speed) / speed
+    after = ball.signature(speed).duration - before if ball.below_table else 0.0
     approach = amplitude * table(touch, 1) - speed + before
     touch = touch - before
     leaves = leaves + after

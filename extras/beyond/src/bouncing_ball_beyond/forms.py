@@ -334,16 +334,6 @@ def one_impact_more(
     return more, solution.z[0], solution.tangent[0]
 
 
-def one_impact_less(equations: OrbitEquations, z: NDArray) -> tuple[OrbitEquations, NDArray]:
-    """Remove the slowest impact of an orbit. Raises OrbitNotFound if it is the only impact."""
-    if equations.impacts == 1:
-        raise OrbitNotFound("the only impact of the orbit vanishes: there is no orbit without it")
-    q = equations.unknowns
-    slow = np.abs(z[1 : equations.size : q]).argmin()
-    without = np.delete(z, np.arange(slow * q, slow * q + q))
-    return replace(equations, impacts=equations.impacts - 1), without
-
-
 @dataclass(frozen=True)
 class GrazingForm:
     """Result of `grazing_form`.

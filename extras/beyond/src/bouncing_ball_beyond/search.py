@@ -84,7 +84,8 @@ def guess_of_instants(
             psi = table.phase_of_slope((u - np.pi * periods) / amplitude, side)
             if np.all(np.abs(step) < 1e-7 * u):
                 break
-    touch = psi - np.where(known, centroid, 0.0) + ball.elapsed_contact(u)
+    # An instantaneous impact of the corrected model takes place at ψ itself.
+    touch = psi - np.where(known, centroid, 0.0) - ball.start(u) / u
     free = ball.free(u)
     impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: ball.unknowns]
     return np.stack(np.broadcast_arrays(*impacts, amplitude), axis=-1)

@@ -149,17 +149,6 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     return nearest, found & (least < 1e-6 * np.maximum(largest, 0.1))
 
 
-def special_near(
-    equations: OrbitEquations, kind: str, z: NDArray, iterations: int = 20
-) -> tuple[NDArray, NDArray]:
-    """Find special orbits of one kind near guesses z, shape (rows, N).
-
-    Returns the orbits, shape (rows, N), and whether each was found.
-    """
-    solution = newton(replace(equations, kind=kind), z, iterations=iterations)
-    return solution.z, solution.found
-
-
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     """Find the period halving in a step. There the orbits merge with orbits of half the period.
 
@@ -168,10 +157,11 @@ def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:
     if Newton's method fails, or if the period doubling is far from the step.
     """
     half, near = equations.halved(ends)
-    solution, found = special_near(half, "period doubling", near.mean(axis=0, keepdims=True))
-    if not found[0]:
+    doubling = replace(half, kind="period doubling")
+    solution = newton(doubling, near.mean(axis=0, keepdims=True), iterations=20)
+    if not solution.found[0]:
         return None
-    twice = half.doubled(solution)[1]
+    twice = half.doubled(solution.z)[1]
     z = equations.later(twice, np.round((ends[0, 0] - twice[0, 0]) / (2 * np.pi)))[0]
     units = equations.scales(ends[:1])[0]
     reach = np.abs((ends[1] - ends[0]) / units).max()

@@ -522,7 +522,7 @@ def exact_errors(
     *,
     amplitude: ArrayLike,
     n: int = 1,
-    simple: Callable[[Ball], Ball] | FreeImpact | None = None,
+    simple: Callable[[Ball], Ball] | None = None,
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
 ) -> dict:
@@ -532,10 +532,9 @@ def exact_errors(
     ----------
     ball, amplitude, n, quantities, table
         As in :func:`contact_values`.
-    simple : callable or FreeImpact, optional
+    simple : callable, optional
         Function that maps the ball to the ball of the simple model, such as ``Corrected``. The
-        default is the restitution model with the r(v) of the ball. To save time, give the
-        :func:`free_impact` of the ball instead.
+        default is the restitution model with the r(v) of the ball.
 
     Returns
     -------
@@ -550,12 +549,12 @@ def exact_errors(
     >>> round(float(error["max_height"]), 6)
     -0.000121
     """
-    if not (simple is None or isinstance(simple, FreeImpact) or callable(simple)):
+    if not (simple is None or callable(simple)):
         raise ValueError(f"simple = {brief(simple)}: must map a ball to a ball, such as Corrected")
     given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
     exact = contact_values(ball, **given)
-    if simple is None or isinstance(simple, FreeImpact):
-        reference = restitution_values(simple or free_impact(ball, n), amplitude, table)
+    if simple is None:
+        reference = restitution_values(free_impact(ball, n), amplitude, table)
     else:
         reference = contact_values(simple(ball), **given)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -565,8 +564,8 @@ def exact_errors(
 
 def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
     """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
-    if simple is None or isinstance(simple, FreeImpact):
-        values = restitution_values(simple or free_impact(ball, n), amplitude, table)
+    if simple is None:
+        values = restitution_values(free_impact(ball, n), amplitude, table)
         doubles = np.asarray(amplitude) > values["period_doubling"]
         of_simple = doubles & np.isfinite(values["max_height"])
     else:
@@ -672,9 +671,6 @@ def error_thresholds(
     whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)
     known: dict = {"amplitude": amplitude, "n": n, "simple": simple, "table": table}
-    if simple is None and isinstance(contacts, Ball):
-        # All stretched contacts have the same restitution coefficient.
-        known["simple"] = free_impact(path(1.0), n)
     shape = rows_of(path(high), amplitude=amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))

@@ -144,22 +144,14 @@ class ShakerAnswer:
         ]
         return "\n".join([*lines, "", *self._sentences()])
 
-    def _acceleration(self) -> str:
-        """Text with the maximum acceleration divided by gravity, and with Λ if it differs."""
-        greatest = self.amplitude * self.table.acceleration
-        if np.isclose(greatest, self.amplitude):
-            return f"Λ = {greatest:.4g} times gravity"
-        return (
-            f"{greatest:.4g} times gravity; the scale of its waveform is Λ = {self.amplitude:.4g}"
-        )
-
     def _sentences(self) -> list[str]:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{1e3 * self.displacement:.4g} mm at {self.frequency:.4g} Hz,"
-            f" with an acceleration of {self._acceleration()}."
+            f" with an acceleration of {self.amplitude * self.table.acceleration:.4g} times gravity"
+            f" (Λ = {self.amplitude:.4g})."
             f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",

@@ -218,8 +218,6 @@ class Table:
         values = finite_row("values", values)
         if len(values) < 3:
             raise ValueError("values: must be at least three samples of one period")
-        if not isinstance(acceleration, bool | np.bool):
-            raise ValueError(f"acceleration = {acceleration!r}: must be True or False")
         last = (len(values) - 1) // 2
         if harmonics is not None:
             last = min(highest(harmonics), last)

@@ -43,7 +43,7 @@ class FreeImpact(NamedTuple):
     restitution, duration, centroid : array
         r, D and t_c.
     slope, curvature : array
-        First and second derivative of r(v) v with respect to v; ``slope`` is called b.
+        First and second derivative of r(v) v with respect to v; ``slope`` is r̂.
     centroid_slope : array
         d(v t_c)/dv.
     load : array
@@ -87,12 +87,12 @@ class FreeImpact(NamedTuple):
 
     @property
     def shift(self) -> NDArray:
-        """s = σ/(1 + b). On a contact, C - s replaces the C of the restitution model."""
+        """s = σ/(1 + r̂). On a contact, C - s replaces the C of the restitution model."""
         return self.load / (1 + self.slope)
 
     @property
     def doubling(self) -> NDArray:
-        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the -w″ of the restitution model's doubling."""
+        """2(1 + r r̂)/[(1 + r)(1 + r̂)], the -w″ of the restitution model's doubling (Eq. R8)."""
         return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 
@@ -168,7 +168,7 @@ def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDAr
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
-    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R1)."""
+    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R8)."""
     amplitude = off_rounding(impact, amplitude, table)
     phase, lift, _, _ = table.instant(impact.line, amplitude)
     anywhere = 0 * (impact.line + amplitude)
@@ -341,8 +341,8 @@ def _first_stretch(
     end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
     end = np.fmin(end, 4 * np.pi / impact.duration)
     if table.is_sine:
-        # The error is concave. The error of the height is largest if Y₁ rises as fast as the depth
-        # of the instant. The error of the phase is largest if ψ₁ falls as fast as the delay grows.
+        # The error is concave. The error of the height is largest if -w″ rises as fast as the depth
+        # of the instant. The error of the phase is largest if ψ falls as fast as the delay grows.
         # `turns` has the values of C - s at these maxima.
         deeper = shift * impact.line + impact.speed * impact.centroid
         share = shift / (shift + impact.centroid)

@@ -69,6 +69,8 @@ PARTS = {
         "extras/beyond/docs/first-hour",
         "extras/beyond/docs/answers",
         "extras/beyond/docs/orbits",
+        "extras/beyond/docs/tables",
+        "extras/beyond/docs/named-laws",
         "extras/beyond/docs/laws",
         "extras/beyond/docs/thesis",
         "extras/beyond/docs/gallery",

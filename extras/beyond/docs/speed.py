@@ -3,6 +3,7 @@
 `make speed` renews the page, in a few minutes.
 """
 
+import os
 import platform
 import time
 from pathlib import Path
@@ -21,19 +22,16 @@ TSUJI = bb.tsuji(restitution=0.65, duration=0.16, speed=3.8)
 START = bb.orbit(SPRING, amplitude=0.8)
 DOUBLING = bb.follow(START, to=1.3).first("period doubling")
 MANY = bb.orbit(SPRING.at(restitution=np.linspace(0.6, 0.7, 200)), amplitude=0.8)
-OF_TSUJI = bb.orbit(TSUJI, amplitude=0.8)
 HERTZ = bb.hunt_crossley(1000.0, 0.3)
 
 CALLS = {
     "an n-T orbit": lambda: bb.orbit(SPRING, amplitude=0.8),
     "an n-T orbit, Tsuji's law": lambda: bb.orbit(TSUJI, amplitude=0.8),
-    "`limits` of n-T orbits": lambda: bb.limits(SPRING),
     "`limits` of n-T orbits, Tsuji's law": lambda: bb.limits(TSUJI),
     "all `orbits` with 3 impacts in 3 periods, r = 0.5": lambda: bb.orbits(
         bb.Rigid(0.5), impacts=3, periods=3, amplitude=1.6
     ),
     "no n-T orbit, Hunt and Crossley's law": lambda: missing(HERTZ, amplitude=0.2),
-    "a branch, Tsuji's law": lambda: bb.follow(OF_TSUJI, to=1.3),
     "200 branches side by side": lambda: bb.follow(MANY, to=1.3),
     "a `cascade` to 64 impacts": lambda: bb.cascade(DOUBLING, to=1.41, impacts=64),
     "2,000 impacts of one ball, ϖ = 20": lambda: bb.simulate(SPRING, amplitude=2.0, impacts=2000),
@@ -65,6 +63,14 @@ def seconds(call) -> float:
     return time.process_time() - start
 
 
+def processor() -> str:
+    """The name of the processor, where the system has it."""
+    file = Path("/proc/cpuinfo")
+    lines = file.read_text("utf-8").splitlines() if file.exists() else []
+    names = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor()
+
+
 def text(value: float) -> str:
     """A time with two digits, such as 130 ms."""
     number, unit = (value, "s") if value >= 1 else (1e3 * value, "ms")
@@ -78,11 +84,13 @@ def main() -> None:
         f"""# How long a call takes
 
 `make speed` measures the times and writes this page. The table lists processor times with one
-thread and with numba ({platform.machine()}, Python {platform.python_version()}, numpy
-{np.__version__}). All calls are measured in each of {ROUNDS} rounds, and each time is the median of
-the rounds. If the table names no ball, the ball is `SpringDamper(20.0, restitution=0.65)`. The ball
-with Tsuji's law has the same restitution coefficient and nearly the same duration of contact. Its
-contacts have no closed form, so they are integrated numerically.
+thread and with numba; each is the median of {ROUNDS} rounds of all calls. If the table names no
+ball, the ball is `SpringDamper(20.0, restitution=0.65)`. The ball with Tsuji's law has the same
+restitution coefficient and nearly the same duration of contact. Its contacts have no closed form,
+so they are integrated numerically.
+
+Machine: {os.cpu_count()} processors, {processor()}, {platform.machine()}, at a load of
+{os.getloadavg()[0]:.0f}; Python {platform.python_version()}, numpy {np.__version__}.
 
 | call | time |
 | --- | --- |

@@ -1,6 +1,6 @@
 """The shift of the period doubling on tables of any waveform, by contacts of this file.
 
-Nothing of the library is used. With X = w′, Y = -w″ and w‴ at the doubling of the restitution
+Nothing of the library is used. With w′, Y = -w″ and w‴ at the doubling of the restitution
 model, the doubling of the contact is at Λ(1 + K), to first order in its duration (Appendix C).
 """
 
@@ -245,7 +245,7 @@ def test_random_tables_and_more_periods(seed):
 
 
 def test_a_law_whose_restitution_falls_with_the_speed():
-    """Here ΔG counts: without it K would be another number."""
+    """Here r̂′ and σ′ count: without them K would be another number."""
     law = shift_by_law(HuntCrossley(1.0).signature, THREE, 1)
     left = [
         ratio * shift_of_contact(HuntCrossley(ratio), THREE, 1) - law for ratio in (100.0, 200.0)

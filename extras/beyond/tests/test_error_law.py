@@ -119,7 +119,7 @@ def test_corrected_model_is_of_second_order():
 
 
 def test_free_impact_of_a_restitution_that_falls_with_the_speed():
-    """r = e^{-v/10}: b = r(1 - v/10), and d²(rv)/dv² = r(v/100 - 1/5)."""
+    """r = e^{-v/10}: r̂ = r(1 - v/10), and d²(rv)/dv² = r(v/100 - 1/5)."""
     impact = free_impact(Rigid(lambda v: np.exp(-v / 10)), n=2)
     r, v = impact.restitution, impact.speed
     assert (1 + r) * v == pytest.approx(4 * np.pi, rel=1e-14)
@@ -162,10 +162,7 @@ def test_law_thresholds_of_height_solve_the_quadratic_of_the_article():
     deeper = shift * line + impact.speed * impact.centroid
     u = 1 / found["max_height"]
     defects = [
-        (deeper**2 + shift**2) * u**2
-        + 2 * (deeper * (rise + error * height) - line * shift) * u
-        + 2 * rise * error * height
-        + (error * height) ** 2
+        (rise + error * height + deeper * u) ** 2 + (line - shift * u) ** 2 - amplitude**2
         for error in (-0.01, 0.01)
     ]
     assert np.abs(defects).min(axis=0).max() < 1e-12
@@ -313,7 +310,7 @@ def test_thresholds_of_a_law_are_by_its_duration():
 
 @pytest.mark.parametrize("name", ["linear", *LAWS])
 def test_trace_and_determinant_of_the_corrected_model(name):
-    """Eqs. C1 and C2 of the appendices, with derivatives of the signature by differences."""
+    """The balances and Eq. C1 of Appendix C, with derivatives of the signature by differences."""
     ball = SpringDamper(20.0, restitution=0.65) if name == "linear" else LAWS[name]
     one = orbit(Corrected(ball), amplitude=1.0)
     psi = one.times[0]

@@ -42,7 +42,7 @@ class FreeImpact(NamedTuple):
     restitution, duration, centroid : array
         r, D and t_c.
     slope, curvature : array
-        First and second derivative of r(v) v with respect to v; ``slope`` is called b.
+        First and second derivative of r(v) v with respect to v; ``slope`` is r̂.
     centroid_slope : array
         d(v t_c)/dv.
     load : array
@@ -86,12 +86,12 @@ class FreeImpact(NamedTuple):
 
     @property
     def shift(self) -> NDArray:
-        """s = σ/(1 + b). On a contact, C - s replaces the C of the restitution model."""
+        """s = σ/(1 + r̂). On a contact, C - s replaces the C of the restitution model."""
         return self.load / (1 + self.slope)
 
     @property
     def doubling(self) -> NDArray:
-        """Y_D = 2(1 + rb)/[(1 + r)(1 + b)], the -w″ of the restitution model's doubling."""
+        """2(1 + r r̂)/[(1 + r)(1 + r̂)], the -w″ of the restitution model's doubling (Eq. R8)."""
         return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
 
 
@@ -167,7 +167,7 @@ def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDAr
 
 
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
-    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R1)."""
+    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R8)."""
     amplitude = off_rounding(impact, amplitude, table)
     phase, lift, _, _ = table.instant(impact.line, amplitude)
     anywhere = 0 * (impact.line + amplitude)

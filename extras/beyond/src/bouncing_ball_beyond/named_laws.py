@@ -1,4 +1,4 @@
-"""Contact laws with names: functions that return a :class:`.ForceLaw` (docs/laws.md).
+"""Contact laws with names: functions that return a :class:`.ForceLaw` (docs/named-laws.md).
 
 Give a law in one of two ways: by the parameters of its force, as numbers or arrays; or by the
 restitution coefficient, the duration and the speed of a free impact.

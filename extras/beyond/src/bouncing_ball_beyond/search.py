@@ -21,8 +21,8 @@ AT_FOLD = 1e-6
 
 Such an orbit belongs to both sides of the saddle-node.
 
-1 - tr/(1 + det) grows with the square root of Λ - Λ_SN. Errors of 1e-13 in a contact therefore
-cause a value of 3e-7.
+1 - tr/(1 + det) grows with the square root of the distance in Λ. Errors of 1e-13 in a contact
+therefore cause a value of 3e-7.
 
 At half: 1005 of 1020 orbits next to saddle-nodes are found, instead of 1011. At twice: 1015.
 """

@@ -24,12 +24,12 @@ from paper_replication.drawing import (
 from studies.variables import LAW_NAMES
 
 TITLES: Mapping[str, str] = {
-    "max_height": r"greatest height $\max\,z$",
-    "bounce_velocity": r"bouncing-off velocity $z'_b$",
+    "max_height": "greatest height",
+    "bounce_velocity": "bouncing-off velocity",
     "phase": r"phase of touch $\varphi$",
-    "apparent_restitution": "apparent restitution $r_a$",
-    "saddle_node": r"saddle-node $\Lambda_{SN}$",
-    "period_doubling": r"period doubling $\Lambda_{PD}$",
+    "apparent_restitution": "apparent restitution",
+    "saddle_node": r"$\Lambda$ of the saddle-node",
+    "period_doubling": r"$\Lambda$ of the period doubling",
 }
 """The quantities whose errors are shown, as titles of panels."""
 
@@ -157,16 +157,16 @@ def ext_impact(data: xr.Dataset) -> Figure:
         duration.plot(data.damping_ratio, one.contact_duration / np.pi, **look)
         end = float(one.contact_end), heights[release]
         force.plot(*end, "o", color=look["color"], markersize=4, zorder=5)
-        text = f"$\\omega D={end[0]:.2f}$\n$r={float(one.end_restitution):.2f}$"
+        text = f"$\\varpi D={end[0]:.2f}$\n$r={float(one.end_restitution):.2f}$"
         note: Look = places[release] | {"textcoords": "offset points", "color": look["color"]}
         force.annotate(text, end, **note)
-    force.set(xlabel=r"time $\omega t$,  $\omega = \sqrt{k/m}$", ylabel=r"force $/\,(m\omega v)$")
+    force.set(xlabel=r"time since the touch times $\varpi$", ylabel=r"force $F/(\varpi v)$")
     force.set_xticks(np.pi * np.arange(3) / 2, ["0", r"$\pi/2$", r"$\pi$"])
     force.set_title("one contact")
     force.margins(y=0.3)
-    damping = r"damping ratio $\zeta = c\,/\,(2\sqrt{km})$"
+    damping = r"damping ratio $\zeta$"
     restitution.set(xlabel=damping, ylabel="$r$", title="restitution coefficient", ylim=(0, 1.05))
-    duration.set(xlabel=damping, ylabel=r"$\omega D/\pi$", title="duration $D$", ylim=(0, 1.3))
+    duration.set(xlabel=damping, ylabel=r"$\varpi D/\pi$", title="duration $D$", ylim=(0, 1.3))
     # Above the upper and below the lower line.
     middle = data.isel(damping_ratio=2 * data.sizes["damping_ratio"] // 5)
     sides: dict[str, Look] = {
@@ -205,7 +205,7 @@ def ext_instant(data: xr.Dataset) -> Figure:
     below.fill_between(time[touching], force, facecolor="#bfdbec", edgecolor=CONTACT)
     for axes in (top, below):
         axes.axvline(meeting, **GUIDE)
-    below.annotate("$t^*$", (meeting, 0), (3, 3), textcoords="offset points")
+    below.annotate(r"$\psi-\varphi$", (meeting, 0), (3, 3), textcoords="offset points")
     # The delay t_c, below the instant, and its depth v t_c under the level of the table there.
     arrow: Look = {
         "arrowstyle": "<->",
@@ -227,7 +227,7 @@ def ext_instant(data: xr.Dataset) -> Figure:
         r"$\approx v\,t_c$", (meeting, middle), (5, 0), textcoords="offset points", va="center"
     )
     top.axvline(0, **GUIDE)
-    top.set(ylabel=r"height, in units of $g/\Omega^2$")
+    top.set(ylabel="height")
     top.set_ylim(low - 0.25 * depth, low + 1.6 * depth)
     top.set_title(title(data, "n", "restitution", "amplitude", "frequency_ratio"))
     top.margins(x=0)
@@ -476,7 +476,7 @@ def draw_on_all(axes: Axes, part: xr.Dataset, share: xr.DataArray) -> None:
 
 
 def ext_phase(data: xr.Dataset) -> Figure:
-    """Touches of exact orbits in the plane (X, Y), and the velocity of the table there.
+    """Touches of exact orbits in the plane (w′, -w″), and the velocity of the table there.
 
     On the left are the lines of the restitution model and of the error law for two durations. On
     the right the velocity is that at the touch (open) and later by θ (filled), for tables of three
@@ -490,14 +490,16 @@ def ext_phase(data: xr.Dataset) -> Figure:
         one = data.sel(shown_share=share)
         across = float(one.line_level)
         angle = float(one.line_angle)
-        # X cos θ - Y sin θ = C - s.
+        # w′ cos θ + w″ sin θ = C - s.
         ends = [across / np.cos(angle) + y * np.tan(angle) for y in (0, top)]
         plane.plot(ends, [0, top], color=colour, linestyle=DASHES[3])
         name = f"$D/(2\\pi)$ = {100 * share:g} %"
         plane.plot(one.touch_x, one.touch_y, marker, color=colour, markersize=3.5, label=name)
     given = parameters(data)
     plane.set(
-        xlabel=r"$X=\Lambda\,\cos\,\varphi$", ylabel=r"$Y=\Lambda\,\sin\,\varphi$", ylim=(0, top)
+        xlabel=r"$w'=\Lambda\,\cos\,\varphi$",
+        ylabel=r"$-w''=\Lambda\,\sin\,\varphi$",
+        ylim=(0, top),
     )
     plane.set_title(label(n=1, restitution=given["shown_restitution"]))
     last = data.isel(shown_share=-1)

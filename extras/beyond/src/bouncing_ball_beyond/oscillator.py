@@ -228,11 +228,11 @@ def motion(
     time, frequency, damping = np.real(s), np.real(ratio), np.real(zeta)
     square = time * time
     delicate = square * (frequency * frequency * np.abs(1 - damping * damping)) < 1
-    delicate = delicate | (damping > UNDERDAMPED)
     for k in table.orders:
         apart = frequency - k
         delicate = delicate | (square * (apart * apart + damping * damping) < 1)
-    method = doubled_motion if np.any(delicate) else closed_motion
+    loses = np.any(damping > UNDERDAMPED) or np.any(delicate)
+    method = doubled_motion if loses else closed_motion
     return method(s, gap, u, table, waves, gravity, ratio, zeta, loads=False)[:2]
 
 

@@ -6,7 +6,7 @@ import xarray as xr
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond import bounces, motions, simulation
-from bouncing_ball_beyond.one_ball import PERIOD
+from bouncing_ball_beyond.tables import PERIOD
 
 
 def test_the_kinds_of_motions():

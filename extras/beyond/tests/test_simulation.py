@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond import bounces, one_ball
-from bouncing_ball_beyond.one_ball import PERIOD
+from bouncing_ball_beyond.tables import PERIOD
 
 
 def first_crossing(function, times):

@@ -8,6 +8,7 @@ from integrated import around, leg
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond.balls import H
+from bouncing_ball_beyond.bounces import until_lift_off
 from bouncing_ball_beyond.tables import SINE, Table
 
 TABLES = {
@@ -75,7 +76,7 @@ def test_where_a_table_falls_as_fast_as_a_ball(name):
         changes = np.diff(np.sign(1 + scale * table(tau, 2))) != 0
         assert len(phases) == np.count_nonzero(changes)
     lies = tau[np.argmax(table(tau, 2))]
-    wait, leaves = table.until_lift_off(lies, 2.5)
+    wait, leaves = until_lift_off(table, lies, np.array(2.5))
     assert np.all(1 + 2.5 * table(np.linspace(lies, lies + wait - 1e-6, 1000), 2) > 0)
     assert 1 + 2.5 * table(leaves, 2) == pytest.approx(0, abs=1e-12)
     assert table(leaves, 3) < 0

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond import one_ball
 from bouncing_ball_beyond.balls import FEW_BALLS, Ball, brief, safe_steps
 from bouncing_ball_beyond.impact_map import ImpactMap
-from bouncing_ball_beyond.one_ball import COLUMNS, PERIOD, STEPS
-from bouncing_ball_beyond.tables import SINE, Table, Values
+from bouncing_ball_beyond.one_ball import COLUMNS, STEPS
+from bouncing_ball_beyond.tables import PERIOD, SINE, Table, Values
 
 # Importing numba takes a second, so it is imported when the first ball is followed.
 compile_loops = cache(one_ball.compile_loops)
@@ -192,12 +192,27 @@ def settle_instants(balls: Balls, gap: Values, w: Values) -> Leaving:
     (waits,) = rests.nonzero()
     waits = waits[1 + amplitude[waits] * table(leaves[waits], 2) >= 0]
     if waits.size:
-        wait, leaves[waits] = table.until_lift_off(leaves[waits], amplitude[waits])
+        wait, leaves[waits] = until_lift_off(table, leaves[waits], amplitude[waits])
         duration[waits] += wait
     ends = phase + np.where(duration < np.inf, duration, 0.0)
     turns = balls.turns + np.round((ends - leaves) / PERIOD)
     w = np.where(rests, 0.0, w)
     return Leaving(np.zeros(w.shape), duration, turns, leaves, gap, w)
+
+
+def until_lift_off(table: Table, phase: NDArray, amplitude: NDArray) -> tuple[NDArray, NDArray]:
+    """Return how long resting balls stay on the table, and the phases at which they leave.
+
+    The time is infinite if a ball never leaves.
+    """
+    phases = table.lift_offs(amplitude)
+    wait = (phases - phase[..., np.newaxis]) % PERIOD
+    # Rounding must not postpone the lift-off by a turn.
+    wait = np.where(wait > PERIOD - one_ball.CHATTER**2, 0.0, wait)
+    wait = np.where(np.isnan(wait), np.inf, wait)
+    first = wait.argmin(axis=-1)[..., np.newaxis]
+    leaves = np.take_along_axis(phases, first, -1)[..., 0]
+    return wait.min(axis=-1), reduced(leaves)[1]
 
 
 def reduced(phase: Values) -> tuple[NDArray, NDArray]:

@@ -18,11 +18,10 @@ from bouncing_ball_beyond.equations import (
     PeriodicOrbit,
     alone,
 )
-from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.search import near_instants, rows_of, shortest_contacts
 from bouncing_ball_beyond.starts import STARTS, Task
-from bouncing_ball_beyond.tables import SINE, Table, check_table
+from bouncing_ball_beyond.tables import PERIOD, SINE, Table, check_table
 
 AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
 """Values of Λ, in multiples of nπ, at which `limits` looks for an orbit.

@@ -22,7 +22,6 @@ from scipy.special import stdtrit
 from bouncing_ball_beyond.balls import Ball, H, check_ball, checked, whole_number
 from bouncing_ball_beyond.bounces import Balls, bounce
 from bouncing_ball_beyond.impact_map import impact_map
-from bouncing_ball_beyond.one_ball import PERIOD
 from bouncing_ball_beyond.simulation import (
     DESCRIPTIONS,
     axis,
@@ -31,7 +30,7 @@ from bouncing_ball_beyond.simulation import (
     first_impacts,
     grid_of,
 )
-from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
+from bouncing_ball_beyond.tables import PERIOD, SINE, Table, Values, check_table
 
 RETURNED = 1e-7
 """Largest distance of a state from the fixed point of a periodic motion; see `apart`.

@@ -13,7 +13,8 @@ import math
 
 from numpy.typing import NDArray
 
-PERIOD = 2 * math.pi
+from bouncing_ball_beyond.tables import PERIOD
+
 REACH = 4.0
 """Reach H in which the parabola with the bound J holds, divided by a step of the other parabola.
 

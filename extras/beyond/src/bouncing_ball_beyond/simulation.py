@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.balls import Ball, brief, check_ball, checked, whole_number
 from bouncing_ball_beyond.bounces import Balls, Leaving, bounce, fly, reduced
-from bouncing_ball_beyond.one_ball import COLUMNS, EPS, PERIOD
-from bouncing_ball_beyond.tables import SINE, Table, Values, check_table
+from bouncing_ball_beyond.one_ball import COLUMNS, EPS
+from bouncing_ball_beyond.tables import PERIOD, SINE, Table, Values, check_table
 
 AT_ONCE = 32
 """Number of impacts that :func:`history` computes before it checks whether the time is over.

@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bouncing_ball_beyond.one_ball import CHATTER, EPS, PERIOD
-from bouncing_ball_beyond.records import fit_harmonics, overshoot
+from bouncing_ball_beyond.records import PERIOD, fit_harmonics, overshoot
 
 SAMPLES = 64
 """Number of samples of W in a period of its highest harmonic.
@@ -232,8 +231,8 @@ class Table:
         series = np.fft.rfft(values) / len(values)
         k = np.arange(1, last + 1)
         waves = 2 * series[1 : last + 1]
-        # The samples are rounded to EPS/2, so harmonics up to EPS may be rounding errors.
-        waves[np.abs(waves) <= EPS * np.abs(values).max()] = 0.0
+        # Harmonics up to a rounding error of the samples may be rounding errors.
+        waves[np.abs(waves) <= np.finfo(float).eps * np.abs(values).max()] = 0.0
         pulls = waves * (1.0 if acceleration else -(k**2))
         size = np.linalg.norm(pulls)
         if size <= 1e-12 * np.abs(values).max():
@@ -628,20 +627,6 @@ class Table:
         phases[short, 0] = self._top(2, -1)
         falls[short, 0] = True
         return np.sort(np.where(falls, phases % PERIOD, np.nan))
-
-    def until_lift_off(self, phase: Values, amplitude: Values) -> tuple:
-        """Return how long resting balls stay on the table, and the phases at which they leave.
-
-        The time is infinite if a ball never leaves.
-        """
-        phases = self.lift_offs(amplitude)
-        wait = (phases - np.asarray(phase)[..., np.newaxis]) % PERIOD
-        # Rounding must not postpone the lift-off by a turn.
-        wait = np.where(wait > PERIOD - CHATTER**2, 0.0, wait)
-        wait = np.where(np.isnan(wait), np.inf, wait)
-        first = wait.argmin(axis=-1)[..., np.newaxis]
-        leaves = np.take_along_axis(phases, first, -1)[..., 0]
-        return wait.min(axis=-1), leaves - PERIOD * np.floor(leaves / PERIOD + 0.5)
 
 
 class Sine(Table):

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve, minimize_scalar
 
-from bouncing_ball_beyond.balls import Corrected, SpringDamper
+from bouncing_ball_beyond.contacts.balls import Corrected, SpringDamper
 
 SINE = ((1, 1.0, 0.0),)
 

@@ -3,7 +3,7 @@ damping by the speed at the start of a contact."""
 
 import numpy as np
 
-from bouncing_ball_beyond.laws import ForceLaw
+from bouncing_ball_beyond.contacts.laws import ForceLaw
 
 
 def hunt_crossley_linear(stiffness, damping):

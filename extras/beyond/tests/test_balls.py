@@ -6,16 +6,16 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.balls import (
+from bouncing_ball_beyond.contacts.balls import (
     Corrected,
     H,
     Rigid,
     SpringDamper,
     damping_of,
 )
-from bouncing_ball_beyond.one_ball import PATIENCE
-from bouncing_ball_beyond.oscillator import motion
-from bouncing_ball_beyond.tables import SINE
+from bouncing_ball_beyond.contacts.one_ball import PATIENCE
+from bouncing_ball_beyond.contacts.oscillator import motion
+from bouncing_ball_beyond.tables.table import SINE
 
 RELEASES = ["displacement", "force"]
 # Errors of the integrator, whose tolerance is 1e-13, over some tens of steps.

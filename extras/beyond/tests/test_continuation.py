@@ -8,14 +8,14 @@ from scipy.optimize import brentq, fsolve
 
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.spring_damper import Contact
-from bouncing_ball_beyond import continuation
-from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper, damping_of
-from bouncing_ball_beyond.branches import FollowedBranch
-from bouncing_ball_beyond.continuation import cascade, follow, limits
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.march import LARGEST_TURN, newton
-from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit, orbits
+from bouncing_ball_beyond.contacts.balls import Corrected, Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.periodic import continuation
+from bouncing_ball_beyond.periodic.branches import FollowedBranch
+from bouncing_ball_beyond.periodic.continuation import cascade, follow, limits
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.march import LARGEST_TURN, newton
+from bouncing_ball_beyond.periodic.orbits import OrbitNotFound, orbit, orbits
 
 # Special orbits are located to some rounding errors of their tests, over the slopes of these.
 LOCATED = 1e-10

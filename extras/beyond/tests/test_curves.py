@@ -11,7 +11,7 @@ from bouncing_ball_beyond import (
     orbit,
     special_curve,
 )
-from bouncing_ball_beyond.equations import flight
+from bouncing_ball_beyond.periodic.equations import flight
 
 # Orbits are found to rounding errors of numbers up to ten.
 ROUNDED = 1e-12

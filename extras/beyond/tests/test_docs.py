@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import bouncing_ball_beyond
-from bouncing_ball_beyond import named_laws
+from bouncing_ball_beyond.contacts import named_laws
 
 BEYOND = Path(__file__).resolve().parents[1]
 PAGES = sorted([*BEYOND.glob("*.md"), *(BEYOND / "docs").glob("*.md")])
@@ -56,9 +56,21 @@ def test_the_installation_of_the_readme_has_what_all_modules_import():
     needed += replication["optional-dependencies"]["figures"]
     installed = {re.match(r"[\w-]+", each)[0].replace("-", "_") for each in needed}
     installed |= {each.name for each in (root / "src").iterdir()}
-    modules = (BEYOND / "src" / "bouncing_ball_beyond").glob("*.py")
+    modules = (BEYOND / "src" / "bouncing_ball_beyond").rglob("*.py")
     names = {name for module in modules for name in imported(module)}
     assert names - sys.stdlib_module_names - {"bouncing_ball_beyond"} <= installed
+
+
+def test_a_folder_of_the_library_imports_only_from_those_before_it():
+    library = BEYOND / "src" / "bouncing_ball_beyond"
+    folders = ("tables", "contacts", "motions", "periodic", "errors", "output")
+    assert {each.parent.name for each in library.glob("*/*.py")} == {*folders}
+    for i, folder in enumerate(folders):
+        texts = [each.read_text(encoding="utf-8") for each in (library / folder).glob("*.py")]
+        used = {
+            name for text in texts for name in re.findall(r"^from \w+_beyond\.(\w+)", text, re.M)
+        }
+        assert used <= {*folders[: i + 1]}
 
 
 def test_the_page_of_all_functions_has_every_public_name():

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from bouncing_ball import errors as replication
-from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.error_law import (
+from bouncing_ball_beyond.contacts.balls import Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.errors.error_law import (
     QUANTITIES,
     FreeImpact,
     ball_at_ratio,
@@ -18,9 +19,8 @@ from bouncing_ball_beyond.error_law import (
     law_thresholds,
     restitution_values,
 )
-from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.periodic import orbit
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.periodic.orbits import orbit
+from bouncing_ball_beyond.tables.table import SINE, Table
 
 ARTICLE = {
     # Quantity: K, and ϖ for 1 % by the law, exactly, and of the corrected model (Table 1).

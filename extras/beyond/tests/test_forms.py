@@ -17,7 +17,7 @@ from bouncing_ball_beyond import (
     normal_form,
     orbit,
 )
-from bouncing_ball_beyond.equations import flight
+from bouncing_ball_beyond.periodic.equations import flight
 
 COMPLIANT = SpringDamper(10.0, restitution=0.85)
 

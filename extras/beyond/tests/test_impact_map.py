@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import motions
-from bouncing_ball_beyond.bounces import Balls
-from bouncing_ball_beyond.impact_map import impact_map
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.motions import long_term
+from bouncing_ball_beyond.motions.bounces import Balls
+from bouncing_ball_beyond.motions.impact_map import impact_map
+from bouncing_ball_beyond.tables.table import SINE, Table
 
 BALLS = {
     "Tsuji": (bb.tsuji(restitution=0.8, duration=0.03, speed=4.0), SINE),
@@ -65,9 +65,9 @@ def test_slow_impacts_and_soft_contacts_are_integrated():
 def test_basins_are_those_of_the_integration(monkeypatch):
     ball, table = BALLS["Tsuji"]
     given = {"amplitude": 0.9, "starts": 6, "impacts": 300, "relative_velocity_max": 9.0}
-    monkeypatch.setattr(motions, "WORTH_A_MAP", 1)
+    monkeypatch.setattr(long_term, "WORTH_A_MAP", 1)
     by_map = bb.basins(ball, **given, table=table)
-    monkeypatch.setattr(motions, "WORTH_A_MAP", np.inf)
+    monkeypatch.setattr(long_term, "WORTH_A_MAP", np.inf)
     expected = bb.basins(ball, **given, table=table)
     ends = ["end_phase", "end_velocity"]
     assert by_map.drop_vars(ends).identical(expected.drop_vars(ends))
@@ -81,6 +81,6 @@ def test_balls_with_kinks_or_in_many_parameters_have_no_map():
     several = bb.tsuji(stiffness=np.full(100, 1e4), damping=np.full(100, 0.1))
     one = BALLS["Tsuji"][0]
     rows = [Balls(ball, tau + 1.2, tau, tau, tau + 1.0) for ball in (kinked, several, one)]
-    assert [motions.is_worth_a_map(each, 2000) for each in rows] == [False, False, True]
-    assert not motions.is_worth_a_map(Balls(one, tau + np.arange(100), tau, tau, tau), 2000)
-    assert not motions.is_worth_a_map(rows[-1], 100)
+    assert [long_term.is_worth_a_map(each, 2000) for each in rows] == [False, False, True]
+    assert not long_term.is_worth_a_map(Balls(one, tau + np.arange(100), tau, tau, tau), 2000)
+    assert not long_term.is_worth_a_map(rows[-1], 100)

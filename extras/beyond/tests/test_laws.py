@@ -10,13 +10,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import gamma
 
-from bouncing_ball_beyond import root_time
-from bouncing_ball_beyond.balls import Corrected, H, Rigid, SpringDamper
-from bouncing_ball_beyond.continuation import follow as path_follow
-from bouncing_ball_beyond.error_law import error_thresholds, law_thresholds
-from bouncing_ball_beyond.laws import ForceLaw
-from bouncing_ball_beyond.motions import motion_of
-from bouncing_ball_beyond.named_laws import (
+from bouncing_ball_beyond.contacts import root_time
+from bouncing_ball_beyond.contacts.balls import Corrected, H, Rigid, SpringDamper
+from bouncing_ball_beyond.contacts.laws import ForceLaw
+from bouncing_ball_beyond.contacts.named_laws import (
     adams_impact,
     hunt_crossley,
     kuwabara_kono,
@@ -25,8 +22,11 @@ from bouncing_ball_beyond.named_laws import (
     simscape_contact,
     tsuji,
 )
-from bouncing_ball_beyond.periodic import orbit
-from bouncing_ball_beyond.tables import Table
+from bouncing_ball_beyond.errors.error_law import error_thresholds, law_thresholds
+from bouncing_ball_beyond.motions.long_term import motion_of
+from bouncing_ball_beyond.periodic.continuation import follow as path_follow
+from bouncing_ball_beyond.periodic.orbits import orbit
+from bouncing_ball_beyond.tables.table import Table
 
 # The integrator and the panels each have errors of some 1e-12 of the speed.
 CLOSE = 1e-11

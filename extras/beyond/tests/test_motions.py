@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import bounces, motions, simulation
-from bouncing_ball_beyond.tables import PERIOD
+from bouncing_ball_beyond.motions import bounces, long_term, simulation
+from bouncing_ball_beyond.tables.table import PERIOD
 
 
 def test_the_kinds_of_motions():
@@ -93,14 +93,14 @@ def test_exponents_of_sections_with_a_known_scatter():
     rng = np.random.default_rng(5)
     growth = 1.0 + 0.3 * rng.standard_normal(1024)
     ones = np.ones(1024)
-    rate, scatter, error = motions.exponent(growth, ones, -ones)
+    rate, scatter, error = long_term.exponent(growth, ones, -ones)
     assert abs(scatter - 0.3 / np.sqrt(768)) < 0.05 * scatter
     assert abs(rate - 1) < 4 * scatter
     twice = np.repeat(growth[:512], 2)
-    _, scatter, error = motions.exponent(twice, ones, -ones)
+    _, scatter, error = long_term.exponent(twice, ones, -ones)
     assert error > 1.2 * scatter
-    assert np.isnan(motions.exponent(growth, ones, -1e-3 * ones)[2])
-    assert motions.exponent(growth[:1], ones[:1], -ones[:1])[1] == np.inf
+    assert np.isnan(long_term.exponent(growth, ones, -1e-3 * ones)[2])
+    assert long_term.exponent(growth[:1], ones[:1], -ones[:1])[1] == np.inf
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_exponents_of_sections_with_a_known_scatter():
 def test_tangent_maps_are_differences_of_simulated_impacts(ball):
     _, balls = simulation.first_impacts(ball, [1.2, 2.5], 1.0, -3.0, None)
     record, _, _ = bounces.bounce(balls, 4)
-    maps = motions.tangent_maps(balls, record, motions.lift_offs(balls, record))
+    maps = long_term.tangent_maps(balls, record, long_term.lift_offs(balls, record))
     step = 1e-6
     for j, (angle, speed) in enumerate(((step, 0.0), (0.0, step))):
         for i in range(4):
@@ -134,14 +134,14 @@ def test_tangent_maps_are_differences_of_simulated_impacts(ball):
 def test_products_of_maps():
     rng = np.random.default_rng(1)
     maps = rng.standard_normal((2, 2, 13, 3))
-    products, logarithms = motions.running_products(maps)
+    products, logarithms = long_term.running_products(maps)
     for ball in range(3):
         whole = np.eye(2)
         for i in range(13):
             whole = maps[:, :, i, ball] @ whole
             scaled = products[:, :, i, ball] * np.exp(logarithms[i, ball])
             assert np.abs(scaled - whole).max() < 1e-12 * np.abs(whole).max()
-        assert np.allclose(motions.product(maps)[..., ball], whole, rtol=1e-12, atol=1e-12)
+        assert np.allclose(long_term.product(maps)[..., ball], whole, rtol=1e-12, atol=1e-12)
 
 
 def test_a_locked_ball_repeats_from_lift_off_to_lift_off():
@@ -187,11 +187,11 @@ def test_what_is_not_known_has_a_reason():
     beside = {"phase": [one.phase, one.phase + 0.1], "velocity": one.impact_velocity}
     slow = bb.motion_of(one.ball, amplitude=0.5, impacts=200, **beside)
     assert (slow.kind == "undecided").all()
-    assert slow.reason.values.tolist() == [motions.MARGINAL, motions.NO_RECURRENCE]
+    assert slow.reason.values.tolist() == [long_term.MARGINAL, long_term.NO_RECURRENCE]
     # Rounding decides for which Λ the period of a locked motion is lost.
     locked = bb.motion_of(bb.Rigid(0.5), amplitude=np.linspace(4.9, 5.1, 20))
     assert (locked.kind == "locked").all()
-    lost = locked.reason == motions.LOST_TO_ROUNDING
+    lost = locked.reason == long_term.LOST_TO_ROUNDING
     assert lost.any() and np.array_equal(lost, locked.impacts == 0)
 
 
@@ -205,7 +205,7 @@ def test_chaos_that_ends_is_a_transient():
     """A ball that sticks once in some thousand impacts looks chaotic in two thousand."""
     found = bb.lyapunov(bb.Rigid(0.7), amplitude=1.85, phase=1.0, impacts=400)
     if found.kind == "undecided":
-        assert found.reason == motions.TRANSIENT
+        assert found.reason == long_term.TRANSIENT
         assert np.isnan(found.lyapunov_exponent)
     above = bb.lyapunov(bb.Rigid(0.7), amplitude=1.345, phase=1.0)
     assert above.kind == "chaotic"
@@ -274,7 +274,7 @@ def test_two_orbits_with_as_many_impacts_and_periods_are_two_motions():
 
 def test_no_ball_leaves_the_speeds_of_a_basin():
     """Above the fastest speed of :func:`fastest` every impact slows a ball."""
-    fast = motions.fastest(bb.Rigid(0.5), 2.0)
+    fast = long_term.fastest(bb.Rigid(0.5), 2.0)
     assert fast == 6.0
     found = bb.simulate(bb.Rigid(0.5), amplitude=2.0, velocity=-5.0, phase=0.1, impacts=2000)
     assert found.bounce_velocity.max() < fast
@@ -311,17 +311,17 @@ def test_basins_keep_the_number_of_impacts_and_refuse_arrays():
 def test_a_summary_of_many_impacts_needs_no_history():
     """The greatest number of impacts that are kept at a time does not grow with those followed."""
     most = []
-    bounce = motions.bounce
+    bounce = long_term.bounce
 
     def watched(balls, impacts):
         most.append(impacts * balls.phase.size)
         return bounce(balls, impacts)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(motions, "bounce", watched)
+        patch.setattr(long_term, "bounce", watched)
         found = bb.motion_of(bb.SpringDamper(20.0, restitution=0.9), amplitude=2.85, impacts=60_000)
     assert found.followed >= 60_000
-    assert max(most) <= motions.IMPACTS_AT_ONCE
+    assert max(most) <= long_term.IMPACTS_AT_ONCE
 
 
 @pytest.mark.parametrize(("distance", "repeats"), [(0.5e-7, True), (2e-7, False)])
@@ -338,7 +338,7 @@ def test_a_slowly_converging_speed_repeats_only_near_its_fixed_point(distance, r
     after = bounces.Balls(bb.Rigid(0.5), 0 * one, impacts * one, one, speed[-1:])
     maps = np.zeros((2, 2, impacts, 1))
     maps[0, 0], maps[1, 1] = 0.5, 0.99
-    found = motions.recurrence(balls, record, after, maps)
+    found = long_term.recurrence(balls, record, after, maps)
     assert found["repeats"][0] == repeats
     assert found["impacts"][0] == found["periods"][0] == 1
     assert found["radius"][0] == pytest.approx(0.99)

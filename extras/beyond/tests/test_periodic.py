@@ -10,22 +10,22 @@ from integrated import around, contact
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import OBSERVABLES, Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from bouncing_ball_beyond import root_time
-from bouncing_ball_beyond.balls import Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.chains import dense, solve_bordered
-from bouncing_ball_beyond.continuation import limits
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.march import newton
-from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.periodic import (
+from bouncing_ball_beyond.contacts import root_time
+from bouncing_ball_beyond.contacts.balls import Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.contacts.root_time import solve_panel
+from bouncing_ball_beyond.motions.bounces import Balls, bounce
+from bouncing_ball_beyond.periodic.chains import dense, solve_bordered
+from bouncing_ball_beyond.periodic.continuation import limits
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.march import newton
+from bouncing_ball_beyond.periodic.orbits import (
     OrbitNotFound,
     PeriodicOrbit,
     orbit,
     orbits,
 )
-from bouncing_ball_beyond.root_time import solve_panel
-from bouncing_ball_beyond.tables import Table
+from bouncing_ball_beyond.tables.table import Table
 
 # Rounding errors of an orbit: some hundred times eps for numbers up to 20.
 ROUNDED = 1e-12

@@ -25,7 +25,7 @@ from integrated import (
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond.tables import SINE
+from bouncing_ball_beyond.tables.table import SINE
 
 CLOSE = 1e-7
 """Largest difference from the integrator.

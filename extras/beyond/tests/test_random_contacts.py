@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from own_laws import flores, hunt_crossley_linear, limited_damper, stepped_spring
 
-from bouncing_ball_beyond.named_laws import (
+from bouncing_ball_beyond.contacts.named_laws import (
     adams_impact,
     hunt_crossley,
     kuwabara_kono,

@@ -14,9 +14,9 @@ from bouncing_ball_beyond import (
     special_curve,
     to_dataset,
 )
-from bouncing_ball_beyond.equations import KINDS
-from bouncing_ball_beyond.periodic import orbits
-from bouncing_ball_beyond.pictures import MARKS
+from bouncing_ball_beyond.output.pictures import MARKS
+from bouncing_ball_beyond.periodic.equations import KINDS
+from bouncing_ball_beyond.periodic.orbits import orbits
 
 
 @pytest.fixture(scope="module")

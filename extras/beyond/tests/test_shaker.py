@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import shaker
-from bouncing_ball_beyond.error_law import contact_values
-from bouncing_ball_beyond.shaker import on_shaker
+from bouncing_ball_beyond.errors import shaker
+from bouncing_ball_beyond.errors.error_law import contact_values
+from bouncing_ball_beyond.errors.shaker import on_shaker
 
 G = 9.80665
 TABLE = {"frequency": 50.0, "acceleration": 0.8 * G, "restitution": 0.85}

@@ -11,8 +11,9 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import bounces, one_ball
-from bouncing_ball_beyond.tables import PERIOD
+from bouncing_ball_beyond.contacts import one_ball
+from bouncing_ball_beyond.motions import bounces
+from bouncing_ball_beyond.tables.table import PERIOD
 
 
 def first_crossing(function, times):

@@ -7,9 +7,9 @@ import pytest
 from integrated import around, leg
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond.balls import H
-from bouncing_ball_beyond.bounces import until_lift_off
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.contacts.balls import H
+from bouncing_ball_beyond.motions.bounces import until_lift_off
+from bouncing_ball_beyond.tables.table import SINE, Table
 
 TABLES = {
     "three harmonics": Table([(1, 1.0, 0.0), (2, 0.17, 0.8), (3, 0.05, -1.1)]),

@@ -4,7 +4,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import bouncing_ball_beyond as bb
-from bouncing_ball_beyond import root_time
+from bouncing_ball_beyond.contacts import root_time
 
 law = bb.simscape_contact(stiffness=700.0, damping=6.0, depth=0.03)
 panels = []

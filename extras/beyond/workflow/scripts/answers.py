@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from bouncing_ball.continuation import bifurcations
 from bouncing_ball.restitution import period_doubling, period_doubling_height, saddle_node
 from bouncing_ball.spring_damper import Contact
-from bouncing_ball_beyond.balls import Rigid, SpringDamper, damping_of
-from bouncing_ball_beyond.continuation import limits
-from bouncing_ball_beyond.error_law import free_impact, law_coefficients, law_errors
-from bouncing_ball_beyond.periodic import orbit
-from bouncing_ball_beyond.tables import Table
+from bouncing_ball_beyond.contacts.balls import Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.errors.error_law import free_impact, law_coefficients, law_errors
+from bouncing_ball_beyond.periodic.continuation import limits
+from bouncing_ball_beyond.periodic.orbits import orbit
+from bouncing_ball_beyond.tables.table import Table
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.variables import described

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball_beyond.balls import SpringDamper
-from bouncing_ball_beyond.bounces import Balls, bounce
-from bouncing_ball_beyond.periodic import orbit
+from bouncing_ball_beyond.contacts.balls import SpringDamper
+from bouncing_ball_beyond.motions.bounces import Balls, bounce
+from bouncing_ball_beyond.periodic.orbits import orbit
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
 from studies.variables import described

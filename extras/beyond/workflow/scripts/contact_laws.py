@@ -20,17 +20,17 @@ import xarray as xr
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, Signature, SpringDamper
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.error_law import (
+from bouncing_ball_beyond.contacts.balls import Ball, Corrected, Rigid, Signature, SpringDamper
+from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.errors.error_law import (
     contact_values,
     free_impact,
     law_errors,
     restitution_values,
 )
-from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.search import guess_of_instants
-from bouncing_ball_beyond.tables import SINE
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.search import guess_of_instants
+from bouncing_ball_beyond.tables.table import SINE
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import flight_height, last_zero, solved

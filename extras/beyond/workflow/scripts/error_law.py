@@ -7,8 +7,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball.errors import permanent_contact_error, threshold
-from bouncing_ball_beyond.balls import Ball, Corrected, SpringDamper, damping_of
-from bouncing_ball_beyond.error_law import (
+from bouncing_ball_beyond.contacts.balls import Ball, Corrected, SpringDamper, damping_of
+from bouncing_ball_beyond.errors.error_law import (
     QUANTITIES,
     error_thresholds,
     exact_errors,

@@ -7,12 +7,12 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bouncing_ball import restitution
-from bouncing_ball_beyond.balls import Ball, Corrected, Rigid, SpringDamper
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.error_law import contact_values, rows_of_orbits
-from bouncing_ball_beyond.one_ball import settling
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
-from bouncing_ball_beyond.simulation import simulate
+from bouncing_ball_beyond.contacts.balls import Ball, Corrected, Rigid, SpringDamper
+from bouncing_ball_beyond.contacts.one_ball import settling
+from bouncing_ball_beyond.errors.error_law import contact_values, rows_of_orbits
+from bouncing_ball_beyond.motions.simulation import simulate
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits import OrbitNotFound, orbit
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.orbits import follow_compliant, random_orbits

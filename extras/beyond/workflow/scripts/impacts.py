@@ -5,8 +5,8 @@ import sys
 import numpy as np
 import xarray as xr
 
-from bouncing_ball_beyond.balls import Impact, SpringDamper, damping_of
-from bouncing_ball_beyond.periodic import orbit
+from bouncing_ball_beyond.contacts.balls import Impact, SpringDamper, damping_of
+from bouncing_ball_beyond.periodic.orbits import orbit
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
 from studies.variables import described

@@ -13,17 +13,17 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.optimize import brentq, root
 
-from bouncing_ball_beyond.balls import Ball, Rigid, SpringDamper, damping_of
-from bouncing_ball_beyond.bounces import Balls, step
-from bouncing_ball_beyond.error_law import (
+from bouncing_ball_beyond.contacts.balls import Ball, Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
+from bouncing_ball_beyond.errors.error_law import (
     FreeImpact,
     contact_values,
     free_impact,
     law_errors,
     restitution_values,
 )
-from bouncing_ball_beyond.named_laws import hunt_crossley, kuwabara_kono, tsuji
-from bouncing_ball_beyond.tables import Table
+from bouncing_ball_beyond.motions.bounces import Balls, step
+from bouncing_ball_beyond.tables.table import Table
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import save_stage
 from studies.variables import described

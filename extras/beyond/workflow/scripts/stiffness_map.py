@@ -15,8 +15,8 @@ from bouncing_ball.errors import COMPARED, enough_from, orbits_along
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from bouncing_ball_beyond.balls import SpringDamper
-from bouncing_ball_beyond.error_law import free_impact, law_errors, law_thresholds
+from bouncing_ball_beyond.contacts.balls import SpringDamper
+from bouncing_ball_beyond.errors.error_law import free_impact, law_errors, law_thresholds
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import grid, save_stage
 from studies.variables import described

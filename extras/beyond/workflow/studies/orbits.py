@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball_beyond.balls import H, SpringDamper, damping_of
-from bouncing_ball_beyond.chains import solve_bordered
-from bouncing_ball_beyond.continuation import follow
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.periodic import OrbitNotFound, orbit
+from bouncing_ball_beyond.contacts.balls import H, SpringDamper, damping_of
+from bouncing_ball_beyond.periodic.chains import solve_bordered
+from bouncing_ball_beyond.periodic.continuation import follow
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.orbits import OrbitNotFound, orbit
 
 COMPLIANT = 1.4
 """Contacts with a smaller ϖ are too compliant for the error law to tell where their orbits are."""

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.balls import SpringDamper
-from bouncing_ball_beyond.equations import OrbitEquations
-from bouncing_ball_beyond.march import newton
-from bouncing_ball_beyond.tables import SINE, Table
+from bouncing_ball_beyond.contacts.balls import SpringDamper
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.march import newton
+from bouncing_ball_beyond.tables.table import SINE, Table
 
 WAVEFORMS: dict[str, Table] = {
     "sine": SINE,

@@ -1,0 +1,1 @@
+"""Contacts of a ball: restitution coefficients, springs and dampers, and force laws."""

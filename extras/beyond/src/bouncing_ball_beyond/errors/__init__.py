@@ -1,0 +1,1 @@
+"""Errors of a restitution coefficient, and whether it is good enough."""

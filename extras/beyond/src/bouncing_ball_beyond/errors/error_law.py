@@ -1,0 +1,716 @@
+"""Compute errors of the restitution model exactly, or by the error law in closed form.
+
+The error of a quantity q is (q_contact - q)/q, where q is its value in the restitution model
+(Eqs. 37, 38). docs/error-law.md has the law, its symbols and its accuracy; appendix.md has the
+proof.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize.elementwise import find_root
+
+from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, brief, checked, whole_number
+from bouncing_ball_beyond.contacts.laws import ForceLaw
+from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.march import newton
+from bouncing_ball_beyond.periodic.search import AT_FOLD, guess_of_instants, rows_of
+from bouncing_ball_beyond.tables.table import SINE, Table, Values
+
+QUANTITIES = (
+    "max_height",
+    "bounce_velocity",
+    "phase",
+    "apparent_restitution",
+    "saddle_node",
+    "period_doubling",
+)
+"""Quantities of the n-T orbit at an amplitude, and the amplitudes of its two bifurcations."""
+
+
+class FreeImpact(NamedTuple):
+    """Signature of a free impact with the closing speed v₀ of n-T orbits, and derivatives.
+
+    Attributes
+    ----------
+    n : array
+        Number of periods of the table in one period of the orbit.
+    speed : array
+        v₀, the root of (1 + r(v)) v = 2nπ. All other quantities belong to this speed.
+    restitution, duration, centroid : array
+        r, D and t_c.
+    slope, curvature : array
+        First and second derivative of r(v) v with respect to v; ``slope`` is r̂.
+    centroid_slope : array
+        d(v t_c)/dv.
+    load : array
+        σ.
+    load_slope : array
+        dσ/dv.
+    """
+
+    n: NDArray
+    speed: NDArray
+    restitution: NDArray
+    slope: NDArray
+    curvature: NDArray
+    duration: NDArray
+    centroid: NDArray
+    centroid_slope: NDArray
+    load: NDArray
+    load_slope: NDArray
+
+    def stretched(self, factor: ArrayLike) -> "FreeImpact":
+        """Return the free impact on a contact that is stretched by the factor γ.
+
+        The stretched contact has the force f(p/γ, p′)/γ. It lasts γ times as long and has the
+        same r. For a spring and a damper ϖ becomes ϖ/γ.
+        """
+        names = ("duration", "centroid", "centroid_slope", "load", "load_slope")
+        return self._replace(**{name: factor * getattr(self, name) for name in names})
+
+    @property
+    def half(self) -> NDArray:
+        """nπ, the modulus of the velocity of the ball just before and just after an impact."""
+        return self.n * np.pi
+
+    @property
+    def line(self) -> NDArray:
+        """C = v₀ - nπ, the velocity w′ of the table at the impacts of the restitution model.
+
+        On a sine, C is also the Λ of the saddle-node of this model.
+        """
+        return self.speed - self.half
+
+    @property
+    def shift(self) -> NDArray:
+        """s = σ/(1 + r̂). On a contact, C - s replaces the C of the restitution model."""
+        return self.load / (1 + self.slope)
+
+    @property
+    def doubling(self) -> NDArray:
+        """2(1 + r r̂)/[(1 + r)(1 + r̂)], the -w″ of the restitution model's doubling (Eq. R8)."""
+        return 2 * (1 + self.restitution * self.slope) / ((1 + self.restitution) * (1 + self.slope))
+
+
+def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
+    """Compute the free impact of a ball at the speed v₀, the root of (1 + r(v)) v = 2nπ.
+
+    Parameters
+    ----------
+    ball : Ball
+        The ball.
+    n : array_like
+        Number of periods of the table from impact to impact.
+
+    Returns
+    -------
+    FreeImpact
+        Speed in units of g/Ω, times in units of 1/Ω.
+
+    Raises
+    ------
+    ValueError
+        If n is below 1, or if free impacts of the ball do not end.
+    """
+    if np.any(np.asarray(n) < 1):
+        raise ValueError(f"n = {n!r}: must be a whole number from 1")
+    half = np.pi * np.asarray(n)
+    speed = 1.5 * half
+    step = speed
+    # After a step of Newton's method the error is of the order of the square of the step.
+    while np.any(np.abs(step) > 1e-8 * speed):
+        at = speed + 1j * H
+        signature = ball.signature(at)
+        bounced = signature.restitution * at
+        step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
+        # nπ ≤ v ≤ 2nπ, because 0 ≤ r ≤ 1. The duration broadcasts to the shape of all parameters.
+        speed = np.clip(speed - step, half, 2 * half) + 0 * np.real(signature.duration)
+    if not np.isfinite(speed).any():
+        raise ValueError(
+            f"ball = {brief(ball)}: its free impacts do not end, so that it has no restitution"
+            " coefficient"
+        )
+    aside = 1e-4 * speed
+    at = np.stack([speed - aside, speed, speed + aside]) + 1j * H
+    values = np.array(np.broadcast_arrays(*ball.signature(at), at))
+    restitution, duration, centroid, load, _ = values[:, 1].real
+    slopes = (values[0] * at).imag / H
+    return FreeImpact(
+        n=np.asarray(n),
+        speed=speed,
+        restitution=restitution,
+        slope=slopes[1],
+        curvature=(slopes[2] - slopes[0]) / (2 * aside),
+        duration=duration,
+        centroid=centroid,
+        centroid_slope=(values[2] * at).imag[1] / H,
+        load=load,
+        load_slope=values[3, 1].imag / H,
+    )
+
+
+def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
+    """Return Λ, or the saddle-node C/max W′ if Λ is smaller only by rounding errors.
+
+    The Λ of the saddle-node of the restitution model then satisfies C ≤ Λ max W′.
+    """
+    amplitude = np.asarray(amplitude, float)
+    node = impact.line / table.slope
+    # C is a difference of numbers as large as the speed, so the error of C is a few eps times the
+    # speed.
+    rounding = 4 * np.finfo(float).eps * impact.speed / table.slope
+    below = (amplitude < node) & (node - amplitude <= rounding)
+    return np.where(below, node, amplitude)
+
+
+def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
+    """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R8)."""
+    amplitude = off_rounding(impact, amplitude, table)
+    phase, lift, _, _ = table.instant(impact.line, amplitude)
+    anywhere = 0 * (impact.line + amplitude)
+    return {
+        "max_height": lift + impact.half**2 / 2,
+        "bounce_velocity": impact.half + 0 * lift,
+        "phase": phase - table.steepest,
+        "apparent_restitution": impact.restitution + 0 * lift,
+        "saddle_node": impact.line / table.slope + anywhere,
+        "period_doubling": table.amplitude_at(impact.line, impact.doubling)[0] + anywhere,
+    }
+
+
+def law_errors(
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+) -> dict:
+    """Use the error law to compute the signed errors of the restitution model.
+
+    An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
+    (Eqs. 37 and 38). The error of the phase is (x_c - x)/2π, a share of a period. The remainder of
+    the law is of the second order in the duration of contacts, and of the order 3/2 next to the
+    saddle-node.
+
+    Parameters
+    ----------
+    impact : Ball or FreeImpact
+        A ball, or its :func:`free_impact` for this n.
+    amplitude : array_like
+        Λ, which broadcasts with the parameters of the ball.
+    n : int
+        Number of periods of the table in one period of the orbit.
+    table : Table
+        The waveform. The impacts of the orbits come after the phase at which the table rises
+        fastest.
+
+    Returns
+    -------
+    dict
+        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. Above the
+        period doubling the errors are those of unstable orbits. The function
+        ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> ball = SpringDamper(frequency_ratio=82.18, restitution=0.65)
+    >>> round(float(law_errors(ball, amplitude=1.0)["max_height"]), 5)
+    -0.01
+    """
+    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    amplitude = off_rounding(impact, amplitude, table)
+    reference = restitution_values(impact, amplitude, table)
+    # r is NaN below the saddle-node.
+    r = reference["apparent_restitution"]
+    delay = impact.centroid
+    shift = impact.shift
+    phase, lift, _, jolt = table.instant(impact.line, amplitude)
+    later, turned, push, _ = table.instant(impact.line - shift, amplitude)
+    _, _, doubling, _ = _doubling_shift(impact, table)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        turn = later - phase
+        risen = turned - lift - shift * impact.line - impact.speed * delay
+        loaded = impact.load - impact.duration + (1 + r) * delay - (impact.slope - r) * shift
+        load = 1 - push + shift * jolt
+        return {
+            "max_height": risen / reference["max_height"],
+            "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
+            "phase": (turn - shift - delay) / (2 * np.pi),
+            "apparent_restitution": loaded * load / (r * impact.speed),
+            "saddle_node": np.divide(-shift, impact.line) + 0 * reference["saddle_node"],
+            "period_doubling": doubling + 0 * reference["period_doubling"],
+        }
+
+
+def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
+    """First-order shifts of w′, -w″, Λ (relative) and the phase of the period doubling."""
+    amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
+    jolt = -amplitude * table(phase, 3)
+    b = impact.slope
+    half = impact.half
+    rise = impact.doubling - 1
+    across = impact.shift * rise
+    steeper = impact.curvature * across - impact.load_slope * rise
+    along = (
+        (1 - b) * across
+        + 2 * impact.centroid_slope * rise
+        - half * impact.load * jolt
+        + steeper * (half * (1 - rise) - impact.speed)
+    )
+    along = along / (half * (1 + b))
+    share = impact.doubling * along + jolt * across
+    share = share / (impact.doubling**2 + impact.line * jolt)
+    return across, along, share, (share * impact.line - across) / impact.doubling
+
+
+def law_coefficients(
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+) -> dict:
+    """Compute coefficients K of errors. A contact that is stretched by γ has the errors Kγ.
+
+    This holds far above the saddle-node. If the given ball has ϖ = 1, errors at other ϖ are K/ϖ. At
+    the saddle-node the coefficients of height and phase are infinite. Parameters are as in
+    :func:`law_errors`.
+    """
+    impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
+    errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
+    return {name: np.imag(error) / H for name, error in errors.items()}
+
+
+def law_thresholds(
+    contacts: SpringDamper | ForceLaw | Callable,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    tolerance: float = 0.01,
+    table: Table = SINE,
+) -> dict:
+    """Use the error law to compute the ϖ above which the restitution model is within a tolerance.
+
+    This ϖ is |K|/ε, except for the height and the phase. The saddle-node changes the errors of
+    height and phase in the first order (Eq. R7 of the article).
+
+    Parameters
+    ----------
+    contacts : SpringDamper, ForceLaw or callable
+        One of
+
+        1. a spring and a damper, whose ϖ is ignored;
+        2. a contact law with units. The number π/(D + κ) then replaces ϖ, where D is the duration
+           of a free impact, and κ is -δ/δ′ at the end of this impact;
+        3. a function that returns the ball for a number that replaces ϖ. The duration of a free
+           impact must be inversely proportional to this number.
+    amplitude, n, table
+        As in :func:`law_errors`.
+    tolerance : float
+        Largest modulus ε of the error.
+
+    Returns
+    -------
+    dict
+        Threshold values of ϖ. The keys are the names in :data:`QUANTITIES`.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> found = law_thresholds(SpringDamper(1.0, restitution=0.65), amplitude=1.0)
+    >>> round(float(found["max_height"]), 2), round(float(found["phase"]), 1)
+    (82.18, 17.8)
+    """
+    impact = free_impact(ball_at_ratio(contacts, n, tolerance)(1.0), n)
+    amplitude = off_rounding(impact, amplitude, table)
+    coefficients = law_coefficients(impact, amplitude=amplitude, table=table)
+    found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
+    for name in ("max_height", "phase"):
+        found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
+    return found
+
+
+@np.errstate(invalid="ignore", divide="ignore")
+def _first_stretch(
+    impact: FreeImpact, amplitude: NDArray, tolerance: float, name: str, table: Table
+) -> NDArray:
+    """Find the smallest stretch γ at which an error exceeds the tolerance.
+
+    Samples bracket this γ.
+    """
+    shift = impact.shift
+    # The law has orbits if |C - s| is below Λ max W′. It does not apply to contacts as long as 4π.
+    end = (impact.line + np.copysign(amplitude * table.slope, shift)) / shift * (1 - 1e-9)
+    end = np.fmin(end, 4 * np.pi / impact.duration)
+    if table.is_sine:
+        # The error is concave. The error of the height is largest if -w″ rises as fast as the depth
+        # of the instant. The error of the phase is largest if ψ falls as fast as the delay grows.
+        # `turns` has the values of C - s at these maxima.
+        deeper = shift * impact.line + impact.speed * impact.centroid
+        share = shift / (shift + impact.centroid)
+        turns = {
+            "max_height": deeper * amplitude / np.hypot(shift, deeper),
+            "phase": np.sqrt(np.maximum(np.square(amplitude) - share**2, 0)),
+        }
+        largest = np.where(shift > 0, np.maximum((impact.line - turns[name]) / shift, 0), 0)
+        places = np.array(np.broadcast_arrays(0.0, largest, end))
+    else:
+        # Next to the saddle-node, errors leave the tolerance at short stretches.
+        places = np.multiply.outer(np.linspace(0, 1, 201) ** 3, end)
+
+    def error(stretch: Values, amplitude: Values, *fields: NDArray) -> Values:
+        stretched = FreeImpact(*fields).stretched(stretch)
+        return law_errors(stretched, amplitude=amplitude, table=table)[name]
+
+    errors = error(places, amplitude, *impact)
+    beyond = np.abs(errors) > tolerance
+    after = np.maximum(beyond.argmax(axis=0), 1)[np.newaxis]
+    low, high = (np.take_along_axis(places, each, axis=0)[0] for each in (after - 1, after))
+    value = np.take_along_axis(errors, after, axis=0)[0]
+    found = find_root(
+        lambda stretch, bound, *known: error(stretch, *known) - bound,
+        (low, high),
+        args=(np.copysign(tolerance, value), amplitude, *impact),
+    )
+    return np.where(beyond.any(axis=0), found.x, end + 0 * errors[-1])
+
+
+def ball_at_ratio(
+    contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
+) -> Callable:
+    """Return a function that maps ϖ, or the number that replaces it, to the ball."""
+    checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
+    if isinstance(contacts, Ball):
+        impact = free_impact(contacts, n)
+        return contacts.at_ratio(impact.restitution, impact.centroid)
+    if not callable(contacts):
+        raise ValueError(
+            f"contacts = {brief(contacts)}: must be a SpringDamper, a ForceLaw, or a function that"
+            " returns one of them"
+        )
+    return contacts
+
+
+def contact_values(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: ArrayLike = 1,
+    quantities: Sequence[str] = QUANTITIES,
+    table: Table = SINE,
+) -> dict:
+    """Compute quantities of the n-T orbit of a ball, and the Λ of its bifurcations.
+
+    The orbit is on the stable side of the saddle-node. It may be inadmissible.
+
+    Parameters
+    ----------
+    ball : Ball
+        The ball.
+    amplitude, n, table
+        As in :func:`law_errors`. ``amplitude`` and ``n`` broadcast with the parameters of the ball.
+    quantities : sequence of str
+        Names from :data:`QUANTITIES`.
+
+    Returns
+    -------
+    dict of arrays
+        Values by name. They are NaN if there is no orbit. The phase is counted from the phase at
+        which the table rises fastest, which is 0 for a sine. A corrected ball has instantaneous
+        impacts. Its phase, velocity and apparent restitution belong to contacts that start t_c
+        before these impacts and end D - t_c after them.
+    """
+    if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
+        allowed = ", ".join(QUANTITIES)
+        raise ValueError(f"quantities = {quantities!r}: must be a list of names from {allowed}")
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
+    for name in ("saddle_node", "period_doubling"):
+        if name in found:
+            found[name] = _bifurcation(row, periods, name, table)
+    of_orbits = [name for name in quantities if name not in ("saddle_node", "period_doubling")]
+    # Blocks of about 4096 orbits limit the memory.
+    blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
+    for block in blocks if of_orbits else []:
+        equations = OrbitEquations(row, 1, periods, table=table).rows(block)
+        z = rows_of_orbits(equations, amplitudes[block])
+        good = np.isfinite(z[:, 0])
+        if good.any():
+            of_block = _values(equations.rows(good), z[good])
+            for name in of_orbits:
+                found[name][block[good]] = of_block[name]
+    return {name: values.reshape(shape) for name, values in found.items()}
+
+
+def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
+    """Find n-T orbits on the stable side of the saddle-node, shape (rows, N), or NaN."""
+    periods = np.broadcast_to(equations.periods, amplitude.shape)
+    guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
+    solution = newton(equations, guess)
+    # At a saddle-node each Newton step only halves the error, so 12 steps are too few.
+    slow = ~solution.found & (np.abs(equations.turn(solution.linear) - 1) < 0.1)
+    if slow.any():
+        more = newton(equations.rows(slow), solution.z[slow], iterations=40)
+        solution.z[slow] = more.z
+        solution = solution._replace(linear=equations.linearized(solution.z))
+        solution.found[slow] = more.found
+    good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
+    # On compliant contacts Newton's method may find a solution that is not an orbit.
+    leaves = equations.ends(solution.z).speed[:, 0] > 0
+    good &= leaves & (solution.z[:, 1] > 0) & (np.abs(solution.z - guess)[:, 0] < np.pi)
+    return np.where(good[:, np.newaxis], solution.z, np.nan)
+
+
+def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
+    """Find amplitudes of a bifurcation, shape (rows,). The error law gives the guess."""
+    if not np.isfinite(row.signature(1.5 * np.pi * periods).restitution).any():
+        return np.full(periods.shape, np.nan)
+    impact = free_impact(row, periods)
+    if name == "saddle_node":
+        kind = "saddle-node"
+        x = impact.line - impact.shift
+        y = impact.shift * impact.line / table.slope * table(table.steepest, 3)
+        amplitude = x / table.slope
+        phase = table.steepest - impact.shift
+    else:
+        kind = "period doubling"
+        across, along, share, turn = _doubling_shift(impact, table)
+        x = impact.line + across
+        y = impact.doubling + along
+        amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
+        amplitude = amplitude * (1 + share)
+        phase = phase + turn
+    if table.is_sine:
+        # On a sine the velocity x and -w″ = y determine amplitude and phase.
+        amplitude, phase = table.amplitude_at(x, y)
+    equations = OrbitEquations(row, 1, periods, table=table, kind=kind)
+    delay = impact.centroid + row.start(impact.speed) / impact.speed
+    speed = impact.half + x - (1 - y) * delay
+    guess = [phase - delay, speed, row.free(speed)][: equations.unknowns]
+    rows = np.stack(np.broadcast_arrays(*guess, amplitude), axis=-1)
+    solution = newton(equations, rows, iterations=20)
+    amplitude = solution.z[:, -1]
+    return np.where(solution.found & (amplitude > 0), amplitude, np.nan)
+
+
+def _values(equations: OrbitEquations, z: NDArray) -> dict:
+    """Height, velocity, phase and apparent restitution of orbits with one impact, (rows,) each."""
+    impacts, _, amplitudes, _ = equations.split(z)
+    touch, speed = impacts[:, 0, :2].T
+    amplitude = amplitudes[:, 0]
+    ends = equations.ends(z)
+    leaves = ends.leaves[:, 0]
+    table = equations.table
+    velocity = ends.speed[:, 0] + amplitude * table(leaves, 1)
+    # An instantaneous impact replaces a contact that starts earlier and ends later.
+    ball = equations.ball
+    before = -ball.start(speed) / speed
+    after = ball.signature(speed).duration - before if ball.below_table else 0.0
+    approach = amplitude * table(touch, 1) - speed + before
+    touch = touch - before
+    leaves = leaves + after
+    velocity = velocity - after
+    speed = amplitude * table(touch, 1) - approach
+    return {
+        "max_height": equations.max_height(z),
+        "bounce_velocity": velocity,
+        "phase": touch - table.steepest,
+        "apparent_restitution": (velocity - amplitude * table(leaves, 1)) / speed,
+    }
+
+
+def exact_errors(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    simple: Callable[[Ball], Ball] | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+    table: Table = SINE,
+) -> dict:
+    """Use exact orbits to compute the signed errors of a simple model, as in :func:`law_errors`.
+
+    Parameters
+    ----------
+    ball, amplitude, n, quantities, table
+        As in :func:`contact_values`.
+    simple : callable, optional
+        Function that maps the ball to the ball of the simple model, such as ``Corrected``. The
+        default is the restitution model with the r(v) of the ball.
+
+    Returns
+    -------
+    dict of arrays
+        Errors by the names in ``quantities``.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Corrected, SpringDamper
+    >>> ball = SpringDamper(20.0, restitution=0.65)
+    >>> error = exact_errors(ball, amplitude=1.0, simple=Corrected, quantities=["max_height"])
+    >>> round(float(error["max_height"]), 6)
+    -0.000121
+    """
+    if not (simple is None or callable(simple)):
+        raise ValueError(f"simple = {brief(simple)}: must map a ball to a ball, such as Corrected")
+    given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
+    exact = contact_values(ball, **given)
+    if simple is None:
+        reference = restitution_values(free_impact(ball, n), amplitude, table)
+    else:
+        reference = contact_values(simple(ball), **given)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        scales = {name: reference[name] for name in quantities} | {"phase": 2 * np.pi}
+        return {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
+
+
+def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
+    """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
+    if simple is None:
+        values = restitution_values(free_impact(ball, n), amplitude, table)
+        doubles = np.asarray(amplitude) > values["period_doubling"]
+        of_simple = doubles & np.isfinite(values["max_height"])
+    else:
+        of_simple = _are_unstable(simple(ball), amplitude, n, table)
+    return of_simple + 2 * _are_unstable(ball, amplitude, n, table)
+
+
+def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
+    """Whether the n-T orbits on the stable side of the saddle-node are past their doubling.
+
+    False where there are no orbits.
+    """
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    equations = OrbitEquations(row, 1, periods, table=table)
+    z = rows_of_orbits(equations, amplitudes)
+    with np.errstate(invalid="ignore"):
+        stable = equations.stable(equations.linearized(z))
+    return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
+
+
+class ErrorThreshold(NamedTuple):
+    """Frequency ratios above which an error is within a tolerance, as arrays of the same shape.
+
+    Attributes
+    ----------
+    ratio : array
+        Frequency ratios, NaN unless the status is "found".
+    status : array of str
+        - "found";
+        - "within": the error is within the tolerance at all ratios;
+        - "exceeded": the error exceeds the tolerance at the largest ratio;
+        - "first orbit": it is within the tolerance from the first ratio with an orbit on;
+        - "no orbit": there is no orbit at the largest ratio.
+    unstable : array of str
+        Which orbit is unstable: "", "in the simple model", "on the contact" or "in both models".
+        This is the orbit at ``ratio``, or at the largest ratio if ``ratio`` is NaN. The text is ""
+        for bifurcations, and if there is no orbit.
+    """
+
+    ratio: NDArray
+    status: NDArray
+    unstable: NDArray
+
+
+UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
+"""Texts by index.
+
+The index is 1 if the orbit is unstable in the simple model, plus 2 if it is unstable on the
+contact.
+"""
+
+
+def error_thresholds(
+    contacts: SpringDamper | ForceLaw | Callable,
+    *,
+    amplitude: ArrayLike,
+    n: int = 1,
+    tolerance: float = 0.01,
+    simple: Callable[[Ball], Ball] | None = None,
+    quantities: Sequence[str] = QUANTITIES,
+    low: float = 1.0,
+    high: float = 1e6,
+    samples: int = 49,
+    table: Table = SINE,
+) -> dict:
+    """Find the ϖ above which the error of a simple model is within a tolerance.
+
+    Parameters
+    ----------
+    contacts : SpringDamper, ForceLaw or callable
+        As in :func:`law_thresholds`. A function must accept an array.
+    amplitude, n, simple, quantities, table
+        As in :func:`exact_errors`.
+    tolerance : float
+        Largest modulus of the error.
+    low, high : float
+        Range of ϖ.
+    samples : int
+        Number of samples in this range. The ratio of neighbouring samples is constant. If the error
+        crosses the tolerance twice between neighbouring samples, these crossings are missed.
+
+    Returns
+    -------
+    dict of ErrorThreshold
+        Thresholds by the names in ``quantities``.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import SpringDamper
+    >>> ball = SpringDamper(1.0, restitution=0.65)
+    >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
+    >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
+    ['82.177 found', '18.054 found']
+
+    Above the period doubling, unstable orbits are compared:
+
+    >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
+    >>> round(float(found.ratio), 2), str(found.unstable)
+    (75.79, 'in both models')
+    """
+    if not 0 < low < high < np.inf:
+        raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
+    whole_number("samples", samples, 2)
+    path = ball_at_ratio(contacts, n, tolerance)
+    known: dict = {"amplitude": amplitude, "n": n, "simple": simple, "table": table}
+    shape = rows_of(path(high), amplitude=amplitude)[2]
+    grid = np.geomspace(low, high, samples)
+    ratios = grid.reshape(-1, *(1 for _ in shape))
+    errors = exact_errors(path(ratios), quantities=quantities, **known)
+    # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
+    alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
+    together = [name for name in quantities if name not in alone]
+    found = {}
+    for names in filter(None, [together, *([name] for name in alone)]):
+
+        def excess(logarithms: Values, places: Values, names: Any = names) -> Values:
+            # `path` gets the ratios of all rows, because it may depend on the index in an array.
+            ratio = np.full((len(logarithms), len(names), *shape), float(high))
+            rows = ratio.reshape(len(logarithms), -1)
+            rows[:, places] = np.exp(logarithms)
+            there = exact_errors(path(ratio), quantities=names, **known)
+            error = np.stack([there[name][:, j] for j, name in enumerate(names)], axis=1)
+            # The error is nearly proportional to 1/ϖ, so its logarithm is nearly linear in ln ϖ.
+            return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
+
+        scan = np.stack([np.abs(errors[name]) for name in names], axis=1).reshape(samples, -1)
+        beyond = ~(scan <= tolerance)
+        last = samples - 1 - beyond[::-1].argmax(axis=0)
+        places = np.arange(last.size)
+        is_last = last == samples - 1
+        no_orbit = np.isnan(scan[last, places])
+        cases = [~beyond.any(axis=0), no_orbit & is_last, no_orbit, is_last]
+        status = np.select(cases, ["within", "no orbit", "first orbit", "exceeded"], "found")
+        places = places[status == "found"]
+        ratio = np.full(last.size, np.nan)
+        if places.size:
+            bracket = np.log(grid[last[places]]), np.log(grid[last[places] + 1])
+            at = find_root(lambda x, at: excess(x[np.newaxis], at)[0], bracket, args=(places,))
+            ratio[places] = np.exp(at.x)
+        for j, name in enumerate(names):
+            of_name = ratio.reshape(len(names), *shape)[j]
+            unstable = np.zeros(shape, int)
+            if name not in alone:
+                there = path(np.where(np.isfinite(of_name), of_name, high))
+                unstable = _unstable(there, **known)
+            states = status.reshape(len(names), *shape)[j]
+            found[name] = ErrorThreshold(of_name, states, UNSTABLE[unstable])
+    return {name: found[name] for name in quantities}

@@ -1,0 +1,457 @@
+"""Decide whether a restitution coefficient is good enough for a given ball and shaker.
+
+It is good enough if the ball bounces and its orbit is stable in both models, and if the heights of
+both models differ by at most a tolerance.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bouncing_ball_beyond.contacts.balls import (
+    Ball,
+    Rigid,
+    SpringDamper,
+    damping_of,
+    restitution_of,
+)
+from bouncing_ball_beyond.contacts.laws import ForceLaw
+from bouncing_ball_beyond.contacts.named_laws import linear, tsuji
+from bouncing_ball_beyond.errors.error_law import (
+    contact_values,
+    error_thresholds,
+    free_impact,
+    law_errors,
+    restitution_values,
+)
+from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
+
+STANDARD_GRAVITY = 9.80665
+"""Standard acceleration of gravity in m/s²."""
+
+
+ELASTIC = 1 - 1e-9
+"""Restitution coefficient above which orbits are only marginally stable, for lack of a loss."""
+
+
+def _in_mm(value: float) -> str:
+    return "–" if np.isnan(value) else f"{1e3 * value:.4g}"
+
+
+def positive(name: str, value: Any, unit: str) -> float:
+    """Return a number as float. Raises ValueError unless it is > 0; the message has the unit."""
+    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not (is_number and 0 < value < np.inf):
+        raise ValueError(f"{name} = {value!r}: must be a positive number{unit and ' in '}{unit}")
+    return float(value)
+
+
+class ByModel(NamedTuple):
+    """One quantity by three methods.
+
+    Attributes
+    ----------
+    by_restitution : float
+        Restitution model.
+    exact : float
+        Contact model.
+    by_law : float
+        Contact model, estimated from the restitution model by the error law.
+    """
+
+    by_restitution: float
+    exact: float
+    by_law: float
+
+
+@dataclass(frozen=True, repr=False)
+class ShakerAnswer:
+    """Whether a restitution coefficient is good enough, and the limits of bouncing and stability.
+
+    It prints as a short table, followed by the answer in sentences. Values that do not exist are
+    NaN.
+    """
+
+    n: int
+    """Number of periods of the table in which the ball bounces once."""
+    amplitude: float
+    """Λ, the scale of the waveform. For a sine it is the acceleration divided by gravity."""
+    ball: Ball
+    """Dimensionless ball with its contact, for the other functions of the package."""
+    frequency: float
+    """Frequency of the table in Hz."""
+    displacement: float
+    """Amplitude of the displacement of the table in m: half of the distance between its lowest and
+    highest positions.
+    """
+    contact_duration: float
+    """Duration, in s, of a free impact at the closing speed of the orbit."""
+    tolerance: float
+    """Largest relative error of the height that is allowed."""
+    saddle_node: ByModel
+    """Λ above which the ball bounces."""
+    period_doubling: ByModel
+    """Λ up to which the orbit is stable."""
+    max_height: ByModel
+    """Maximum height of the ball, in m, above the mean position of the table."""
+    longest_contact: float
+    """Longest contact, in s, with a height within the tolerance, at the same frequency."""
+    table: Table = SINE
+    """Waveform of the table."""
+
+    @property
+    def bounces(self) -> bool:
+        """Whether the orbit exists in the restitution model and on the contact."""
+        return max(self.saddle_node[:2]) <= self.amplitude
+
+    @property
+    def stable(self) -> bool:
+        """Whether the orbit is stable, in the restitution model and on the contact."""
+        return self.bounces and self.amplitude <= min(self.period_doubling[:2])
+
+    @property
+    def error(self) -> float:
+        """Height on the contact, divided by the height in the restitution model, minus 1."""
+        return self.max_height.exact / self.max_height.by_restitution - 1
+
+    @property
+    def is_good_enough(self) -> bool:
+        """Whether the orbits of both models exist, are stable, and agree in height.
+
+        If there is no height to compare, this is false, and :attr:`reason` says why.
+        """
+        return not self.reason
+
+    @property
+    def reason(self) -> str:
+        """Why a restitution coefficient is not good enough; empty if it is good enough."""
+        if not self.bounces:
+            where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
+            return f"Λ is below the saddle-node {where}, so there is no height to compare"
+        if not self.stable:
+            where = WHERE[tuple(value < self.amplitude for value in self.period_doubling[:2])]
+            return f"the orbit has doubled {where}, so a ball does not stay on it"
+        if not abs(self.error) <= self.tolerance:
+            return "the heights of both models differ by more than the tolerance"
+        return ""
+
+    def __repr__(self) -> str:
+        rows = {
+            "": ("restitution", "contact", "error law"),
+            "bounces from Λ": [f"{value:.4g}" for value in self.saddle_node],
+            "stable up to Λ": [f"{value:.4g}" for value in self.period_doubling],
+            "maximum height/mm": [_in_mm(value) for value in self.max_height],
+        }
+        lines = [
+            f"{name:<18}{''.join(f'{value:>13}' for value in values)}"
+            for name, values in rows.items()
+        ]
+        return "\n".join([*lines, "", *self._sentences()])
+
+    def _sentences(self) -> list[str]:
+        begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
+        doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
+        periods = "each period" if self.n == 1 else f"{self.n} periods"
+        sentences = [
+            f"The table moves by ±{1e3 * self.displacement:.4g} mm at {self.frequency:.4g} Hz,"
+            f" with an acceleration of {self.amplitude * self.table.acceleration:.4g} times gravity"
+            f" (Λ = {self.amplitude:.4g})."
+            f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
+            f" {self.contact_duration * self.frequency:.2%} of a period.",
+            f"The ball {BOUNCES[begun]} once in {periods} of the table.",
+        ]
+        if self.bounces and np.isnan(self.error):
+            sentences.append(
+                "Its orbit on the contact is not found at this acceleration: check the units;"
+                " displacements are in m."
+            )
+        elif self.bounces:
+            elastic = self.stable and self.ball.signature(1.0).restitution > ELASTIC
+            sentences.append(f"This motion is {'marginally ' if elastic else ''}{STABLE[doubled]}.")
+            lower = "lower" if self.error < 0 else "higher"
+            beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
+            by_law = self.max_height.by_law / self.max_height.by_restitution - 1
+            sentences.append(
+                f"Its maximum height is {100 * abs(self.error):.3g}% {lower} than with a"
+                f" restitution coefficient, {beyond} the tolerance of {100 * self.tolerance:.3g}%;"
+                f" the error law predicts {100 * by_law:+.3g}%."
+            )
+            if self.longest_contact > 0:
+                sentences.append(
+                    f"Contacts of up to {1e6 * self.longest_contact:.4g} µs are within this"
+                    " tolerance."
+                )
+        if self.amplitude * self.table.lift < 1:
+            sentences.append("A ball that is laid on the table stays there.")
+        reason = self.reason
+        verdict = "A restitution coefficient is good enough"
+        if begun == 0 or doubled == 2:
+            verdict = f"Whether a restitution coefficient is good enough has no answer: {reason}"
+        elif reason:
+            verdict = f"A restitution coefficient is not good enough: {reason}"
+        return [*sentences, f"{verdict}."]
+
+
+WHERE: dict[tuple, str] = {
+    (True, True): "in both models",
+    (True, False): "in the restitution model only",
+    (False, True): "on the contact only",
+}
+"""Text on where a condition fails.
+
+A key has two parts: whether the condition fails in the restitution model, and on the contact.
+"""
+BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
+"""Text on bouncing. The index is the number of models in which the ball bounces."""
+STABLE = ("stable", "stable in one of the two models only", "unstable, its period has doubled")
+"""Text on stability. The index is the number of models in which the period has doubled."""
+
+
+def on_shaker(
+    *,
+    frequency: float,
+    restitution: float | Any,
+    displacement: float | None = None,
+    acceleration: float | None = None,
+    mass: float | None = None,
+    radius: float | None = None,
+    contact_duration: float | None = None,
+    stiffness: float | None = None,
+    youngs_modulus: float | None = None,
+    poissons_ratio: float = 0.3,
+    table_youngs_modulus: float | None = None,
+    table_poissons_ratio: float = 0.3,
+    gravity: float = STANDARD_GRAVITY,
+    n: int = 1,
+    tolerance: float = 0.01,
+    table: Table = SINE,
+    release: str = "force",
+) -> ShakerAnswer:
+    """Decide whether a restitution coefficient is good enough for a ball on a shaker, in SI units.
+
+    Parameters
+    ----------
+    frequency : float
+        Frequency of the table in Hz.
+    restitution : float or list of (v, r)
+        Restitution coefficient r of a free impact, above 0 and up to 1; or measured pairs of a
+        closing speed in m/s and r, as a recording of contacts has them. The contact then has the
+        damping of the r of each closing speed; see :func:`.restitution_of`.
+    displacement, acceleration : float
+        Give exactly one of the two. The displacement, in m, is its amplitude: half of the distance
+        between the lowest and highest positions of the table. The acceleration, in m/s², is the
+        maximum acceleration of the table.
+    mass : float, optional
+        Mass of the ball in kg. Not needed with ``contact_duration``.
+    radius : float, optional
+        Radius of the ball in m. Only needed with ``youngs_modulus``.
+    contact_duration, stiffness, youngs_modulus : float
+        Give exactly one of the three.
+
+        - Duration of the contact in s, or stiffness in N/m. The contact is then a spring and a
+          damper with the given ``release``.
+        - Young's modulus of the ball in Pa. The contact is then a Hertz contact with the damping
+          of Tsuji. Its r is the same at every speed. The radius of the ball is required.
+    poissons_ratio, table_youngs_modulus, table_poissons_ratio : float
+        Poisson's ratio of the ball, Young's modulus of the table in Pa, and Poisson's ratio of the
+        table, for a contact of Hertz. If no modulus of the table is given, the table is rigid.
+    gravity : float
+        Acceleration of gravity in m/s².
+    n : int
+        Number of periods of the table in which the ball bounces once.
+    tolerance : float
+        Largest relative error of the maximum height.
+    table : Table
+        Waveform of the table, by default a sine.
+    release : {"force", "displacement"}
+        What ends the contact of a spring and a damper. A measured contact cannot pull, and ends
+        where its force vanishes. Contacts of the paper end at zero depth: "displacement".
+
+    Returns
+    -------
+    ShakerAnswer
+
+    Raises
+    ------
+    ValueError
+        If a quantity is missing or out of range. If the contact is so compliant that the
+        saddle-node or the period doubling is not found.
+
+    Examples
+    --------
+    >>> given = {"frequency": 50.0, "acceleration": 0.8 * 9.80665, "restitution": 0.85}
+    >>> answer = on_shaker(**given, mass=0.02, stiffness=1e7)
+    >>> answer.is_good_enough, round(answer.error, 4)
+    (False, -0.0121)
+    """
+    rate = 2 * np.pi * positive("frequency", frequency, "Hz")
+    fall = positive("gravity", gravity, "m/s²")
+    tolerance = positive("tolerance", tolerance, "")
+    measured = None
+    if np.ndim(restitution):
+        measured = _measured(restitution, fall / rate, n)
+    elif positive("restitution", restitution, "") > 1:
+        raise ValueError(f"restitution = {restitution!r}: must be above 0, up to 1")
+    check_table(table)
+    if _one_of(displacement=displacement, acceleration=acceleration) == "displacement":
+        amplitude = (
+            positive("displacement", displacement, "m") * rate**2 / fall / _half_range(table)
+        )
+    else:
+        amplitude = positive("acceleration", acceleration, "m/s²") / fall / table.acceleration
+    contact = _one_of(
+        contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
+    )
+    # contacts(times) is the dimensionless ball on a contact whose duration is divided by `times`.
+    if contact == "youngs_modulus":
+        compliance = _compliance(youngs_modulus, poissons_ratio, "")
+        if table_youngs_modulus is not None:
+            compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
+        # Hertz: force 4/3 E* √R p^(3/2). Units are g/Ω² for lengths and 1/Ω for times.
+        force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
+        force *= np.sqrt(fall) / rate**3 / positive("mass", mass, "kg")
+        # The duration and the speed are arbitrary, because the damping depends only on r.
+        hertz = tsuji(restitution=0.5 if measured else restitution, duration=0.1, speed=1.0)
+        if measured:
+            hertz = _damped_by(
+                hertz, lambda u: {"damping": np.sqrt(5) * damping_of(measured(u))}, "stiffness"
+            )
+
+        def contacts(times: Values) -> Any:
+            return hertz.at(stiffness=force * times**2.5)
+
+    else:
+        spring: Any = SpringDamper(
+            1.0, restitution=restitution if not measured else 0.5, release=release
+        )
+        if measured:
+            spring = _damped_by(
+                linear(1.0, 0.1, release=release),
+                lambda u: {"damping_ratio": damping_of(measured(u), release)},
+                "frequency_ratio",
+            )
+        if contact == "stiffness":
+            square = positive("stiffness", stiffness, "N/m") / positive("mass", mass, "kg")
+            ratio = np.sqrt(square) / rate
+        else:
+            contact_time = rate * positive("contact_duration", contact_duration, "s")
+            ratio = float(free_impact(spring, n).duration) / contact_time
+
+        def contacts(times: Values) -> Any:
+            return spring.at(frequency_ratio=ratio * times)
+
+    return _answer(contacts, amplitude, n, tolerance, rate, fall, table)
+
+
+def _measured(pairs: Values, unit: float, n: int) -> Callable:
+    """r(u) of measured pairs, whose speeds are in m/s, if u is in this unit.
+
+    Raises ValueError if the ball of the n-T orbit does not close at a measured speed.
+    """
+    of_speed = restitution_of(pairs)
+
+    def restitution(u: Values) -> Values:
+        return of_speed(u * unit)
+
+    closing = float(free_impact(Rigid(restitution), n).speed) * unit
+    low, high = np.min(pairs, axis=0)[0], np.max(pairs, axis=0)[0]
+    if not low <= closing <= high:
+        raise ValueError(
+            f"restitution: was measured from {low:.3g} to {high:.3g} m/s, but the ball of this"
+            f" orbit closes at {closing:.3g} m/s: measure it there, or give a number"
+        )
+    return restitution
+
+
+def _damped_by(law: ForceLaw, damping: Callable, other: str) -> ForceLaw:
+    """Return a law whose damping depends on the closing speed. ``other`` is its other parameter."""
+
+    def force(p: Values, v: Values, start_speed: Values, **values: Values) -> Values:
+        return law.force(p, v, **values, **damping(start_speed))
+
+    values = {other: law.values[other]}
+    return ForceLaw(force, values, law.root, law.release, needs=("start_speed",))
+
+
+def _half_range(table: Table) -> float:
+    highest, lowest = table.peaks
+    return (highest - lowest) / 2
+
+
+def _one_of(**quantities: float | None) -> str:
+    given = [name for name, value in quantities.items() if value is not None]
+    if len(given) != 1:
+        raise ValueError(f"exactly one of {', '.join(quantities)} must be given")
+    return given[0]
+
+
+def _compliance(modulus: float | None, ratio: float, body: str) -> float:
+    """Return (1 - ν²)/E of a body. ``body`` is the prefix of its arguments: "" or "table_"."""
+    if not -1 < ratio <= 0.5:
+        raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")
+    return (1 - ratio**2) / positive(f"{body}youngs_modulus", modulus, "Pa")
+
+
+def _answer(
+    contacts: Any, amplitude: Values, n: Values, tolerance: Any, rate: Any, fall: Any, table: Table
+) -> ShakerAnswer:
+    """Return the answer for the ball contacts(1) at Λ.
+
+    ``rate`` is Ω in rad/s, and ``fall`` is gravity in m/s².
+    """
+    ball = contacts(1.0)
+    impact = free_impact(ball, n)
+    duration = float(impact.duration)
+    simple = restitution_values(impact, amplitude, table)
+    law = law_errors(impact, amplitude=amplitude, table=table)
+    names = ("saddle_node", "period_doubling", "max_height")
+    exact = contact_values(ball, amplitude=amplitude, n=n, quantities=names, table=table)
+    if impact.restitution > ELASTIC:
+        # The orbits begin at Λ = 0, without a bifurcation.
+        simple["saddle_node"] = exact["saddle_node"] = law["saddle_node"] = 0.0
+    if np.isnan(exact["saddle_node"] + exact["period_doubling"]):
+        raise ValueError(
+            f"the saddle-node or the period doubling is not found: a contact lasts"
+            f" {duration / (2 * np.pi):.2g} periods of the table; give a shorter contact"
+        )
+    longest = np.nan
+    # Heights are only compared where both orbits exist and are stable.
+    if all(
+        values["saddle_node"] <= amplitude <= values["period_doubling"]
+        for values in (simple, exact)
+    ):
+        low = duration / np.pi
+        threshold = error_thresholds(
+            contacts,
+            amplitude=amplitude,
+            n=n,
+            tolerance=tolerance,
+            quantities=["max_height"],
+            low=low,
+            high=1e6 * low,
+            table=table,
+        )["max_height"]
+        longest = float(duration / threshold.ratio) / rate
+    unit = {"saddle_node": 1.0, "period_doubling": 1.0, "max_height": fall / rate**2}
+    compared = {
+        name: ByModel(
+            float(simple[name]) * unit[name],
+            float(exact[name]) * unit[name],
+            float(simple[name] * (1 + law[name])) * unit[name],
+        )
+        for name in names
+    }
+    return ShakerAnswer(
+        n=n,
+        amplitude=amplitude,
+        ball=ball,
+        frequency=rate / (2 * np.pi),
+        displacement=amplitude * _half_range(table) * fall / rate**2,
+        contact_duration=duration / rate,
+        tolerance=tolerance,
+        longest_contact=longest,
+        table=table,
+        **compared,
+    )

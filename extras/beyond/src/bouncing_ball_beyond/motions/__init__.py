@@ -1,0 +1,1 @@
+"""Motions of balls from impact to impact, and where they end."""

@@ -1,0 +1,1 @@
+"""Datasets and pictures of orbits and branches."""

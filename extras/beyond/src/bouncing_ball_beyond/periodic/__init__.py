@@ -1,0 +1,1 @@
+"""Periodic orbits, their branches and their bifurcations."""

@@ -1,0 +1,313 @@
+"""Branches of orbits along one parameter, and curves of special orbits along two parameters."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bouncing_ball_beyond.periodic.equations import (
+    KINDS,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+)
+from bouncing_ball_beyond.periodic.march import (
+    AT_GOAL,
+    CLOSED,
+    Start,
+    ends_at,
+    march,
+    newton,
+)
+from bouncing_ball_beyond.periodic.search import single
+from bouncing_ball_beyond.periodic.special_orbits import crossings_of, halved_at, located
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class FollowedBranch:
+    """Branch of periodic orbits along a parameter, in the order in which they were followed.
+
+    Parameters
+    ----------
+    equations : OrbitEquations
+        Equations that the orbits solve.
+    z : ndarray, shape (points, N)
+        Unknowns of the orbits, one row for each.
+    special : tuple of PeriodicOrbit
+        Special orbits in their order on the branch. The special orbit at which the branch starts is
+        left out.
+    start, end : str
+        Where the branch starts, and why it ends.
+    """
+
+    equations: OrbitEquations
+    z: NDArray
+    special: tuple[PeriodicOrbit, ...]
+    start: str
+    end: str
+
+    _where = "this branch; its special orbits are"
+
+    def __repr__(self) -> str:
+        first, last = self.values[[0, -1]]
+        kind = self.equations.kind
+        name = type(self).__name__ + (kind and f": {kind}")
+        kinds = ", ".join(f"{each.kind} at {each.z[-1]:.8g}" for each in self.special)
+        rows = {
+            "orbits": len(self),
+            "impacts": self.impacts,
+            "periods": self.periods,
+            "along": f"{self.along}, {first:.6g} to {last:.6g}",
+            "special orbits": kinds or "none",
+            "start": self.start,
+            "end": self.end,
+        }
+        return "\n".join([name, *(f"  {name:16}{row}" for name, row in rows.items())])
+
+    def __len__(self) -> int:
+        return len(self.z)
+
+    @property
+    def impacts(self) -> int:
+        """Number k of impacts in one period of the orbits."""
+        return self.equations.impacts
+
+    @property
+    def periods(self) -> int:
+        """Number m of periods of the table in one period of the orbits."""
+        return int(self.equations.periods)
+
+    @property
+    def along(self) -> str:
+        """Name of the parameter that changes; for a curve, the names of both parameters."""
+        return " and ".join(path.name for path in self.equations.along)
+
+    @property
+    def values(self) -> NDArray:
+        """Values of the parameter that changes, shape (points,).
+
+        For a curve these are the values of its second parameter.
+        """
+        return self.z[:, -1]
+
+    @cached_property
+    def orbits(self) -> tuple[PeriodicOrbit, ...]:
+        """All orbits, each as a `PeriodicOrbit`."""
+        return tuple(self.equations.orbit(row, self.equations.kind) for row in self.z)
+
+    @cached_property
+    def stable(self) -> NDArray:
+        """Whether each orbit is stable, shape (points,)."""
+        return self.equations.stable(self.equations.linearized(self.z))
+
+    @cached_property
+    def admissible(self) -> NDArray:
+        """Whether a ball follows each orbit, shape (points,)."""
+        return self.equations.admissible(self.z)
+
+    def refined(self, spacing: float = 0.04) -> "FollowedBranch":
+        """Return the branch with additional orbits. Lines through all orbits then look smooth.
+
+        Parameters
+        ----------
+        spacing : float
+            Maximum distance between neighbouring orbits. It combines two changes: the root mean
+            square change of the times and speeds of the impacts, and the relative change of the
+            parameter. At most 50 orbits are added in a step of the branch.
+        """
+        if len(self) < 2:
+            return self
+        units = self.equations.scales(self.z[:-1])
+        chords = np.diff(self.z, axis=0)
+        counts = np.ceil(np.linalg.norm(chords / units, axis=1) / spacing).astype(int).clip(1, 50)
+        which = np.repeat(np.arange(len(chords)), counts)
+        share = np.concatenate([np.arange(count) / count for count in counts])[:, np.newaxis]
+        guess = self.z[which] + share * chords[which]
+        solution = newton(self.equations, guess, (chords / units**2)[which])
+        good = solution.found | (share[:, 0] == 0)
+        z = np.where(share == 0, guess, solution.z)[good]
+        return replace(self, z=np.concatenate([z, self.z[-1:]]))
+
+    def first(self, kind: str) -> PeriodicOrbit:
+        """First special orbit of a kind, such as "saddle-node" or "period doubling".
+
+        Spaces and hyphens are equivalent. Raises OrbitNotFound if there is no such orbit.
+        """
+        for each in self.special:
+            if each.kind.replace("-", " ") == str(kind).replace("-", " ").lower():
+                return each
+        others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
+        raise OrbitNotFound(f"no {kind} on {self._where}: {others}")
+
+    def with_special(self) -> list[PeriodicOrbit]:
+        """All orbits and special orbits in order.
+
+        Each special orbit is inserted into the step whose length increases least.
+        """
+        orbits = list(self.orbits)
+        units = self.equations.scales(self.z)[0]
+        points = self.z / units
+        steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        for special in reversed(self.special):
+            distance = np.linalg.norm(points - special.z / units, axis=1)
+            place = int(np.argmin(distance[:-1] + distance[1:] - steps)) if len(steps) else 0
+            orbits.insert(place + 1, special)
+        return orbits
+
+
+class SpecialCurve(FollowedBranch):
+    """Curve of special orbits of one kind along two parameters."""
+
+    _where = "this curve; other special orbits on it are"
+
+    @property
+    def kind(self) -> str:
+        """Kind of the special orbits."""
+        return self.equations.kind
+
+
+def joined(back: Any, forth: Any) -> Any:
+    """Join two branches that leave one orbit in opposite directions.
+
+    The joined branch has the direction of ``forth``.
+    """
+    if forth.end == CLOSED:
+        return replace(forth, start=CLOSED)
+    return replace(
+        forth,
+        z=np.concatenate([back.z[:0:-1], forth.z]),
+        special=(*back.special[::-1], *forth.special),
+        start=back.end,
+    )
+
+
+def both_ways(
+    equations: OrbitEquations,
+    z: NDArray,
+    direction: NDArray,
+    window: NDArray,
+    points: int,
+) -> Any:
+    """Follow the curve through a point z, shape (1, N), in a direction and in its opposite."""
+    both = np.concatenate([-direction, direction])
+    nothing = np.full(2, np.nan), np.full(2, "")
+    start = Start(equations, np.tile(z, (2, 1)), both, *nothing)
+    return joined(*followed(start, np.array([window, window]), [None, None], points, ""))
+
+
+class _Passed(NamedTuple):
+    """Special orbit on a branch.
+
+    Attributes
+    ----------
+    number : int
+        Number of the step that contains it.
+    place : float
+        Distance of the orbit from the start of this step, along the tangent.
+    orbit : PeriodicOrbit
+    """
+
+    number: int
+    place: float
+    orbit: PeriodicOrbit
+
+    @property
+    def order(self) -> tuple:
+        """Sort key along the branch.
+
+        Special orbits at the same point have the order of `OrbitEquations.kinds`. For example, a
+        flight may vanish where an impact grazes and a release is lost.
+        """
+        kinds = [*self.orbit.equations.kinds, self.orbit.kind]
+        return self.number, round(self.place, 6), kinds.index(self.orbit.kind)
+
+
+def followed(
+    start: Start,
+    window: NDArray,
+    until: Sequence[str | None] | NDArray,
+    points: int,
+    own: str,
+    grazings: bool = True,
+) -> list[Any]:
+    """Follow branches, and locate the special orbits on them.
+
+    A special orbit of the kind ``own`` in the first step is the start of the branch, and is left
+    out. Grazings of flights and releases take most of the time, and may be left out.
+    """
+    steps = march(start, window, until, points)
+    row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
+    every = zip(*(points for points, _ in steps), strict=True)
+    z, slopes, tests, _ = (np.concatenate(each) for each in every)
+    crossings = crossings_of(start.equations, row, z, slopes, tests, grazings)
+    z, found = np.empty((2, 0))
+    if len(crossings.row):
+        z, found = located(start.equations, crossings)
+    branches = []
+    for i, (path, end) in enumerate(steps):
+        equations = single(start.equations, i)
+        passed: list[_Passed] = []
+        for j in np.flatnonzero(crossings.row == i):
+            kind = str(crossings.kind[j])
+            number = crossings.number[j]
+            here = z[j] if found[j] else None
+            if kind == "period halving":
+                here = None if equations.kind else halved_at(equations, crossings.ends[:, j])
+            if here is not None and not (number == 0 and kind == own):
+                place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
+                passed.append(_Passed(number, place, equations.orbit(here, kind)))
+        passed.sort(key=lambda each: each.order)
+        orbits = path.z
+        ends = [j for j, each in enumerate(passed) if ends_at(each.orbit.kind, until[i])]
+        if ends:
+            passed = passed[: ends[0] + 1]
+            last = passed[-1].orbit
+            orbits = np.vstack([orbits[: passed[-1].number + 1], last.z])
+            why = KINDS[last.kind].end if last.kind in KINDS else ""
+            end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
+        elif end in KINDS:
+            # The special orbit is between the last two points, but Newton's method does not find
+            # it, or the branch approaches it for ever.
+            why = KINDS[end].end and f": {KINDS[end].end}"
+            end = f"{end} near {_place(equations, orbits[-1], 7)}{why}"
+            orbits = orbits[:-1]
+            passed = [each for each in passed if each.number + 1 < len(orbits)]
+        else:
+            end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
+        special = tuple(each.orbit for each in passed)
+        kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
+        branches.append(kind_of_branch(equations, orbits, special, "", end))
+    return branches
+
+
+def _place(equations: OrbitEquations, z: NDArray, digits: int = 10) -> str:
+    """Text with the values of the parameters that change."""
+    values = zip(equations.along, z[equations.size :], strict=True)
+    return ", ".join(f"{path.name} = {value:.{digits}g}" for path, value in values)
+
+
+def _in_words(
+    end: str,
+    equations: OrbitEquations,
+    z: NDArray,
+    window: NDArray,
+    goal: float,
+    passed: list[_Passed],
+) -> str:
+    """Text with the reason why a branch ends at an ordinary orbit."""
+    if end == CLOSED:
+        return end
+    if end != AT_GOAL:
+        return f"{end}; the last one is at {_place(equations, z)}"
+    values = z[equations.size :]
+    j = np.flatnonzero((values == window).any(axis=0))[-1]
+    name = equations.along[j].name
+    here = f"{name} = {values[j]:.10g}"
+    if len(values) > 1 or abs(values[j] - goal) <= 1e-12 * abs(goal):
+        return f"{here} is reached"
+    folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
+    turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
+    return f"{here} is reached, on the other side of the start than the goal{turned}"

@@ -1,0 +1,376 @@
+"""Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bouncing_ball_beyond.contacts.balls import Ball, brief, check_whole_numbers, whole_number
+from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
+from bouncing_ball_beyond.periodic.equations import (
+    KINDS,
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    alone,
+)
+from bouncing_ball_beyond.periodic.paths import Path, path_of, usual_range
+from bouncing_ball_beyond.periodic.search import near_instants, rows_of, shortest_contacts
+from bouncing_ball_beyond.periodic.starts import STARTS, Task
+from bouncing_ball_beyond.tables.table import PERIOD, SINE, Table, check_table
+
+AROUND = (0.95, 0.8, 0.65, 0.5, 0.35, 1.5, 2.5)
+"""Values of Λ, in multiples of nπ, at which `limits` looks for an orbit.
+
+The Λ of the saddle-node of instantaneous impacts is nπ for r = 0 on a sine. Without `AROUND`, a
+contact with ζ = 1.3 has no limits. In 251 other balls only 2.5 had an effect.
+"""
+
+
+def follow(
+    orbit: PeriodicOrbit | Sequence,
+    *,
+    along: str | None = None,
+    to: ArrayLike | None = None,
+    points: int = 500,
+) -> Any:
+    """Follow a periodic orbit, or many orbits at once, along a parameter.
+
+    The branch of an ordinary orbit goes through this orbit. The branch of a special orbit depends
+    on the kind of this orbit:
+
+    - saddle-node: the stable branch;
+    - period doubling: orbits of twice the period;
+    - period halving: orbits of half the period;
+    - grazing of a flight: orbits with one more impact;
+    - grazing of a release: the branch that contains the orbit.
+
+    Parameters
+    ----------
+    orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+        Orbit, or several orbits, from which to start.
+    along : str, optional
+        "amplitude", "frequency", or a parameter of the ball or the table. "frequency" changes Ω at
+        a fixed displacement amplitude a; its values are Ω/√(g/a) = √Λ. The default is the parameter
+        of the branch that contains the orbit.
+    to : float, array_like or tuple (low, high), optional
+        Value at which the branch ends, or one value for each orbit. With a tuple, the orbit is
+        followed in both directions. If the parameter turns back at a saddle-node and passes its
+        start, the branch ends at the mirror image of `to` on the other side of the start. The
+        default is the upper end of the range of the parameter, but at most the larger of 10 and ten
+        times the value. For a phase the default is one turn ahead.
+    points : int
+        Maximum number of orbits on a branch in each direction.
+
+    Returns
+    -------
+    FollowedBranch, or a list of FollowedBranch and OrbitNotFound
+        A list for a sequence of orbits. An OrbitNotFound gives the reason why a branch is missing.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a single orbit has no branch. For example, doubled orbits exist only on one side of a
+        period doubling, and `to` may be on the other side.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
+    >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
+    [('period doubling', 1.526824)]
+    """
+    orbits = _listed(orbit, "orbit", "a periodic orbit, such as orbit(ball, amplitude=1.0)")
+    points = whole_number("points", points, 2)
+    found = _follow_all(orbits, along, to, points, [None] * len(orbits))
+    return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
+
+
+def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int = 64) -> Any:
+    """Follow a cascade of period doublings, each branch up to the next doubling.
+
+    Parameters
+    ----------
+    doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+        First period doubling, or several, from which to start.
+    to : float or array_like
+        Value of the parameter at which branches end, or one value for each doubling.
+    impacts : int
+        Maximum number of impacts of the orbits.
+
+    Returns
+    -------
+    list of FollowedBranch, or a list of such lists and OrbitNotFound
+        Branches of the cascade. A sequence of doublings gives a list of cascades. An OrbitNotFound
+        gives the reason why a cascade is missing.
+
+    Raises
+    ------
+    OrbitNotFound
+        If a single doubling has no cascade.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid, orbit
+    >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.8)
+    >>> branches = cascade(branch.first("period doubling"), to=1.8, impacts=4)
+    >>> [(each.impacts, each.special[-1].kind) for each in branches]
+    [(2, 'period doubling'), (4, 'period doubling')]
+    """
+    impacts = whole_number("impacts", impacts, 2)
+    wanted = "a period doubling, such as branch.first('period doubling')"
+    latest = _listed(doubling, "doubling", wanted)
+    whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
+    if np.ndim(to) and np.size(to) != len(latest):
+        raise ValueError(
+            f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for"
+            " each"
+        )
+    to = np.broadcast_to(np.asarray(to, float), len(latest))
+    going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
+    while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
+        until = ["period doubling"] * len(going)
+        found = _follow_all([latest[i] for i in going], None, to[going], 500, until)
+        further = []
+        for i, branch in zip(going, found, strict=True):
+            if isinstance(branch, OrbitNotFound):
+                whole[i] = whole[i] or branch
+                continue
+            whole[i].append(branch)
+            if branch.special and branch.special[-1].kind == "period doubling":
+                latest[i] = branch.special[-1]
+                further.append(i)
+        going = further
+    return alone(whole[0]) if isinstance(doubling, PeriodicOrbit) else whole
+
+
+def _listed(given: Any, name: str, wanted: str) -> list:
+    """Return one or more orbits as a list. Raises ValueError for anything else."""
+    found = list(given) if isinstance(given, Iterable) else [given]
+    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
+        raise ValueError(f"{name} = {brief(given)}: must be {wanted}, or a list of them")
+    return found
+
+
+def _follow_all(
+    orbits: list, along: str | None, to: Any, points: int, until: list, grazings: bool = True
+) -> list:
+    """Follow orbits. For each orbit, return its branch, or the reason why there is none.
+
+    Consecutive orbits with the same equations are followed at once.
+    """
+    several = 2 if isinstance(to, tuple) else len(orbits)
+    if to is not None and np.shape(to) not in ((), (several,)):
+        raise ValueError(
+            f"to = {brief(to)}: must be a number, a tuple (low, high), or one number for each orbit"
+        )
+    ways = []
+    for i, each in enumerate(orbits):
+        if not isinstance(each, PeriodicOrbit):
+            continue
+        path = each.equations.along[-1] if along is None else path_of(along, each.ball, each.table)
+        goal = to if isinstance(to, tuple) or np.ndim(to) == 0 else to[i]
+        alike = (x.at(**dict.fromkeys(x.parameters, 0.0)) for x in (each.ball, each.table))
+        common = each.kind, path, each.impacts, *alike
+        ways += [(common, i, task) for task in _tasks(each, path, goal, until[i])]
+    parts: list[list] = [[] for _ in orbits]
+    for (kind, *_), rows in groupby(ways, key=itemgetter(0)):
+        _, numbers, tasks = zip(*rows, strict=True)
+        branches = _from_special(_stacked(tasks), kind, points, grazings)
+        for i, branch in zip(numbers, branches, strict=True):
+            parts[i].append(branch)
+    return [_whole(some) if some else each for some, each in zip(parts, orbits, strict=True)]
+
+
+def _whole(ways: list) -> FollowedBranch | OrbitNotFound:
+    """Join the branches of one orbit, or return the reason why there is none."""
+    branches = [each for each in ways if isinstance(each, FollowedBranch)]
+    if len(branches) == 2:
+        return joined(*branches)
+    return branches[0] if branches else ways[0]
+
+
+def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list[Task]:
+    """Return tasks, one for each direction in which the orbit is followed."""
+    equations, z = orbit.on(path)
+    value = float(z[-1])
+    low, high = (float(each) for each in path.limits(orbit.ball, orbit.amplitude))
+    if to is None:
+        turn = path.name.startswith("phase_")
+        to = value + PERIOD if turn else usual_range(path, value, low, high)[1]
+    try:
+        goals = np.atleast_1d(np.asarray(to, float))
+    except (TypeError, ValueError):
+        raise ValueError(f"to = {to!r}: must be a number, or two numbers") from None
+    for goal in goals:
+        if not (low <= goal <= high and np.isfinite(goal)):
+            raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
+    if len(goals) == 2 and not goals[0] <= value <= goals[1]:
+        raise ValueError(
+            f"to = {to}: {path.name} = {value:.10g} of the orbit must be in this range"
+        )
+    others = goals[::-1] if len(goals) == 2 else np.array([np.nan])
+    common = np.array([[low, high]]), np.array([until])
+    return [
+        Task(equations, z[np.newaxis], goals[[i]], others[[i]], *common) for i in range(len(goals))
+    ]
+
+
+def _stacked(tasks: tuple[Task, ...]) -> Task:
+    """Combine tasks of single orbits into one task with a row for each orbit."""
+    if len(tasks) == 1:
+        return tasks[0]
+    equations = replace(
+        tasks[0].equations,
+        ball=_in_rows([each.equations.ball for each in tasks]),
+        table=_in_rows([each.equations.table for each in tasks]),
+        periods=np.array([each.equations.periods for each in tasks]),
+        amplitude=np.array([each.equations.amplitude for each in tasks]),
+    )
+    columns = zip(*(each[1:] for each in tasks), strict=True)
+    return Task(equations, *(np.concatenate(rows) for rows in columns))
+
+
+def _in_rows(several: list) -> Any:
+    """Combine several balls, or several tables, into one with arrays as parameters."""
+    first = several[0]
+    values = {
+        name: np.array([each.parameters[name] for each in several]) for name in first.parameters
+    }
+    return first.at(**values) if values else first
+
+
+def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
+    """Return branches that start at orbits of one kind, or the reasons why there are none."""
+    if kind not in STARTS:
+        return [OrbitNotFound(f"{kind}: branches end at orbits of this kind")] * len(task.z)
+    start = STARTS[kind](task)
+    found: list = [OrbitNotFound(reason) for reason in start.reasons]
+    going = np.flatnonzero(start.reasons == "")
+    if not going.size:
+        return found
+    # The parameter stays between the goal and its mirror image on the other side of the start.
+    behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
+    window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
+    branches = followed(start.take(going), window, task.until[going], points, kind, grazings)
+    name = task.equations.along[-1].name
+    for i, branch in zip(going, branches, strict=True):
+        path = branch.z if start.origin is None else np.vstack([start.origin[i], branch.z])
+        text = f"{kind or 'an orbit'} at {name} = {task.z[i, -1]:.10g}"
+        found[i] = replace(branch, z=path, start=text)
+    return found
+
+
+class Limits(NamedTuple):
+    """Limits between which n-T orbits are stable.
+
+    Attributes
+    ----------
+    saddle_node, period_doubling : PeriodicOrbit or OrbitNotFound
+        Special orbit, or the reason why there is none.
+    """
+
+    saddle_node: PeriodicOrbit | OrbitNotFound
+    period_doubling: PeriodicOrbit | OrbitNotFound
+
+    def __repr__(self) -> str:
+        places = (
+            f"{each.kind} at Λ = {each.amplitude:.10g}"
+            if isinstance(each, PeriodicOrbit)
+            else str(each)
+            for each in self
+        )
+        return "Limits: {}; {}".format(*places)
+
+
+def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
+    """Find the saddle-node and the period doubling of the n-T orbits of a ball.
+
+    n-T orbits have one impact in n periods of the table. One of them, next to the phase at which
+    the table rises fastest, is followed towards smaller and larger Λ. On tables that rise several
+    times in a period, the branch may turn back at two other saddle-nodes before its period
+    doubling.
+
+    Parameters
+    ----------
+    ball : Ball
+        The ball.
+    n : int or array_like
+        Number of periods of the table in one period of the orbits.
+    table : Table
+        The waveform.
+
+    Returns
+    -------
+    Limits or list of Limits
+        A list if n or a parameter of the ball is an array. If a branch ends before a limit, for
+        example because an impact grazes, the limit is an OrbitNotFound with this reason.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> round(limits(Rigid(0.5)).saddle_node.amplitude, 6)
+    1.047198
+    """
+    check_table(table)
+    check_whole_numbers("n", n)
+    row, (periods,), shape = rows_of(ball, n=n)
+    between = _between_limits(OrbitEquations(row, 1, periods, table=table))
+    rows = len(between)
+    until = ["saddle-node"] * rows + ["period doubling"] * rows
+    to = [1e-6] * rows + [None] * rows
+    branches = _follow_all(between * 2, "amplitude", to, 500, until, grazings=False)
+    found = []
+    for below, above in zip(branches[:rows], branches[rows:], strict=True):
+        if isinstance(below, OrbitNotFound):
+            found.append(Limits(below, below))
+            continue
+        special = (*below.special[::-1], *above.special)
+        fold = _limit(special, "saddle-node", below.end)
+        found.append(Limits(fold, _limit(special, "period doubling", above.end)))
+    return found if shape else found[0]
+
+
+def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:
+    """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
+    of_kind = (each for each in special if each.kind == kind)
+    where = f"at the {end}" if end.startswith(tuple(KINDS)) else f"where {end}"
+    why = f"there is no {kind}: the branch of orbits ends before it, {where}"
+    return next(of_kind, OrbitNotFound(why))
+
+
+def _between_limits(equations: OrbitEquations) -> list:
+    """For each row, return an orbit with one impact, or an OrbitNotFound.
+
+    The search starts between the limits of instantaneous impacts. It prefers admissible orbits.
+    """
+    n = np.asarray(equations.periods)
+    r = equations.ball.signature(1.5 * np.pi * n).restitution
+    r = np.where(np.isfinite(r), r, 0.5)
+    table = equations.table
+    fold = np.pi * n * (1 - r) / (1 + r)
+    # Orbits of instantaneous impacts have ΛW′ = fold. `push` is half of -ΛW″ at the doubling.
+    push = (1 + r * r) / (1 + r) ** 2
+    phase = table.phase_of_angle(np.arctan2(push, fold))
+    between = np.hypot(fold, push) / np.hypot(table(phase, 1), table(phase, 2))
+    around = [times * np.pi * n / table.slope for times in AROUND]
+    found: list = [OrbitNotFound("no orbit with one impact is found")] * len(n)
+    done = np.zeros(len(n), bool)
+    # Where W′ has several maxima, a larger Λ may belong to orbits next to another one.
+    nearest = 2 * fold / (table.slope + max(table.next_low_slope, 0.0))
+    nearest = np.where(fold > 0, np.fmin(between, nearest), between)
+    ways: list[tuple] = [(near_instants, nearest), (near_instants, between)]
+    ways += [(shortest_contacts, amplitude) for amplitude in [between, *around]]
+    for search, amplitude in ways:
+        todo = np.flatnonzero(~done)
+        if not todo.size:
+            break
+        orbits, done[todo] = search(equations.rows(todo), amplitude[todo], 1)
+        for row, each in zip(todo, orbits, strict=True):
+            if each and (done[row] or isinstance(found[row], OrbitNotFound)):
+                found[row] = each
+    return found

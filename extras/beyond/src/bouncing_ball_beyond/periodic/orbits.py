@@ -1,0 +1,189 @@
+"""Find periodic orbits of a ball at one amplitude.
+
+Three searches are possible: for the n-T orbit, for all orbits with k impacts in m periods, and for
+the orbit near a guess.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bouncing_ball_beyond.contacts.balls import (
+    Ball,
+    brief,
+    check_one_ball,
+    check_whole_numbers,
+    checked,
+    whole_number,
+)
+from bouncing_ball_beyond.periodic.continuation import limits
+from bouncing_ball_beyond.periodic.equations import (
+    OrbitEquations,
+    OrbitNotFound,
+    PeriodicOrbit,
+    alone,
+)
+from bouncing_ball_beyond.periodic.search import (
+    all_orbits,
+    near_instants,
+    rows_of,
+    shortest_contacts,
+)
+from bouncing_ball_beyond.tables.table import SINE, Table, check_table
+
+
+def orbit(
+    ball: Ball,
+    *,
+    amplitude: ArrayLike,
+    n: ArrayLike = 1,
+    side: str = "stable",
+    table: Table = SINE,
+) -> Any:
+    """Find the n-T orbit of a ball, with one impact in n periods of the table.
+
+    Parameters
+    ----------
+    ball : Ball
+        A ball. Its parameters may be arrays.
+    amplitude : float or array
+        Λ > 0.
+    n : int or array
+        Number of periods of the table in one period of the orbit.
+    side : {"stable", "unstable"}
+        Side of the saddle-node. On the stable side the impact comes after the phase at which the
+        table rises fastest, and on the unstable side before it. Tables that rise several times in a
+        period have more orbits: see `orbits`.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    PeriodicOrbit or list
+        One orbit if all arguments are numbers. If arguments are arrays, a list with one entry for
+        each element of the broadcast arrays. The entry is an orbit, or an OrbitNotFound if the
+        orbit does not exist. If no ball follows an orbit, ``admissible`` of the orbit is False.
+
+    Raises
+    ------
+    OrbitNotFound
+        If all arguments are numbers and the orbit does not exist.
+    ValueError
+        If an argument is out of range.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> round(orbit(Rigid(0.5), amplitude=1.2).phase, 6)
+    0.510164
+    """
+    check_table(table)
+    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    check_whole_numbers("n", n)
+    if side not in ("stable", "unstable"):
+        raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    equations = OrbitEquations(row, 1, periods, table=table)
+    sign = 1 if side == "stable" else -1
+    found, admissible = near_instants(equations, amplitudes.astype(float), sign)
+    missing = np.flatnonzero(~admissible)
+    if missing.size:
+        near = [found[i] for i in missing]
+        searched = _searched(equations.rows(missing), amplitudes[missing], sign, near)
+        for i, each in zip(missing, searched, strict=True):
+            found[i] = each
+    return found if shape else alone(found[0])
+
+
+def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
+    """Return one orbit, or an OrbitNotFound, for each row.
+
+    The first possible result of this list is returned:
+
+    1. the orbit with the shortest contact on the given side of the saddle-node, if a ball follows
+       this orbit;
+    2. an OrbitNotFound, if Λ is below the saddle-node of the branch;
+    3. an orbit that no ball follows, from ``near`` or, if there is none, from the search;
+    4. an OrbitNotFound.
+    """
+    shortest, admissible = shortest_contacts(equations, amplitude, sign)
+    found: list = [*shortest]
+    missing = np.flatnonzero(~admissible)
+    ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
+    # Limits are slow to find if free impacts do not end, because the ball creeps off the table.
+    ending = missing[ends[missing]]
+    rows = equations.rows(ending)
+    lowest = limits(rows.ball, n=rows.periods, table=equations.table) if len(ending) else []
+    folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
+    for i in missing:
+        fold = folds.get(i)
+        why = "none is found on this side of the saddle-node"
+        if isinstance(fold, PeriodicOrbit) and amplitude[i] < fold.amplitude:
+            why = f"below the saddle-node at Λ = {fold.amplitude:.10g}"
+        elif near[i] or found[i]:
+            found[i] = near[i] or found[i]
+            continue
+        ball = equations.ball.rows(i)
+        values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
+        found[i] = OrbitNotFound(
+            f"no {np.ravel(equations.periods)[i]}-T orbit at Λ = {amplitude[i]:.10g} for"
+            f" {type(ball).__name__}({values}): {why}"
+        )
+    return found
+
+
+def one_amplitude(amplitude: Any) -> float:
+    """Return the amplitude as a float. Raises ValueError unless it is one positive number."""
+    value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    if np.ndim(value):
+        raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
+    return value
+
+
+def orbits(
+    ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
+) -> list[PeriodicOrbit]:
+    """Find the stable and unstable orbits with k impacts in m periods that a ball follows.
+
+    If k = 1, the list is complete. If k > 1, the search starts from 2592 first impacts and may miss
+    orbits. With a contact law the search takes seconds, or up to a minute if k > 1. Orbits are
+    sorted by the total duration of their contacts, and then by the phase of their first impact.
+
+    Parameters
+    ----------
+    ball : Ball
+        A single ball.
+    amplitude : float
+        Λ > 0.
+    impacts, periods : int
+        Numbers k and m.
+    table : Table
+        Waveform of the table, by default a sine.
+
+    Returns
+    -------
+    list of PeriodicOrbit
+
+    Raises
+    ------
+    ValueError
+        If the ball or the amplitude is an array, or if an argument is out of range.
+
+    Examples
+    --------
+    >>> from bouncing_ball_beyond import Rigid
+    >>> found = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
+    >>> [(round(each.max_height, 3), each.stable) for each in found]
+    [(8.209, True), (8.007, False)]
+    """
+    check_one_ball(ball)
+    amplitude = one_amplitude(amplitude)
+    check_table(table)
+    counts = whole_number("impacts", impacts), whole_number("periods", periods)
+    equations = OrbitEquations(ball, *counts, table=table)
+    z = all_orbits(equations, amplitude)
+    if not len(z):
+        return []
+    found = [equations.orbit(row) for row in z[equations.admissible(z)]]
+    return sorted(found, key=lambda each: (round(np.sum(each.contact_duration), 9), each.times[0]))

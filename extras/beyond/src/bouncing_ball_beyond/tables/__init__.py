@@ -1,0 +1,1 @@
+"""The motion of the table: waveforms, and waveforms from records."""

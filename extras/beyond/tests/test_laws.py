@@ -855,6 +855,11 @@ WRITTEN = {
     "fifth power": (lambda p, v, k: k * p**5, {"k": 1e4}, {}),
     "smooth sphere of OpenSim": (smooth_sphere, {"k": 1e4, "c": 0.1}, {}),
     "any power": (lambda p, v, k: k * p**1.31, {"k": 400.0}, {"root": 6}),
+    "a drop": (
+        lambda p, v, k, d, c: k * p / np.log(d / (p + 1e-300)) * (1 + c * v),
+        {"k": 400.0, "d": 30.0, "c": 0.05},
+        {"root": 6},
+    ),
 }
 
 NO_TENSION = 'write the force without this limit and give release="force"'

@@ -217,6 +217,8 @@ def test_statuses():
 def test_no_orbit_is_nan():
     law = law_errors(BALL, amplitude=0.5)
     assert np.isnan(law["max_height"]) and np.isfinite(law["saddle_node"])
+    same = law_coefficients(BALL, amplitude=0.5, table=Table([(1, 1.0, 0.0)]))
+    assert np.isnan(same["max_height"]) and np.isfinite(same["saddle_node"])
     assert np.isnan(contact_values(BALL.at(frequency_ratio=50.0), amplitude=0.5)["max_height"])
 
 

@@ -16,10 +16,8 @@ from scipy.optimize import brentq, root
 from bouncing_ball_beyond.contacts.balls import Ball, Rigid, SpringDamper, damping_of
 from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.errors.error_law import (
-    FreeImpact,
     contact_values,
     free_impact,
-    law_errors,
     restitution_values,
 )
 from bouncing_ball_beyond.motions.bounces import Balls, step
@@ -295,17 +293,11 @@ def counterfeit(parameters: dict) -> tuple:
 
 
 def width_change(parameters: dict) -> tuple:
-    """Relative change of Λ_PD² - Λ_SN² by a contact of the measured duration, to first order."""
+    """Relative change of Λ_PD² - Λ_SN² by a contact of the measured duration."""
     r = np.array(parameters["restitution"])
-    impact: FreeImpact = free_impact(linear(r, 2 * np.pi * parameters["measured_share"]), 1)
-    values = restitution_values(impact, 1.0)
-    small = law_errors(impact.stretched(1e-6), amplitude=1.0)
-    names = "period_doubling", "saddle_node"
-    squares = {name: values[name] ** 2 for name in names}
-    change = {name: 2 * squares[name] * small[name] / 1e-6 for name in names}
-    doubling, node = names
-    width = squares[doubling] - squares[node]
-    return "restitution", (change[doubling] - change[node]) / width
+    balls = Rigid(r), linear(r, 2 * np.pi * parameters["measured_share"])
+    without, width = (-np.subtract(*bifurcations(ball) ** 2) for ball in balls)
+    return "restitution", width / without - 1
 
 
 def escapes(given: SimpleNamespace, generator: np.random.Generator) -> dict:

@@ -72,7 +72,7 @@ VARIABLES = SYMBOLS | {
     "contact_force": Variable("force of the table over the weight", "F", floor=1.0),
     "flight_before": Variable("flight before the contact, continued", "z"),
     "flight_after": Variable("flight after the contact, continued backwards", "z"),
-    "meeting_time": Variable("time at which the continued flights meet", "t^*"),
+    "meeting_time": Variable("time at which the continued flights meet", "ψ"),
     "meeting_height": Variable("height at which the continued flights meet", "z"),
     "delay": Variable("delay of the instant by the signature of the contact", "t_c"),
     # Errors along the frequency ratio. What the corrected model and the error law leave is a small
@@ -184,7 +184,7 @@ VARIABLES = SYMBOLS | {
         "D + κ of the linear contact with the same two bifurcations, over the true one",
         tolerance=1e-6,
     ),
-    "width_change": Variable("relative change of Λ_PD² - Λ_SN² by the contact, to first order"),
+    "width_change": Variable("relative change of Λ_PD² - Λ_SN² by the contact"),
     # Noise is the same on each processor, but the last bits of a motion are not.
     "measured_restitution": Variable(
         "restitution coefficient of simulated measurements, mean",

@@ -586,7 +586,8 @@ class Table:
         slope = speed / amplitude
         phase = self.phase_of_slope(np.real(slope))
         if np.iscomplexobj(slope):
-            phase = phase + 1j * np.imag(slope) / self(phase, 2)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                phase = phase + np.divide(1j * np.imag(slope), self(phase, 2))
         inside = np.abs(self(np.real(phase), 1) - np.real(slope)) < 1e-9
         phase = np.where(inside, phase, np.nan)
         return phase, amplitude * self(phase), *(-amplitude * self(phase, m) for m in (2, 3))

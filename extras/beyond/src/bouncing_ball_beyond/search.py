@@ -85,8 +85,8 @@ def guess_of_instants(
             if np.all(np.abs(step) < 1e-7 * u):
                 break
     touch = psi - np.where(known, centroid, 0.0) + ball.elapsed_contact(u)
-    free = ball.free(u)
-    impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: ball.unknowns]
+    T = ball.first_release(touch, u, amplitude, table=table)
+    impacts = [touch, u, np.where(np.isfinite(T), T, np.pi)][: ball.unknowns]
     return np.stack(np.broadcast_arrays(*impacts, amplitude), axis=-1)
 
 

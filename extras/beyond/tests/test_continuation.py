@@ -256,8 +256,11 @@ def test_limits_are_shown_in_a_line():
 
 def test_a_limit_that_is_missing_has_a_reason():
     elastic = repr(limits(Rigid(1.0)))
-    reason = "there is no saddle-node: the branch of orbits ends before it, where amplitude = 1e-06"
+    reason = "there is no saddle-node on the branch of orbits, which ends where amplitude = 1e-06"
     assert elastic == f"Limits: {reason} is reached; period doubling at Λ = 1"
+    # r is 1 within rounding: the damper of this law has no force.
+    integrated = kuwabara_kono(restitution=1.0, duration=0.01, speed=np.pi)
+    assert repr(limits(integrated)).startswith(f"Limits: {reason} is reached; period doubling at")
     strongly_damped = limits(SpringDamper(5.0, damping_ratio=1.3)).saddle_node
     assert isinstance(strongly_damped, OrbitNotFound)
     assert "vanishing flight at amplitude = 1.0917875" in str(strongly_damped)
@@ -680,4 +683,4 @@ def test_limits_of_laws_at_the_edge_of_rebounding(ball, end):
     if isinstance(end, float):
         assert node.amplitude == pytest.approx(end, abs=1e-6)
     else:
-        assert str(node).startswith("there is no saddle-node: the branch") and end in str(node)
+        assert str(node).startswith("there is no saddle-node on the branch") and end in str(node)

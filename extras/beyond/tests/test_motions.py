@@ -187,7 +187,7 @@ def test_what_is_not_known_has_a_reason():
     beside = {"phase": [one.phase, one.phase + 0.1], "velocity": one.impact_velocity}
     slow = bb.motion_of(one.ball, amplitude=0.5, impacts=200, **beside)
     assert (slow.kind == "undecided").all()
-    assert slow.reason.values.tolist() == [long_term.MARGINAL, long_term.NO_RECURRENCE]
+    assert slow.reason.values.tolist() == [long_term.MARGINAL, long_term.LITTLE_LOSS]
     # Rounding decides for which Λ the period of a locked motion is lost.
     locked = bb.motion_of(bb.Rigid(0.5), amplitude=np.linspace(4.9, 5.1, 20))
     assert (locked.kind == "locked").all()

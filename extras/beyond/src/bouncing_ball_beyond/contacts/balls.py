@@ -101,11 +101,6 @@ class Ball:
         return 3 if self.has_duration else 2
 
     @property
-    def ends_analytically(self) -> bool:
-        """Whether contacts must be integrated, but still end analytically in τ and u."""
-        return False
-
-    @property
     def parameters(self) -> dict[str, Values]:
         """Names and values of the parameters that can be varied."""
         return {

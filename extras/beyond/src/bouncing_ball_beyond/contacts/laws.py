@@ -158,7 +158,9 @@ class ForceLaw(Force):
             return None
         known = np.reshape([*origin.values.values()], (-1, *(1 for _ in values.shape[1:])))
         logarithms = np.log(np.where(values == known, 1.0, values / known))
+        # A parameter that is zero has the same value in all units.
         powers = np.array([self.units.get(name, (0, 0, 0))[1:] for name in self.values])
+        powers[[value == 0 for value in origin.values.values()]] = 0
         p = origin.depth(1.0) * np.array([0.03, 0.7, 2.0])
         v = np.array([0.8, -0.3, -1.1])
         force = origin.force_at(p, v, 1.3, {**origin.values, "u": 1.0})
@@ -175,10 +177,6 @@ class ForceLaw(Force):
             if np.allclose(scaled * time / speed, force, rtol=ALIKE, atol=0.0):
                 return scales
         return None
-
-    @property
-    def ends_analytically(self) -> bool:
-        return not self.kinks
 
     def contact(
         self,

@@ -1,9 +1,10 @@
 """Map of the contacts of one ball on one table. Polynomials replace the integration of contacts.
 
 The end of a contact depends on the phase τ of the table and on the closing speed u. If the ball
-turns back once and then leaves, the end is an analytic function of τ and u. T, D, δ and δ′ at the
-release are then Fourier series in τ, and their coefficients are Chebyshev polynomials in ln u. The
-map consists of *pieces*. The largest speed u of a piece is twice its smallest speed.
+turns back once and then leaves, the end is an analytic function of τ and u. A kink of the force
+does not change this, as long as all contacts cross it. T, D, δ and δ′ at the release are then
+Fourier series in τ, and their coefficients are Chebyshev polynomials in ln u. The map consists of
+*pieces*. The largest speed u of a piece is twice its smallest speed.
 
 The harmonic m is of the order of ε^m, where ε = (1 + Λ)D/u is the load divided by the contact
 force. A piece therefore needs only 512 integrations, or a few times as many. It then replaces the

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.special import stdtrit
 
 from bouncing_ball_beyond.contacts.balls import Ball, H, check_ball, checked, whole_number
+from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.motions.impact_map import impact_map
 from bouncing_ball_beyond.motions.simulation import (
@@ -75,6 +76,11 @@ Building the map takes as long as about a thousand contacts.
 
 At half: three basins take 40 % less time. At twice: 28 % more.
 """
+FOLLOWED_FIRST = 100
+"""Number of impacts after which an :class:`.ImpactMap` saves time, even for a single ball.
+
+Building the map takes as long as these impacts.
+"""
 BALLS_AT_ONCE = 1 << 14
 """Maximum number of balls followed at once.
 
@@ -120,6 +126,10 @@ PERIODIC, LOCKED, PERMANENT, CHAOTIC, UNDECIDED = (
     "undecided",
 )
 NO_RECURRENCE = "it has not repeated, and its Lyapunov exponent may be zero within its error"
+LITTLE_LOSS = (
+    "it has not repeated, and its impacts have lost too little energy to tell whether its Lyapunov"
+    " exponent is zero"
+)
 MARGINAL = "it returns, but neighbouring motions converge too slowly to prove that it repeats"
 LOST_TO_ROUNDING = "rounding errors grow too large before it repeats"
 RESUMES = "a contact would resume below the table, where the contact law is not defined"
@@ -191,26 +201,24 @@ def ends_of(balls: Balls, impacts: int) -> dict:
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
     found |= {name: np.full(balls.phase.size, np.nan) for name in numbers}
     found["rested"] = np.zeros(balls.phase.size, bool)
-    if is_worth_a_map(balls, impacts):
-        amplitude = float(balls.amplitude[0])
-        top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
-        balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
     for first in range(0, balls.phase.size, BALLS_AT_ONCE):
         lane = np.arange(first, min(first + BALLS_AT_ONCE, balls.phase.size))
         _follow_to_end(found, balls.take(lane), lane, impacts)
     return found
 
 
-def is_worth_a_map(balls: Balls, impacts: int) -> bool:
-    """Whether an :class:`.ImpactMap` saves time.
+def is_worth_a_map(balls: Balls, impacts: int, seen: int) -> bool:
+    """Whether an :class:`.ImpactMap` saves time, after ``seen`` of the impacts.
 
-    A map saves time if three conditions hold: there are at least `WORTH_A_MAP` impacts, the contact
-    law must be integrated numerically, and all balls have the same parameters and the same Λ.
+    A map saves time if three conditions hold: there are at least `WORTH_A_MAP` impacts, or
+    `FOLLOWED_FIRST` were not enough; the contact law must be integrated numerically; and all balls
+    have the same parameters and the same Λ.
     """
-    ball = balls.ball
-    if balls.phase.size * impacts < WORTH_A_MAP or not ball.ends_analytically:
+    few = balls.phase.size * impacts < WORTH_A_MAP and seen < FOLLOWED_FIRST
+    if few or not isinstance(balls.ball, ForceLaw):
         return False
-    return not any(map(np.ndim, ball.parameters.values())) and np.ptp(balls.amplitude) == 0
+    several = any(map(np.ndim, balls.ball.parameters.values()))
+    return not several and np.ptp(balls.amplitude) == 0
 
 
 def _store(found: dict, which: Any, **values: Any) -> None:
@@ -244,6 +252,10 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int) -> No
     }
     seen = 0
     while track["lane"].size and seen < impacts:
+        if not balls.map and is_worth_a_map(balls, impacts, seen):
+            amplitude = float(balls.amplitude[0])
+            top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
+            balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
         count = min(
             max(seen // SECTION, 1),
             -(-(impacts - seen) // SECTION),
@@ -500,7 +512,7 @@ def _store_others(found: dict, balls: Balls, track: dict, seen: int) -> None:
         elif rate < -SIGNIFICANT * scatter and track["most"][j] > ROUNDING_GROWTH:
             reason = LOST_TO_ROUNDING
         else:
-            reason = NO_RECURRENCE
+            reason = NO_RECURRENCE if np.isfinite(error) else LITTLE_LOSS
         _store_end(
             found,
             lane,

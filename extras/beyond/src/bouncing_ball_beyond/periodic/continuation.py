@@ -31,6 +31,10 @@ contact with ζ = 1.3 has no limits. In 251 other balls only 2.5 had an effect.
 """
 
 
+LOWEST = 1e-6
+"""Smallest Λ of the orbits that `limits` follows."""
+
+
 def follow(
     orbit: PeriodicOrbit | Sequence,
     *,
@@ -322,7 +326,7 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
     between = _between_limits(OrbitEquations(row, 1, periods, table=table))
     rows = len(between)
     until = ["saddle-node"] * rows + ["period doubling"] * rows
-    to = [1e-6] * rows + [None] * rows
+    to = [LOWEST] * rows + [None] * rows
     branches = _follow_all(between * 2, "amplitude", to, 500, until, grazings=False)
     found = []
     for below, above in zip(branches[:rows], branches[rows:], strict=True):
@@ -339,7 +343,7 @@ def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound
     """First special orbit of a kind, or an OrbitNotFound with the reason why the branch ends."""
     of_kind = (each for each in special if each.kind == kind)
     where = f"at the {end}" if end.startswith(tuple(KINDS)) else f"where {end}"
-    why = f"there is no {kind}: the branch of orbits ends before it, {where}"
+    why = f"there is no {kind} on the branch of orbits, which ends {where}"
     return next(of_kind, OrbitNotFound(why))
 
 
@@ -362,7 +366,8 @@ def _between_limits(equations: OrbitEquations) -> list:
     done = np.zeros(len(n), bool)
     # Where W′ has several maxima, a larger Λ may belong to orbits next to another one.
     nearest = 2 * fold / (table.slope + max(table.next_low_slope, 0.0))
-    nearest = np.where(fold > 0, np.fmin(between, nearest), between)
+    # At r = 1 a fold above 0 is a rounding error.
+    nearest = np.where(nearest > LOWEST, np.fmin(between, nearest), between)
     ways: list[tuple] = [(near_instants, nearest), (near_instants, between)]
     ways += [(shortest_contacts, amplitude) for amplitude in [between, *around]]
     for search, amplitude in ways:

@@ -86,8 +86,8 @@ def guess_of_instants(
                 break
     # An instantaneous impact of the corrected model takes place at ψ itself.
     touch = psi - np.where(known, centroid, 0.0) - ball.start(u) / u
-    free = ball.free(u)
-    impacts = [touch, u, np.where(np.isfinite(free), free, np.pi)][: ball.unknowns]
+    T = ball.first_release(touch, u, amplitude, table=table)
+    impacts = [touch, u, np.where(np.isfinite(T), T, np.pi)][: ball.unknowns]
     return np.stack(np.broadcast_arrays(*impacts, amplitude), axis=-1)
 
 

@@ -853,11 +853,6 @@ class PeriodicOrbit:
         """
         return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
 
-    @property
-    def defect(self) -> float:
-        """Largest modulus of the residuals of the equations."""
-        return float(np.abs(self._linear.legs).max())
-
     def distance(self, other: "PeriodicOrbit") -> float:
         """Largest difference between the phases, speeds or T of two orbits.
 

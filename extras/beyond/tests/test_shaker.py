@@ -118,7 +118,7 @@ def test_a_stroke_in_metres_has_no_height_that_is_no_number():
     given = {"frequency": 25.0, "mass": 0.02, "stiffness": 1e6, "restitution": 0.6}
     words = str(on_shaker(**given, displacement=0.4))
     assert "nan" not in words
-    assert "displacements are in m." in words
+    assert "The table moves by ±400 mm" in words
 
 
 def test_below_the_saddle_node_of_the_restitution_model_no_threshold_is_looked_for(monkeypatch):

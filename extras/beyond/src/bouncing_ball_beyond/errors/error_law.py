@@ -453,14 +453,8 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     """Find n-T orbits on the stable side of the saddle-node, shape (rows, N), or NaN."""
     periods = np.broadcast_to(equations.periods, amplitude.shape)
     guess = guess_of_instants(equations.ball, periods, amplitude, table=equations.table)
-    solution = newton(equations, guess)
-    # At a saddle-node each Newton step only halves the error, so 12 steps are too few.
-    slow = ~solution.found & (np.abs(equations.turn(solution.linear) - 1) < 0.1)
-    if slow.any():
-        more = newton(equations.rows(slow), solution.z[slow], iterations=40)
-        solution.z[slow] = more.z
-        solution = solution._replace(linear=equations.linearized(solution.z))
-        solution.found[slow] = more.found
+    # At a saddle-node each Newton step only halves the error.
+    solution = newton(equations, guess, iterations=30)
     good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
     # On compliant contacts Newton's method may find a solution that is not an orbit.
     leaves = equations.ends(solution.z).speed[:, 0] > 0

@@ -117,8 +117,9 @@ VARIABLES = SYMBOLS | {
     "order": Variable(
         "order of convergence of the relative error in 1/ϖ", tolerance=1e-3, floor=1.0
     ),
+    # At the saddle-node, rounding errors of 1e-13 are half a percent of what is left at ϖ = 200000.
     "law_order": Variable(
-        "order of convergence in 1/ϖ of what the error law leaves", tolerance=1e-3, floor=1.0
+        "order of convergence in 1/ϖ of what the error law leaves", tolerance=1e-2, floor=1.0
     ),
     "node_order": Variable(
         "order of convergence in 1/ϖ of the error at the saddle-node", tolerance=1e-3, floor=1.0

@@ -439,11 +439,11 @@ def test_mistakes_have_one_line():
         bb.simulate(ball, amplitude=1.0, velocity=3.0)
     with pytest.raises(ValueError, match="amplitude = -1: must be at least 0"):
         bb.simulate(ball, amplitude=[1.0, -1.0])
-    with pytest.raises(ValueError, match=r"amplitude = '1\.0': is a text"):
+    with pytest.raises(ValueError, match=r"amplitude = '1\.0': must be a number"):
         bb.simulate(ball, amplitude="1.0")
     with pytest.raises(ValueError, match=r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"):
         bb.simulate(0.7, amplitude=1.0)
-    with pytest.raises(ValueError, match="phase: must be a finite number"):
+    with pytest.raises(ValueError, match=r"phase = nan: must be in \(-∞, ∞\)"):
         bb.simulate(ball, amplitude=1.0, phase=np.nan)
     with pytest.raises(ValueError, match="height = 0: is below the table"):
         bb.drop(ball, height=0.0, amplitude=1.0, phase=1.0)
@@ -459,7 +459,7 @@ TEXT = {"quantities": "max_height"}
     [
         (lambda: bb.simulate(ONE, amplitude=1.0, impacts=2.5), r"impacts = 2\.5: must be a whole"),
         (lambda: bb.motion_of(ONE, amplitude=1.0, impacts=0), "impacts = 0: must be a whole nu"),
-        (lambda: bb.basins(ONE, amplitude=-1.0, starts=2), "amplitude = -1: must be at least 0"),
+        (lambda: bb.basins(ONE, amplitude=-1.0, starts=2), "amplitude = -1: must be in"),
         (
             lambda: bb.orbit_diagram(ONE, amplitude=[-1.0, 1.0]),
             "amplitude = -1: must be at least 0",
@@ -541,7 +541,9 @@ def test_a_ball_of_a_law_that_is_laid_on_the_table_is_followed_in_time():
     np.testing.assert_allclose(found.ball - found.table, solution.y[0], atol=1e-9)
 
 
-@pytest.mark.parametrize("table", [bb.tables.SINE, bb.Table([(1, 1.5, 0.0)])], ids=["loop", "rows"])
+@pytest.mark.parametrize(
+    "table", [bb.tables.table.SINE, bb.Table([(1, 1.5, 0.0)])], ids=["loop", "rows"]
+)
 def test_landings_just_before_a_lift_off_take_few_steps(monkeypatch, table):
     """δ = vt - gt²/2 - w‴t³/6 for short flights; the gravity g on the table nearly vanishes.
 
@@ -556,11 +558,11 @@ def test_landings_just_before_a_lift_off_take_few_steps(monkeypatch, table):
         return whole(t, f, slope, second, bend, jerk)
 
     gravity = 1e-7
-    scale = 1.5 if table is bb.tables.SINE else 1.0
+    scale = 1.5 if table is bb.tables.table.SINE else 1.0
     phase = np.pi - np.arcsin((1 - gravity) / 1.5)
     waves = table.waves(phase, scale)
     x = 1.5 * np.cos(phase)
-    if table is bb.tables.SINE:
+    if table is bb.tables.table.SINE:
         whole = getattr(one_ball.safe_step, "py_func", one_ball.safe_step)
         landing = getattr(one_ball.landing, "py_func", one_ball.landing)
         monkeypatch.setattr(one_ball, "safe_step", counted)

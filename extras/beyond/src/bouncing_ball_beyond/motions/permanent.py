@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper
+from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, check_one_ball
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
@@ -63,11 +63,10 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     >>> round(permanent_contact(hunt_crossley(stiffness=1000.0, damping=0.08)), 6)
     0.982176
     """
+    check_one_ball(ball)
     check_table(table)
     if not ball.has_duration:
         return 1 / table.lift
-    if any(map(np.ndim, ball.parameters.values())):
-        raise ValueError(f"ball = {ball!r:.60}: must be one ball, whose parameters are numbers")
     law: Any = ball
     if isinstance(ball, SpringDamper):
         law = linear(ball.frequency_ratio, ball.zeta, release=ball.release)

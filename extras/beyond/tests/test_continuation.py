@@ -544,9 +544,12 @@ def test_wrong_goals_and_parameters_are_named_in_one_line():
     doubling = first_doubling(Rigid(0.5), 1.4)
     for call, text in (
         (lambda: follow(start, along="mass", to=2.0), "along = 'mass': must be one of amplitude"),
-        (lambda: follow(start, to=-1.0), r"to = -1: amplitude must be in \[1e-12, 1e\+08\]"),
-        (lambda: follow(start, along="restitution", to=1.1), r"restitution must be in \[0, 1\]"),
-        (lambda: follow(start, along="frequency", to=0.0), r"frequency must be in \[1e-06, "),
+        (lambda: follow(start, to=-1.0), r"to: amplitude = -1: must be in \[1e-12, 1e\+08\]"),
+        (
+            lambda: follow(start, along="restitution", to=1.1),
+            r"restitution = 1.1: must be in \[0, 1\]",
+        ),
+        (lambda: follow(start, along="frequency", to=0.0), r"frequency = 0: must be in \[1e-06, "),
         (lambda: follow(start, to=(1.4, 2.0)), "1.3 of the orbit must be in this range"),
         (lambda: limits(0.7), r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"),
         (

@@ -174,8 +174,9 @@ def test_wrong_arguments_are_named(rigid):
         special_curve(doubling, ranges=[0.5, 3])
     with pytest.raises(ValueError, match=r"special = FollowedBranch\(…\): must be a special orbit"):
         special_curve(rigid)
-    with pytest.raises(ValueError, match="two different parameters"):
-        special_curve(doubling, along=("amplitude", "amplitude"))
+    for second in ("amplitude", "frequency"):
+        with pytest.raises(ValueError, match="two different parameters"):
+            special_curve(doubling, along=("amplitude", second))
     with pytest.raises(ValueError, match=r"restitution = 0\.5 is not in its range"):
         special_curve(doubling, ranges={"restitution": (0.6, 0.9)})
     with pytest.raises(ValueError, match="frequency_ratio: the parameters of the curve are"):

@@ -968,6 +968,18 @@ REFUSED = {
     "no values": (lambda p, v, k: k * p, [400.0], {}, r"values = \[400.0\]: must be a dict"),
     "no number": (lambda p, v, k: k * p, {"k": np.nan}, {}, "k = nan: must be in"),
     "no lag": (lambda p, v, k: k * p, {"k": 1.0}, {"lag": 0.1}, "lag = 0.1: must be a function"),
+    "lag of another release": (
+        lambda p, v, k: k * p + v,
+        {"k": 9.0},
+        {"lag": lambda k: 1 / k},
+        "must be a function, with release='force'",
+    ),
+    "wrong lag": (
+        lambda p, v, k: k * p + v,
+        {"k": 9.0},
+        {"lag": lambda k: 2 / k, "release": "force"},
+        "lag: must return κ of the line p",
+    ),
     "wrong kink": (
         lambda p, v, k: k * p,
         {"k": 1.0},

@@ -300,7 +300,7 @@ def test_an_orbit_diagram_doubles_where_the_orbit_does():
 def test_basins_keep_the_number_of_impacts_and_refuse_arrays():
     assert bb.basins(bb.Rigid(0.5), amplitude=1.2, starts=4, impacts=500).attrs["impacts"] == 500
     for ball, amplitude in ((bb.Rigid(0.5), [1.0, 1.2]), (bb.Rigid([0.5, 0.6]), 1.2)):
-        with pytest.raises(ValueError, match=r"^amplitude, ball: must be one amplitude and a s"):
+        with pytest.raises(ValueError, match=r"must be one (number|ball)"):
             bb.basins(ball, amplitude=amplitude)
     with pytest.raises(ValueError, match=r"^ball = 0\.7: must be a ball, such as Rigid\(0\.7\)$"):
         bb.basins(0.7, amplitude=1.2)

@@ -99,7 +99,7 @@ def test_between_the_bifurcations_of_both_models():
         ({"restitution": 1.2}, "restitution"),
         ({"restitution": None}, "restitution = None: must be a positive number$"),
         ({"frequency": 0.0}, "frequency = 0.0: must be a positive number in Hz$"),
-        ({"n": 0}, "n = 0"),
+        ({"n": 1.5}, "n = 1.5: must be a whole number"),
         ({"stiffness": 1.0}, "a contact lasts"),
         ({"stiffness": None, "youngs_modulus": 1e9}, "radius"),
         (

@@ -439,11 +439,11 @@ def test_mistakes_have_one_line():
         bb.simulate(ball, amplitude=1.0, velocity=3.0)
     with pytest.raises(ValueError, match="amplitude = -1: must be at least 0"):
         bb.simulate(ball, amplitude=[1.0, -1.0])
-    with pytest.raises(ValueError, match=r"amplitude = '1\.0': is a text"):
+    with pytest.raises(ValueError, match=r"amplitude = '1\.0': must be a number"):
         bb.simulate(ball, amplitude="1.0")
     with pytest.raises(ValueError, match=r"ball = 0\.7: must be a ball, such as Rigid\(0\.7\)"):
         bb.simulate(0.7, amplitude=1.0)
-    with pytest.raises(ValueError, match="phase: must be a finite number"):
+    with pytest.raises(ValueError, match=r"phase = nan: must be in \(-∞, ∞\)"):
         bb.simulate(ball, amplitude=1.0, phase=np.nan)
     with pytest.raises(ValueError, match="height = 0: is below the table"):
         bb.drop(ball, height=0.0, amplitude=1.0, phase=1.0)
@@ -459,7 +459,7 @@ TEXT = {"quantities": "max_height"}
     [
         (lambda: bb.simulate(ONE, amplitude=1.0, impacts=2.5), r"impacts = 2\.5: must be a whole"),
         (lambda: bb.motion_of(ONE, amplitude=1.0, impacts=0), "impacts = 0: must be a whole nu"),
-        (lambda: bb.basins(ONE, amplitude=-1.0, starts=2), "amplitude = -1: must be at least 0"),
+        (lambda: bb.basins(ONE, amplitude=-1.0, starts=2), "amplitude = -1: must be in"),
         (
             lambda: bb.orbit_diagram(ONE, amplitude=[-1.0, 1.0]),
             "amplitude = -1: must be at least 0",

@@ -404,7 +404,7 @@ def test_along_a_phase_one_turn_is_the_default():
         ends = np.sort(curve.z[[0, -1], -1])
         np.testing.assert_allclose(ends, [p - np.pi, p + np.pi], atol=1e-9)
         assert curve.z[0, -2] == pytest.approx(curve.z[-1, -2], rel=1e-9)
-    with pytest.raises(ValueError, match="to = inf: phase_3 must be in"):
+    with pytest.raises(ValueError, match=r"to: phase_3 = inf: must be in \(-∞, ∞\)"):
         bb.follow(one, along="phase_3", to=np.inf)
     negative = Table([(1, 1.0, 0.0), (3, -0.01, 0.0)])
     doubling = bb.limits(ball, table=negative).period_doubling

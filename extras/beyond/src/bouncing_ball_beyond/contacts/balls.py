@@ -302,13 +302,14 @@ def check_whole_numbers(name: str, value: Values) -> None:
 def broadcast_named(named: Any) -> tuple[np.ndarray, ...]:
     """Broadcast the arrays of pairs (name, array).
 
-    Raises ValueError if the shapes do not broadcast. The message has all names and shapes.
+    Raises ValueError if the shapes do not broadcast. The message has the names and shapes of all
+    arrays that are not numbers.
     """
     named = list(named)
     try:
         return np.broadcast_arrays(*(x for _, x in named))
     except ValueError:
-        shapes = ", ".join(f"{name} has {np.shape(x)}" for name, x in named)
+        shapes = ", ".join(f"{name} has {np.shape(x)}" for name, x in named if np.ndim(x))
         raise ValueError(f"arrays must have shapes that broadcast: {shapes}") from None
 
 
@@ -318,19 +319,31 @@ def checked(name: str, value: Values, low: float, high: float, *, low_allowed: b
     Raises ValueError unless all entries are finite and from ``low`` to ``high``. The bound ``low``
     itself is allowed only if ``low_allowed`` is true.
     """
-    allowed = f"{'[' if low_allowed else '('}{low:g}, {f'{high:g}]' if high < np.inf else '∞)'}"
+    least = f"[{low:g}" if low_allowed and low > -np.inf else f"({low:g}"
+    allowed = f"{least}, {high:g}{']' if high < np.inf else ')'}".replace("inf", "∞")
     try:
         values = np.array(value, float)
         is_number = values.size and np.asarray(value).dtype.kind in "iuf"
     except (TypeError, ValueError):
         is_number = False
     if not is_number:
-        raise ValueError(f"{name} = {value!r}: must be a number or an array in {allowed}")
+        raise ValueError(f"{name} = {brief(value)}: must be a number or an array in {allowed}")
     above = values >= low if low_allowed else values > low
     good = np.isfinite(values) & above & (values <= high)
     if not good.all():
         raise ValueError(f"{name} = {values[~good].flat[0]:g}: must be in {allowed}")
     return values if values.ndim else float(values)
+
+
+def one_number(name: str, value: Any, *, low_allowed: bool = False) -> float:
+    """Return a number as a float. Raises ValueError unless it is one finite number above 0.
+
+    The number 0 is allowed if ``low_allowed`` is true.
+    """
+    number = checked(name, value, 0, np.inf, low_allowed=low_allowed)
+    if np.ndim(number):
+        raise ValueError(f"{name} = {brief(value)}: must be one number")
+    return number
 
 
 def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:

@@ -55,13 +55,17 @@ class Force(Ball):
     def __post_init__(self) -> None:
         if self.release not in ("displacement", "force"):
             raise ValueError(f"release = {self.release!r}: must be 'displacement' or 'force'")
-        if self.root != 1 and (self.root < 1 or self.root % 2):
+        if not isinstance(self.root, int | np.integer) or (
+            self.root != 1 and (self.root < 1 or self.root % 2)
+        ):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number, 2, 4, 6, ...")
-        for name, each in (("force", self.force), ("lag", self.lag)):
-            if not (callable(each) or (name == "lag" and each is None)):
-                raise ValueError(f"{name} = {brief(each)}: must be a function")
-        if not isinstance(self.values, Mapping):
-            raise ValueError(f"values = {brief(self.values)}: must be a dict of numbers by name")
+        if not callable(self.force):
+            raise ValueError(f"force = {brief(self.force)}: must be a function")
+        if self.lag is not None and not (callable(self.lag) and self.release == "force"):
+            raise ValueError(f"lag = {brief(self.lag)}: must be a function, with release='force'")
+        for name, each in (("values", self.values), ("units", self.units)):
+            if not isinstance(each, Mapping):
+                raise ValueError(f"{name} = {brief(each)}: must be a dict by name of parameter")
         numbers = {
             name: checked(name, value, -np.inf, np.inf, low_allowed=False)
             for name, value in self.values.items()

@@ -149,7 +149,7 @@ def _check_force(law: Force, speed: float, load: float, start_speed: float) -> t
         _check_lines(law, force, name, points, usual)
     _check_root(law, force, law.depth(min(1.0, speed)))
     if law.release == "force":
-        _check_release(force, along_v)
+        _check_release(law, force, along_v)
     p, v, a = along_v
     return force(along_v) - force((p, 0 * v, a)), v
 
@@ -290,13 +290,21 @@ def _check_root(law: Force, force: Callable, depth: float) -> None:
         raise ValueError(f"force: polynomials in {power} do not converge to it at p = 0{hint}")
 
 
-def _check_release(force: Callable, points: NDArray) -> None:
+def _check_release(law: Force, force: Callable, points: NDArray) -> None:
     """Raise ValueError unless contacts may end where the force vanishes."""
     values = force(points)
     if np.any(values == 0):
         raise ValueError(
             "force: is zero on a part of the contact, but release='force' ends it where the"
             " force changes its sign: write the force without this limit"
+        )
+    # Slow rates, because the force may have a pole at a depth.
+    rates = np.array([-1e-3, 0.0])
+    lagging, static = np.abs(force((law.kappa * 1e-3 + 0 * rates, rates, 1.0 + 0 * rates)))
+    if law.lag and lagging > ROUNDED * static:
+        raise ValueError(
+            "lag: must return κ of the line p + κp′ = 0 on which the force vanishes, but the force"
+            " does not vanish there"
         )
     start = force(np.array([[0.0], [0.0], [1.0]]))[0]
     if start < -ROUNDED * np.abs(values).max():

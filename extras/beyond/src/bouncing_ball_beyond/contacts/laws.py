@@ -108,7 +108,8 @@ class ForceLaw(Force):
     release : {"displacement", "force"}
         If "displacement", contacts end where p = 0. If "force", they end where the force vanishes.
     lag : callable, optional
-        Function ``lag(**values)`` that returns κ. Give it if the force vanishes where p + κp′ = 0.
+        Function ``lag(**values)`` that returns κ. Give it if the force vanishes where p + κp′ = 0,
+        and ends contacts there (release "force").
     kinks : tuple of callables
         Functions ``kink(p, v, **values)`` that change their sign where the force has a kink: it is
         continuous, but its derivatives jump.

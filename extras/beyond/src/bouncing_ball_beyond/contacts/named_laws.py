@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.contacts.balls import checked
+from bouncing_ball_beyond.contacts.balls import broadcast_named, checked
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.tables.table import Values
 
@@ -74,10 +74,13 @@ def law_of_impact(
     >>> round(float(signature.restitution), 12), round(float(signature.duration), 12)
     (0.8, 0.1)
     """
-    r, duration_of_impact, v = np.broadcast_arrays(
-        checked("restitution", restitution, 0, 1, low_allowed=False),
-        checked("duration", duration, 0, np.inf, low_allowed=False),
-        checked("speed", speed, 0, np.inf, low_allowed=False),
+    r, duration_of_impact, v = broadcast_named(
+        (name, checked(name, value, 0, high, low_allowed=False))
+        for name, value, high in (
+            ("restitution", restitution, 1),
+            ("duration", duration, np.inf),
+            ("speed", speed, np.inf),
+        )
     )
     found = {each: _damping_and_duration(law_of, each) for each in np.unique(r)}
     damping, unit = np.moveaxis(np.array([found[each] for each in r.flat]), -1, 0)

@@ -12,12 +12,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, brief, checked, whole_number
+from bouncing_ball_beyond.contacts.balls import (
+    Ball,
+    H,
+    SpringDamper,
+    brief,
+    check_ball,
+    check_whole_numbers,
+    checked,
+    one_number,
+    whole_number,
+)
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.periodic.search import AT_FOLD, guess_of_instants, rows_of
-from bouncing_ball_beyond.tables.table import SINE, Table, Values
+from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
 
 QUANTITIES = (
     "max_height",
@@ -122,10 +132,10 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     Raises
     ------
     ValueError
-        If n is below 1, or if free impacts of the ball do not end.
+        If n is not a whole number from 1, or if free impacts of the ball do not end.
     """
-    if np.any(np.asarray(n) < 1):
-        raise ValueError(f"n = {n!r}: must be a whole number from 1")
+    check_ball(ball)
+    check_whole_numbers("n", n)
     half = np.pi * np.asarray(n)
     speed = 1.5 * half
     step = speed
@@ -166,7 +176,8 @@ def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDAr
 
     The Λ of the saddle-node of the restitution model then satisfies C ≤ Λ max W′.
     """
-    amplitude = np.asarray(amplitude, float)
+    check_table(table)
+    amplitude = np.asarray(checked("amplitude", amplitude, 0, np.inf, low_allowed=False))
     node = impact.line / table.slope
     # C is a difference of numbers as large as the speed, so the error of C is a few eps times the
     # speed.
@@ -227,7 +238,6 @@ def law_errors(
     -0.01
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
-    checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     amplitude = off_rounding(impact, amplitude, table)
     reference = restitution_values(impact, amplitude, table)
     # r is NaN below the saddle-node.
@@ -385,7 +395,7 @@ def ball_at_ratio(
     contacts: SpringDamper | ForceLaw | Callable, n: ArrayLike, tolerance: float
 ) -> Callable:
     """Return a function that maps ϖ, or the number that replaces it, to the ball."""
-    checked("tolerance", tolerance, 0, np.inf, low_allowed=False)
+    one_number("tolerance", tolerance)
     if isinstance(contacts, Ball):
         impact = free_impact(contacts, n)
         return contacts.at_ratio(impact.restitution, impact.centroid)
@@ -430,6 +440,8 @@ def contact_values(
         allowed = ", ".join(QUANTITIES)
         raise ValueError(f"quantities = {quantities!r}: must be a list of names from {allowed}")
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
+    check_table(table)
+    check_whole_numbers("n", n)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
@@ -672,7 +684,7 @@ def error_thresholds(
     >>> round(float(found.ratio), 2), str(found.unstable)
     (75.79, 'in both models')
     """
-    if not 0 < low < high < np.inf:
+    if not one_number("low", low) < one_number("high", high):
         raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
     whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)

@@ -14,8 +14,10 @@ from bouncing_ball_beyond.contacts.balls import (
     Ball,
     Rigid,
     SpringDamper,
+    checked,
     damping_of,
     restitution_of,
+    whole_number,
 )
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear, tsuji
@@ -289,6 +291,7 @@ def on_shaker(
     rate = 2 * np.pi * positive("frequency", frequency, "Hz")
     fall = positive("gravity", gravity, "m/s²")
     tolerance = positive("tolerance", tolerance, "")
+    n = whole_number("n", n)
     measured = None
     if np.ndim(restitution):
         measured = _measured(restitution, fall / rate, n)
@@ -389,8 +392,7 @@ def _one_of(**quantities: float | None) -> str:
 
 def _compliance(modulus: float | None, ratio: float, body: str) -> float:
     """Return (1 - ν²)/E of a body. ``body`` is the prefix of its arguments: "" or "table_"."""
-    if not -1 < ratio <= 0.5:
-        raise ValueError(f"{body}poissons_ratio = {ratio!r}: must be above -1 and at most 0.5")
+    checked(f"{body}poissons_ratio", ratio, -1, 0.5, low_allowed=False)
     return (1 - ratio**2) / positive(f"{body}youngs_modulus", modulus, "Pa")
 
 

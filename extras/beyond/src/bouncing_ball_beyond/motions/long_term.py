@@ -19,13 +19,19 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.special import stdtrit
 
-from bouncing_ball_beyond.contacts.balls import Ball, H, check_ball, checked, whole_number
+from bouncing_ball_beyond.contacts.balls import (
+    Ball,
+    H,
+    check_one_ball,
+    checked,
+    one_number,
+    whole_number,
+)
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.motions.impact_map import impact_map
 from bouncing_ball_beyond.motions.simulation import (
     DESCRIPTIONS,
-    axis,
     dataset,
     described,
     first_impacts,
@@ -818,12 +824,9 @@ def basins(
     >>> sorted(found.kind.values.tolist()), float(found.share.sum())
     (['locked', 'periodic'], 1.0)
     """
-    check_ball(ball)
+    check_one_ball(ball)
     check_table(table)
-    given = axis("amplitude", amplitude)
-    if given.ndim or any(np.ndim(value) for value in ball.parameters.values()):
-        raise ValueError("amplitude, ball: must be one amplitude and a single ball, not arrays")
-    amplitude = float(given)
+    amplitude = one_number("amplitude", amplitude, low_allowed=True)
     middle = (np.arange(whole_number("starts", starts)) + 0.5) / starts
     fast = (
         fastest(ball, amplitude, table) if relative_velocity_max is None else relative_velocity_max

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.contacts.balls import Ball, brief, check_ball, checked, whole_number
+from bouncing_ball_beyond.contacts.balls import Ball, check_ball, checked, one_number, whole_number
 from bouncing_ball_beyond.contacts.one_ball import COLUMNS, EPS
 from bouncing_ball_beyond.motions.bounces import Balls, Leaving, bounce, fly, reduced
 from bouncing_ball_beyond.tables.table import PERIOD, SINE, Table, Values, check_table
@@ -25,15 +25,14 @@ MOST_IMPACTS = 1_000_000
 
 def axis(name: str, value: Any, dim: str | None = None) -> xr.DataArray:
     """Return an argument as a labelled array. A list becomes an axis with the argument's name."""
-    if isinstance(value, xr.DataArray):
-        return value.astype(float)
-    if np.asarray(value).dtype.kind in "SU":
-        raise ValueError(f"{name} = {brief(value)}: is a text, but must be a number")
-    value = np.asarray(value, float)
-    if value.ndim > 1 or not np.isfinite(value).all():
-        raise ValueError(f"{name}: must be a finite number, a list of them or an xarray.DataArray")
-    dims = [dim or name] * value.ndim
-    return xr.DataArray(value, {name: (dims, value)} if dims else {}, dims)
+    given = value.values if isinstance(value, xr.DataArray) else value
+    numbers = checked(name, given, -np.inf, np.inf, low_allowed=False)
+    if given is not value:
+        return value.copy(data=numbers)
+    if np.ndim(numbers) > 1:
+        raise ValueError(f"{name}: must be a number, a list of numbers, or an xarray.DataArray")
+    dims = [dim or name] * np.ndim(numbers)
+    return xr.DataArray(numbers, {name: (dims, numbers)} if dims else {}, dims)
 
 
 def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray]]:
@@ -53,7 +52,7 @@ def grid_of(ball: Ball, **values: Any) -> tuple[xr.DataArray, Ball, list[NDArray
     dim = "ball" if len(rows) > 1 else None
     arrays = [axis(name, value) for name, value in values.items()]
     arrays += [axis(name, value, dim) for name, value in rows.items()]
-    every = xr.broadcast(*arrays)
+    every = xr.broadcast(*xr.align(*arrays, join="exact"))
     flat = [each.values.ravel() for each in every]
     amplitude = flat[list(values).index("amplitude")]
     if (amplitude < 0).any():
@@ -333,7 +332,7 @@ def over_time(
     ``fall`` records the flights before the first impacts, shape (flights, 8, balls). It has no
     flights if the motions start with an impact.
     """
-    periods = checked("periods", periods, 0, np.inf, low_allowed=False)
+    periods = one_number("periods", periods)
     times = np.linspace(0, PERIOD * periods, round(periods * whole_number("samples", samples)) + 1)
     shape = balls.phase.size, times.size
     found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}

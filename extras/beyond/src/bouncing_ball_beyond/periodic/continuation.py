@@ -9,7 +9,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bouncing_ball_beyond.contacts.balls import Ball, brief, check_whole_numbers, whole_number
+from bouncing_ball_beyond.contacts.balls import (
+    Ball,
+    brief,
+    check_whole_numbers,
+    checked,
+    whole_number,
+)
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
@@ -134,7 +140,7 @@ def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int =
             f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for"
             " each"
         )
-    to = np.broadcast_to(np.asarray(to, float), len(latest))
+    to = np.broadcast_to(checked("to", to, -np.inf, np.inf, low_allowed=False), len(latest))
     going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
     while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
         until = ["period doubling"] * len(going)
@@ -206,13 +212,7 @@ def _tasks(orbit: PeriodicOrbit, path: Path, to: Any, until: str | None) -> list
     if to is None:
         turn = path.name.startswith("phase_")
         to = value + PERIOD if turn else usual_range(path, value, low, high)[1]
-    try:
-        goals = np.atleast_1d(np.asarray(to, float))
-    except (TypeError, ValueError):
-        raise ValueError(f"to = {to!r}: must be a number, or two numbers") from None
-    for goal in goals:
-        if not (low <= goal <= high and np.isfinite(goal)):
-            raise ValueError(f"to = {goal:g}: {path.name} must be in [{low:g}, {high:g}]")
+    goals = np.atleast_1d(checked(f"to: {path.name}", to, low, high, low_allowed=True))
     if len(goals) == 2 and not goals[0] <= value <= goals[1]:
         raise ValueError(
             f"to = {to}: {path.name} = {value:.10g} of the orbit must be in this range"

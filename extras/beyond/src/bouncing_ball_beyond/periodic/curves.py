@@ -47,7 +47,7 @@ def special_curve(
         Special orbit of a branch, such as ``branch.first("saddle-node")``. A period halving is
         followed as the period doubling of the orbit of half the period.
     along : tuple of two names
-        Two parameters as in `follow`.
+        Two parameters as in `follow`, but not amplitude and frequency, which both change Λ.
     ranges : mapping of names to (low, high), optional
         Values of the parameters at which the curve ends. The default values of ``low`` and ``high``
         are a tenth of the value at the start, and the larger of 10 and ten times this value. The
@@ -84,10 +84,15 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
     """Equations of the special orbits on the curve, and the special orbit at its start."""
     if not isinstance(special, PeriodicOrbit):
         raise ValueError(f"special = {brief(special)}: must be a special orbit of a branch, {SUCH}")
-    if not isinstance(along, tuple | list) or len(along) != 2 or along[0] == along[1]:
+    if (
+        not isinstance(along, tuple | list)
+        or len(along) != 2
+        or along[0] == along[1]
+        or {*map(str, along)} == {"amplitude", "frequency"}
+    ):
         raise ValueError(
             f"along = {brief(along)}: must be the names of two different parameters, such as"
-            " ('amplitude', 'restitution')"
+            " ('amplitude', 'restitution'); 'frequency' already changes the amplitude"
         )
     allowed = KINDS.keys() - {"lost release", "vanishing flight", "grazing of an impact"}
     if special.kind not in allowed:
@@ -106,7 +111,9 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
 def _limits(equations: OrbitEquations, z: NDArray, special: PeriodicOrbit, ranges: Any) -> NDArray:
     """Minima and maxima of both parameters, shape (2, 2). The first row has the minima."""
     wanted = {} if ranges is None else ranges
-    if not isinstance(wanted, Mapping) or any(np.size(each) != 2 for each in wanted.values()):
+    if not isinstance(wanted, Mapping) or any(
+        np.size(each) != 2 or np.asarray(each).dtype.kind not in "iuf" for each in wanted.values()
+    ):
         raise ValueError(
             f"ranges = {brief(ranges)}: must be a mapping of names to (low, high), such as"
             " {'amplitude': (0.5, 3.0)}"

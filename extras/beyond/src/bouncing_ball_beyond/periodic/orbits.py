@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.contacts.balls import (
     Ball,
-    brief,
     check_one_ball,
     check_whole_numbers,
     checked,
+    one_number,
     whole_number,
 )
 from bouncing_ball_beyond.periodic.continuation import limits
@@ -133,14 +133,6 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     return found
 
 
-def one_amplitude(amplitude: Any) -> float:
-    """Return the amplitude as a float. Raises ValueError unless it is one positive number."""
-    value = checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
-    if np.ndim(value):
-        raise ValueError(f"amplitude = {brief(amplitude)}: must be one number")
-    return value
-
-
 def orbits(
     ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
 ) -> list[PeriodicOrbit]:
@@ -178,7 +170,7 @@ def orbits(
     [(8.209, True), (8.007, False)]
     """
     check_one_ball(ball)
-    amplitude = one_amplitude(amplitude)
+    amplitude = one_number("amplitude", amplitude)
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
     equations = OrbitEquations(ball, *counts, table=table)

@@ -87,7 +87,7 @@ def path_of(along: str, ball: Ball, table: Table = SINE) -> Path:
     allowed = ["amplitude", "frequency", *ball.parameters, *table.parameters]
     if along in allowed:
         return Frequency() if along == "frequency" else Path(along)
-    if isinstance(along, str) and along in vars(ball):
+    if isinstance(along, str) and vars(ball).get(along, along) is None:
         raise ValueError(
             f"along = {along!r}: the ball has {' and '.join(ball.parameters)} as parameters; make"
             f" it with {along} instead, and start from its orbit"

@@ -144,7 +144,7 @@ def _noise_at(t: NDArray, left: NDArray, tones: NDArray, digit: float, drifts: i
     last digit of the record, which rounding explains. Changes that are slower than half of the
     lowest tone, with at most ``drifts`` cycles in the record, are drifts of the sensor.
     """
-    step = np.median(np.diff(t))
+    step = np.median(np.diff(np.unique(t)))
     place = np.round((t - t[0]) / step).astype(int)
     size = next_fast_len(int(place[-1]) + 1)
     power = np.abs(np.fft.rfft(np.bincount(place, left, size))) ** 2 / t.size

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from math import isfinite
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -73,7 +74,7 @@ def checked_harmonic(each: Any) -> tuple[int, float, float]:
     try:
         k, a, p = each
         fraction = bool(k % 1)
-        good = int(k) == k >= 1 and bool(np.isfinite([a, p]).all())
+        good = int(k) == k >= 1 and isfinite(a) and isfinite(p)
     except (TypeError, ValueError):
         good = False
     if not good:
@@ -87,12 +88,12 @@ def checked_harmonic(each: Any) -> tuple[int, float, float]:
 def finite_row(name: str, values: Values) -> Values:
     """Return values as an array. Raises ValueError unless it has one axis and is finite."""
     try:
-        row = np.asarray(values, float)
-    except (TypeError, ValueError):
+        row = np.asarray(values)
+    except ValueError:
         row = np.empty(0)
-    if row.ndim != 1 or not row.size or not np.isfinite(row).all():
+    if row.ndim != 1 or not row.size or row.dtype.kind not in "iuf" or not np.isfinite(row).all():
         raise ValueError(f"{name}: must be a row of finite numbers")
-    return row
+    return row.astype(float)
 
 
 def highest(value: Any) -> int:

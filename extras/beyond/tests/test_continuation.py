@@ -468,6 +468,11 @@ def test_a_period_halving_is_the_doubling_from_the_other_side():
     assert half.impacts == 1 and half.values[-1] == 1.3 and half.stable[1:].all()
 
 
+def test_a_range_is_not_left_where_the_parameter_turns_back():
+    branch = follow(orbit(Rigid(0.5), amplitude=1.2), to=(0.9, 1.3))
+    assert branch.values[[0, -1]].tolist() == [1.3, 1.3]
+
+
 def test_a_closed_branch_ends_at_its_start():
     """A loop along r with twelve special orbits, each of which is listed once."""
     times = np.array([0.2819, 12.77956, 28.77264, 30.25599, 31.12455])

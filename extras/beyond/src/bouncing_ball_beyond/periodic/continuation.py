@@ -69,10 +69,11 @@ def follow(
         of the branch that contains the orbit.
     to : float, array_like or tuple (low, high), optional
         Value at which the branch ends, or one value for each orbit. With a tuple, the orbit is
-        followed in both directions. If the parameter turns back at a saddle-node and passes its
-        start, the branch ends at the mirror image of `to` on the other side of the start. The
-        default is the upper end of the range of the parameter, but at most the larger of 10 and ten
-        times the value. For a phase the default is one turn ahead.
+        followed in both directions, and the parameter stays in this range. With one value, if the
+        parameter turns back at a saddle-node and passes its start, the branch ends at the mirror
+        image of `to` on the other side of the start. The default is the upper end of the range of
+        the parameter, but at most the larger of 10 and ten times the value. For a phase the default
+        is one turn ahead.
     points : int
         Maximum number of orbits on a branch in each direction.
 
@@ -257,8 +258,10 @@ def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
     going = np.flatnonzero(start.reasons == "")
     if not going.size:
         return found
-    # The parameter stays between the goal and its mirror image on the other side of the start.
-    behind = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
+    # The parameter stays between both goals, or between the goal and its mirror image on the other
+    # side of the start.
+    mirror = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
+    behind = np.where(np.isfinite(task.other), task.goal + task.other - start.goal, mirror)
     window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
     branches = followed(start.take(going), window, task.until[going], points, kind, grazings)
     name = task.equations.along[-1].name

@@ -261,7 +261,8 @@ def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
     # The parameter stays between both goals, or between the goal and its mirror image on the other
     # side of the start.
     mirror = np.clip(2 * task.z[:, -1] - start.goal, *task.limits.T)
-    behind = np.where(np.isfinite(task.other), task.goal + task.other - start.goal, mirror)
+    other = np.where(start.goal == task.goal, task.other, task.goal)
+    behind = np.where(np.isfinite(task.other), other, mirror)
     window = np.sort(np.stack([start.goal, behind], axis=-1), axis=-1)[going, :, np.newaxis]
     branches = followed(start.take(going), window, task.until[going], points, kind, grazings)
     name = task.equations.along[-1].name

@@ -147,10 +147,13 @@ def _noise_at(t: NDArray, left: NDArray, tones: NDArray, digit: float, drifts: i
     step = np.median(np.diff(np.unique(t)))
     place = np.round((t - t[0]) / step).astype(int)
     size = next_fast_len(int(place[-1]) + 1)
-    power = np.abs(np.fft.rfft(np.bincount(place, left, size))) ** 2 / t.size
+    # Hann's window: a drift that does not end as it begins stays among the slowest frequencies.
+    window = np.sin(np.pi * (place + 0.5) / (place[-1] + 1)) ** 2
+    window /= np.sqrt(np.mean(window**2))
+    power = np.abs(np.fft.rfft(np.bincount(place, left * window, size))) ** 2 / t.size
     frequencies = np.fft.rfftfreq(size, step)
     noise = median_filter(power, min(WINDOW, power.size), mode="reflect") / np.log(2)
-    sizes = 2 * np.sqrt(power / t.size)
+    sizes = 2 * np.sqrt(power / t.size) / window.mean()
     judged = frequencies > min(tones[0] / 2, drifts / np.ptp(t))
     with np.errstate(divide="ignore", invalid="ignore"):
         excess = np.where(judged & (sizes > digit / 2), power / noise, 0.0)

@@ -188,7 +188,7 @@ def made_record(generator, seconds, change=None):
         signal += 0.05 * size * np.sin(2 * np.pi * 1.4 * true * time)
     if change == "amplitude":
         signal *= 1 + 0.1 * time / seconds
-    signal += 9.81 + 0.5 * np.sin(7 * time / seconds) + generator.normal(0, 0.3, time.size)
+    signal += 9.81 + 0.5 * time / seconds + generator.normal(0, 0.3, time.size)
     return {"time": time, "acceleration": signal, "frequency": frequency}, size / 9.80665, true
 
 

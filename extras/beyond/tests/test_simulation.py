@@ -487,6 +487,10 @@ TEXT = {"quantities": "max_height"}
         ),
         (lambda: bb.follow(TWO, to=(1.2, 1.3, 1.4)), r"to = \(1\.2, .*: must be a number, a tuple"),
         (lambda: bb.cascade(TWO, to=2.0, impacts=1), "impacts = 1: must be a whole number from 2"),
+        (
+            lambda: bb.simulate(ONE, amplitude=xr.DataArray([1.0], dims="impact")),
+            "impact: is an axis of the result",
+        ),
     ],
 )
 def test_arguments_that_make_no_sense_are_named_in_one_line(call, text):

@@ -89,7 +89,10 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
         if not found.success:
             raise ValueError(f"{law}: no steady motion in contact at Λ = {unknown[1]:.4g}")
         if unknown[1] < before:
-            raise ValueError(f"{law}: the steady motion in contact ends near Λ = {before:.4g}")
+            raise ValueError(
+                f"{law}: the steady motion in contact ends, or is not the only one, near"
+                f" Λ = {before:.4g}"
+            )
         before = float(unknown[1])
     return before
 

@@ -124,6 +124,8 @@ def dataset(
     The first axis of each of the ``variables`` has the points of the grid. The axes of the
     ``coordinates`` come after the first axis.
     """
+    for name in coordinates.keys() & set(grid.dims):
+        raise ValueError(f"{name}: is an axis of the result: rename this axis of the DataArray")
     found = xr.Dataset(coords=dict(grid.coords) | coordinates)
     names = list(coordinates)
     for name, value in variables.items():

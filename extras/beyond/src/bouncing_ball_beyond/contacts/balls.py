@@ -196,11 +196,11 @@ class Ball:
         return nothing, nothing
 
     def end_slopes(
-        self, tau: Values, u: Values, T: Values, w: Values, amplitude: Values, table: Table = SINE
+        self, tau: Values, u: Values, T: Values, amplitude: Values, table: Table = SINE
     ) -> NDArray:
         """Derivatives with respect to τ and u of D, δ and δ′ at the end of an impact.
 
-        ``w`` is δ′ at the end. Returns an array of the shape (3, 2, *tau.shape).
+        Returns an array of the shape (3, 2, *tau.shape).
         """
         if self.has_duration:
             return slopes_at_release(self, tau, u, T, amplitude, table)

@@ -123,7 +123,7 @@ class ImpactMap:
             found[:, others] = self.ball.leaves(*given)
         return tuple(found)
 
-    def end_slopes(self, tau: NDArray, u: NDArray, T: NDArray, w: NDArray) -> NDArray:
+    def end_slopes(self, tau: NDArray, u: NDArray, T: NDArray) -> NDArray:
         """Derivatives as in :meth:`.Ball.end_slopes`; NaN if u is NaN."""
         found = np.full((3, 2, *u.shape), np.nan)
         number, x = self._places(u)
@@ -139,7 +139,7 @@ class ImpactMap:
             found[:, 0, at] = _sum(1j * harmonics[:, np.newaxis] * piece[1:], powers, waves)
             found[:, 1, at] = _sum(by_x, powers[:, :-1], waves) * stretch
         others = ~known & np.isfinite(u)
-        given = tau[others], u[others], T[others], w[others], self.amplitude, self.table
+        given = tau[others], u[others], T[others], self.amplitude, self.table
         found[..., others] = self.ball.end_slopes(*given)
         return found
 

@@ -153,9 +153,9 @@ def tangent_maps(balls: Balls, record: NDArray, lifts: NDArray) -> NDArray:
     amplitude = balls.amplitude
     _, tau, u, T, duration, _, w, time = np.moveaxis(record, 1, 0)
     if balls.map:
-        slopes = balls.map.end_slopes(tau, u, T, w)
+        slopes = balls.map.end_slopes(tau, u, T)
     else:
-        slopes = ball.end_slopes(tau, u, T, w, amplitude, table)
+        slopes = ball.end_slopes(tau, u, T, amplitude, table)
     slopes = np.where(are_rests(T, duration), 0.0, slopes)
     later, dgap, dw = slopes
     later = later + np.array([1.0, 0.0])[:, np.newaxis, np.newaxis]

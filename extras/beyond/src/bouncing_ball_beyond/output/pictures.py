@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.output.results import OF_IMPACTS, OF_ORBITS, PARAMETERS
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, SpecialCurve
-from bouncing_ball_beyond.periodic.orbits import PeriodicOrbit
+from bouncing_ball_beyond.periodic.equations import PeriodicOrbit
 from bouncing_ball_beyond.periodic.paths import OF_TABLES
 from carbonelli2011.curves import KINDS, pieces
 from paper_replication.drawing import WIDTH, colours, legend_below, pale, sample, style

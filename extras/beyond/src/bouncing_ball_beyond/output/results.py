@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, SpecialCurve
-from bouncing_ball_beyond.periodic.orbits import PeriodicOrbit
+from bouncing_ball_beyond.periodic.equations import PeriodicOrbit
 
 OF_IMPACTS = {
     "phase": ("phase of the table as an impact starts", "φ", "rad"),

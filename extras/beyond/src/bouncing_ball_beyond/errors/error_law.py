@@ -174,7 +174,8 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
 def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDArray:
     """Return Λ, or the saddle-node C/max W′ if Λ is smaller only by rounding errors.
 
-    The Λ of the saddle-node of the restitution model then satisfies C ≤ Λ max W′.
+    The Λ of the saddle-node of the restitution model then satisfies C ≤ Λ max W′. Raises ValueError
+    for a Λ or a table that is not allowed.
     """
     check_table(table)
     amplitude = np.asarray(checked("amplitude", amplitude, 0, np.inf, low_allowed=False))
@@ -266,18 +267,18 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
     """First-order shifts of w′, -w″, Λ (relative) and the phase of the period doubling."""
     amplitude, phase = table.amplitude_at(impact.line, impact.doubling)
     jolt = -amplitude * table(phase, 3)
-    b = impact.slope
+    slope = impact.slope
     half = impact.half
     rise = impact.doubling - 1
     across = impact.shift * rise
     steeper = impact.curvature * across - impact.load_slope * rise
     along = (
-        (1 - b) * across
+        (1 - slope) * across
         + 2 * impact.centroid_slope * rise
         - half * impact.load * jolt
         + steeper * (half * (1 - rise) - impact.speed)
     )
-    along = along / (half * (1 + b))
+    along = along / (half * (1 + slope))
     share = impact.doubling * along + jolt * across
     share = share / (impact.doubling**2 + impact.line * jolt)
     return across, along, share, (share * impact.line - across) / impact.doubling

@@ -20,6 +20,7 @@ min_version("9.5")
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
 from paper_replication.configuration import (
+    SHOWN_BY,
     entries,
     mistakes,
     repeated_keys,
@@ -67,9 +68,8 @@ def datasets(stage):
 
 def parameters(stage):
     """The title and the parameters of each dataset of a stage."""
-    about = ("caption", "table")
     return {
-        name: {key: value for key, value in ENTRIES[name].items() if key not in about}
+        name: {key: value for key, value in ENTRIES[name].items() if key not in SHOWN_BY}
         for name in names(stage)
     }
 

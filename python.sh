@@ -2,7 +2,7 @@
 # For the Makefiles of the three packages, in the folder of the package.
 #     python.sh -m venv .venv           run a Python that the lock file serves, with these arguments
 #     python.sh --builds python3.14     print what has no wheel for this Python: pip builds it from source
-# The Python is $PYTHON, or the first one that serves of python3 and the versions in pyproject.toml.
+# The Python is $PYTHON, or else the first that serves: python3, then those of pyproject.toml, newest first.
 set -eu
 
 if [ "$1" = --builds ]; then

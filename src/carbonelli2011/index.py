@@ -103,12 +103,15 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
                 title=entry["title"],
                 caption=entry.get("caption", ""),
                 files={label: f"{name}.{kind}" for label, kind in kinds.items()},
-                rows=rows_beside(name, datasets),
+                rows=rows_beside(name, datasets, "Table 1"),
                 table=TABLES[name](datasets[name]) if entry.get("table") else (),
                 elsewhere=sorted(decided & {*entries}),
             )
         )
-    general = [Part(key, title, rows=rows_beside(key, datasets)) for key, title in SEVERAL.items()]
+    general = [
+        Part(key, title, rows=rows_beside(key, datasets, "Table 1"))
+        for key, title in SEVERAL.items()
+    ]
     return found + general
 
 
@@ -121,7 +124,7 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     advised = texts.short(given["advised"])
     limit = texts.percent(given["tolerance"])
     families = [f"n = {n}" for n in validity_map.n.values]
-    heads = ["quantity", f"at ϖ ≥ {advised}", f"error above {limit}, or this, for some Λ"]
+    heads = ["quantity", f"at ϖ ≥ {advised}", f"for some Λ: above {limit}, or it happens"]
     rows = [[*heads, f"share: {families[0]}", *families[1:]]]
     for quantity in validity_map["quantity"].values:
         error = validity_map.stiff_error.sel(quantity=quantity).max(skipna=False).item()

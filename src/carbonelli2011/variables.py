@@ -1,13 +1,8 @@
-"""What each variable of the datasets means, and how closely two computations of it agree.
-
-A number x agrees with the number y of the reference if
-
-    |x - y| <= tolerance · max(|y|, floor).
+"""What each variable of the datasets means, and its tolerance (`paper_replication.datasets`).
 
 The usual tolerance, 1e-9, allows for the rounding of other processors and versions of numpy: the
 orbits are solved to about 1e-13, and a bifurcation amplifies this error by some powers of ten.
-Below the floor the tolerance is absolute, because a zero is not met to the last bit. Texts,
-integers and booleans agree only if they are equal.
+Below the floor the tolerance is absolute, because a zero is not met to the last bit.
 
 Symbols of the models mean the same in every dataset: `SYMBOLS`. All other variables belong to the
 dataset that has them: `OF_DATASET`.

@@ -6,7 +6,7 @@ of the file. A run has a record for each job in its folder `records`. The refere
 its files, `figures/accepted.json`, with the code and the versions that gave them last.
 
 Each side of a file is asked by itself first (`Comparison.side`): whether it is present, readable,
-named by a record, as the record says, and fresh. Then both sides are compared (`Comparison.pair`):
+named by a record, as the record says, and fresh. Then `Comparison.finding` compares both sides:
 
 - Numbers of datasets agree within the tolerances that the first run declares.
 - All other files are functions of datasets, and are compared byte for byte. If one of their
@@ -41,7 +41,7 @@ import xarray as xr
 import yaml
 from PIL import Image
 
-from paper_replication.configuration import entries, shown_as
+from paper_replication.configuration import SHOWN_BY, entries, shown_as
 from paper_replication.datasets import Variable, attributes, plain, read, write
 from paper_replication.provenance import CHECKOUT, PACKAGES, content, contents
 from paper_replication.templates import TEMPLATES, environment
@@ -543,7 +543,7 @@ class Comparison:
         if isinstance(data, xr.Dataset):
             entry = known.get(name, {}).items()
             known = {key: value for key, value in config.items() if key in record["parameters"]}
-            known |= {key: value for key, value in entry if key not in ("caption", "table")}
+            known |= {key: value for key, value in entry if key not in SHOWN_BY}
             variables = data.variables
         found = [
             f"{line} (config/config.yaml or the Snakefile)"

@@ -51,6 +51,10 @@ def entries(config: Mapping) -> dict[str, Mapping]:
     return {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
 
 
+SHOWN_BY = ("caption", "table")
+"""Keys of an entry that decide how it is shown, and no number."""
+
+
 def shown_as(entry: Mapping) -> list[str]:
     """Return the endings of the files that show an entry: pictures have a caption.
 

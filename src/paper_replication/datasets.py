@@ -1,7 +1,10 @@
 """Save and read datasets, with the descriptions of their variables and their provenance.
 
-Every figure and table has one netCDF file. The module `variables` describes the variables and says
-how closely two computations of each agree.
+Every figure and table has one netCDF file. A number x agrees with the number y of the reference if
+
+    |x - y| <= tolerance · max(|y|, floor).
+
+Texts, integers and booleans agree only if they are equal.
 """
 
 import json

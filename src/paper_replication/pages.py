@@ -84,12 +84,12 @@ def with_subscripts(page: str) -> str:
     return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
 
 
-def rows_beside(name: str, datasets: Datasets) -> list[Row]:
-    """The claims next to a figure or table; the ends of Table 1 are in the table itself."""
+def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[Row]:
+    """Return the claims next to a figure or table, without those of the table `elsewhere`."""
     return [
         row(claim)
         for claim in [*counted(datasets["claims"]), *claims_of(datasets["claims"], "own claim")]
-        if claim["beside"] == name and claim["item"] != "Table 1"
+        if claim["beside"] == name and claim["item"] != elsewhere
     ]
 
 

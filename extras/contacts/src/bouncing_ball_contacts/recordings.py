@@ -115,6 +115,12 @@ def rounding_of(recording: Recording) -> float:
     return recording.digit * has_digit
 
 
+def _rounding_given(table: Table, unit: str) -> float:
+    """Return the rounding whose standard deviation, 1/√12 of it, is the resolution in the head."""
+    said = table.head.get("resolution")
+    return 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
+
+
 # Numbers to series.
 
 
@@ -253,11 +259,8 @@ def _of_series(table: Table, kind: str, columns: list[Column]) -> Recording:
         groups=_groups(table, [i for _, lines in runs for i in lines[1:].tolist()], None),
     )
     rounding = rounding_of(found) if found.chains else 0.0
-    # Rounding has the standard deviation of a resolution that is 1/√12 of it.
     unit = "m" if kind == "heights" else "s"
-    if "resolution" in table.head:
-        resolution = positive("resolution", table.head["resolution"], unit)
-        rounding = max(rounding, math.sqrt(12) * resolution)
+    rounding = max(rounding, _rounding_given(table, unit))
     # Errors of two readings may let a height grow by a last digit, and those of three times a
     # flight by two.
     grows = rounding if kind == "heights" else 2 * rounding
@@ -307,8 +310,7 @@ def _of_pairs(table: Table, kind: str, columns: list[Column], errors: list[Colum
     lines = np.tile(table.lines, len(others))[is_there]
     if kind != "coefficients":
         unit = "m" if kind == "drops" else "m/s"
-        said = table.head.get("resolution")
-        grows = 0.0 if said is None else math.sqrt(12) * positive("resolution", said, unit)
+        grows = _rounding_given(table, unit)
         _refuse_growth(table, kind, pairs, lines, grows)
     read_off = columns if kind == "speeds" else columns[1:]
     digit = min(each.scale * each.digit for each in read_off)

@@ -549,7 +549,7 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
 
 
 def _with_units(columns: list[Column]) -> list[Column]:
-    """Give heights and speeds without a unit that of the others, and times of a line their role."""
+    """Give heights and speeds the unit of the others. Several times in a line are touches."""
     units = {_UNITS.get(each.role, ""): each.unit for each in reversed(columns) if each.unit}
     inherited = {unit: units.get(unit, "") for unit in _INHERITED}
     times = [each for each in columns if each.role == "time" and re.search(r"\d$", each.name)]
@@ -557,7 +557,7 @@ def _with_units(columns: list[Column]) -> list[Column]:
         replace(
             each,
             unit=each.unit or inherited.get(_UNITS.get(each.role, ""), ""),
-            role="touch" if each in times[: len(times) * (len(times) > 1)] else each.role,
+            role="touch" if len(times) > 1 and each in times else each.role,
         )
         for each in columns
     ]

@@ -134,11 +134,6 @@ def by_polynomials(ball: Ball) -> Callable:
 # Errors along π/(D + κ)
 
 
-def impact_speed(case: dict) -> float:
-    """v₀ of an orbit of the restitution model."""
-    return 2 * case["n"] * np.pi / (1 + case["restitution"])
-
-
 def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDArray:
     """Signed errors of both models on contacts that are calibrated at the orbit on them, shape
     (model, quantity, ratio).
@@ -147,7 +142,8 @@ def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDAr
     row, *_ = Ratio().apply(ratios, unit)
     n = np.full(ratios.shape, case["n"])
     amplitude = np.full(ratios.shape, case["amplitude"])
-    near, *_ = Speed().apply(np.full(ratios.shape, impact_speed(case)), row)
+    constant = free_impact(Rigid(case["restitution"]), case["n"])
+    near, *_ = Speed().apply(np.full(ratios.shape, constant.speed), row)
     # The calibrated speed is in the place of Λ.
     z = guess_of_instants(near, n, amplitude)
     z[:, -1] = z[:, 1]
@@ -165,7 +161,6 @@ def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDAr
     }
     known = Known(by_polynomials(unit), z[:, -1], np.pi / ratios)
     corrected = contact_values(Corrected(known), quantities=quantities, **given)
-    constant = free_impact(Rigid(case["restitution"]), case["n"])
     models = restitution_values(constant, case["amplitude"]), corrected
     return np.array([[exact[q] / model[q] - 1 for q in quantities] for model in models])
 
@@ -207,19 +202,17 @@ def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, 
     )
     n = np.array([case["n"] for case in rows])
     amplitude = np.array([case["amplitude"] for case in rows])
-    speed = np.array([impact_speed(case) for case in rows])
+    constant = free_impact(Rigid(np.array([case["restitution"] for case in rows])), n)
+    speed = constant.speed
     fast, *_ = Speed().apply(speed, unit)
     stiff, *_ = Ratio().apply(STIFF, fast)
     error = law_errors(stiff, amplitude=amplitude, n=n)["max_height"]
     tolerance = parameters["tolerance"]
     ratio = STIFF * np.abs(error) / tolerance
     near, *_ = Ratio().apply(ratio, fast)
-    constant = [free_impact(Rigid(case["restitution"]), case["n"]) for case in rows]
-    heights = [
-        restitution_values(impact, case["amplitude"])["max_height"]
-        for impact, case in zip(constant, rows, strict=True)
+    sought = (1 + np.sign(error) * tolerance) * restitution_values(constant, amplitude)[
+        "max_height"
     ]
-    sought = (1 + np.sign(error) * tolerance) * np.array(heights)
     equations = OrbitEquations(unit, 1, n, amplitude, (Ratio(), Speed()))
     z = guess_of_instants(near, n, amplitude)
     z = np.column_stack([z[:, :-1], ratio, speed])

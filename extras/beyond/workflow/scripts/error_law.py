@@ -63,7 +63,7 @@ def left_at_saddle_node(ball: Ball, n) -> tuple[NDArray, NDArray]:
     Rounding must not put Λ below the saddle-node, and a root of the share added is small next to
     what the contact changes at ϖ up to 10⁴.
     """
-    return left_by_law(ball, (1 + 1e-9) * (free_impact(ball, n).speed - n * np.pi), n)
+    return left_by_law(ball, (1 + 1e-9) * free_impact(ball, n).line, n)
 
 
 def of_the_orbit(parameters: dict, release: str) -> dict[str, tuple]:

@@ -236,7 +236,7 @@ def simulated_measurement(
     cosine, sine = np.zeros((2, phase.size))
     for impact in range(SETTLING + impacts):
         restitution = r * (1 + given.scatter * generator.standard_normal(phase.size))
-        record, _, balls = step(balls_with(balls, ball.at(damping_ratio=damping_of(restitution))))
+        record, _, balls = step(replace(balls, ball=ball.at(damping_ratio=damping_of(restitution))))
         if impact >= SETTLING:
             heard = record[1] + jitter * generator.standard_normal(phase.size)
             cosine += np.cos(heard)
@@ -258,11 +258,6 @@ def measurements(given: SimpleNamespace, generator: np.random.Generator) -> dict
     """Simulated measurements of balls with each r."""
     found = [simulated_measurement(r, given, generator) for r in given.restitution]
     return {name: ("restitution", [each[name] for each in found]) for name in found[0]}
-
-
-def balls_with(balls: Balls, ball: Ball) -> Balls:
-    """The row with other contacts at its next impacts."""
-    return replace(balls, ball=ball)
 
 
 # What thresholds do not tell
@@ -312,7 +307,7 @@ def escapes(given: SimpleNamespace, generator: np.random.Generator) -> dict:
     left = np.arange(phase.size)
     for _ in range(impacts):
         restitution = r * (1 + given.scatter * generator.standard_normal(left.size))
-        record, going, after = step(balls_with(balls, Rigid(restitution)))
+        record, going, after = step(replace(balls, ball=Rigid(restitution)))
         # A ball that has left its orbit lands in another period of the table.
         kept = np.abs(record[-1, going] - 2 * np.pi) < np.pi / 2
         left = left[going[kept]]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
-from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, check_one_ball
+from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, brief, check_one_ball
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
@@ -65,6 +65,10 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     """
     check_one_ball(ball)
     check_table(table)
+    if ball.below_table:
+        raise ValueError(
+            f"ball = {brief(ball)}: is not followed from impact to impact: ask the ball `of`"
+        )
     if not ball.has_duration:
         return 1 / table.lift
     law: Any = ball

@@ -208,18 +208,13 @@ def _label(name: str) -> str:
     return f"{name} {symbol}".replace("_", " ").rstrip()
 
 
-def _name(branch: FollowedBranch) -> str:
-    """Text of a branch in a legend, with its numbers of impacts and periods."""
-    return f"{branch.impacts} impact{'s'[: branch.impacts - 1]} in {branch.periods} T"
-
-
 def _texts(branches: list[FollowedBranch]) -> tuple[str, list[str]]:
     """Return the title of a figure, and for each branch its text in the legend.
 
     The title has what all branches share: numbers of impacts and periods, and constant parameters.
     The texts of branches have the rest.
     """
-    constants = [[_name(branch), *_constants(branch)] for branch in branches]
+    constants = [_constants(branch) for branch in branches]
     same = [text for text in constants[0] if all(text in each for each in constants)]
     others = [", ".join(text for text in each if text not in same) for each in constants]
     differences = [text.replace(EQUAL, " = ") for text in others]
@@ -227,12 +222,14 @@ def _texts(branches: list[FollowedBranch]) -> tuple[str, list[str]]:
 
 
 def _constants(branch: FollowedBranch) -> list[str]:
-    """Texts of the parameters that are constant along a branch and not at a default value.
+    """Texts of the numbers of impacts and periods of a branch, and of its constant parameters.
 
-    The phase of a harmonic is 0 by default, and the size of the first harmonic is 1.
+    Parameters at a default value are left out. The phase of a harmonic is 0 by default, and the
+    size of the first harmonic is 1.
     """
     first, last = (branch.orbits[i].parameters for i in (0, -1))
-    return [
+    several = "s" if branch.impacts > 1 else ""
+    return [f"{branch.impacts} impact{several} in {branch.periods} T"] + [
         f"{_symbol(name)}{EQUAL}{value:.4g}"
         for name, value in first.items()
         if value == last[name]

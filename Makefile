@@ -20,7 +20,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup develop test test-processors lint diff replication accept report newest lowest lock wheels clean
+.PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
@@ -56,16 +56,14 @@ lint: develop
 diff: setup
 	@$(SNAKEMAKE) $@
 
-# The tests that read the reference judge the results first, so that they are green afterwards, too.
+# The tests of datasets and texts judge the results first, so that they are green afterwards, too.
+JUDGES := $(shell grep -l 'tests.reference import.*\breference\b' tests/test_*.py)
 accept: develop
 	@$(SNAKEMAKE)
-	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet $(filter-out tests/test_edges.py,$(shell grep -l tests.reference tests/test_*.py))
+	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet $(filter-out tests/test_edges.py,$(JUDGES))
 	@$(SNAKEMAKE) $@
 
 replication: clean diff
-
-report: all
-	$(RUN) snakemake --report results/report.html
 
 # From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
 test-processors: develop

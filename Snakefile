@@ -5,7 +5,8 @@
 #     snakemake --cores 2 continuation     the datasets of a stage
 #     snakemake --cores 2 diff             compare the results with the reference
 #     snakemake --cores 2 fig14 diff       make and compare Figure 14 only
-#     snakemake --cores 2 accept           make the results the new reference
+#
+# `make accept` makes the results the new reference.
 
 import os
 import sys
@@ -444,7 +445,7 @@ rule diff:
 
 
 rule accept:
-    """Make the results the new reference"""
+    """The last step of `make accept`, which tests the results first"""
     localrule: True
     input:
         rules.all.input,

@@ -27,6 +27,7 @@ TEXTS = {"claims", "choices", "article"}
 NO_NUMBER = {
     "carbonelli2011/variables.py",
     "paper_replication/provenance.py",
+    "scripts/project.py",
 }
 """Modules that decide no number: they are in no list of code."""
 
@@ -53,7 +54,7 @@ def test_each_stage_runs_its_script_with_the_settings_that_its_functions_take(co
         functions = stage(name).STAGE.values()
         needed = {each for one in functions for each in [*signature(one).parameters][1:]}
         record = complete.path / f"results/records/{name}.json"
-        assert record.read_text("utf-8") == f"{name} {sorted(needed)}"
+        assert record.read_text("utf-8") == f"stage {sorted(needed)}"
 
 
 def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
@@ -134,7 +135,7 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
         ("src/carbonelli2011/figures.py", "import", "import  ", FIGURES),
         ("src/carbonelli2011/variables.py", "import", "import  ", set()),
         ("src/paper_replication/compare.py", "import", "import  ", set()),
-        ("workflow/templates/paper.md.j2", "the", "a", {"article"}),
+        ("src/carbonelli2011/templates/paper.md.j2", "the", "a", {"article"}),
     ],
 )
 def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
@@ -186,7 +187,8 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
     del inputs["all"]
     assert inputs.keys() == {*COMPUTED, "draw", "tables", *TEXTS}
     for name, files in inputs.items():
-        script = ROOT / f"workflow/scripts/{name}.py"
+        folder = "src/carbonelli2011/stages" if name in COMPUTED else "workflow/scripts"
+        script = ROOT / f"{folder}/{name}.py"
         assert in_folder(script) in files
         assert modules_of(script) - NO_NUMBER <= files, name
 

@@ -1,17 +1,40 @@
-"""Judge a configuration by its JSON schema, in one line for each mistake.
+"""A configuration: its mistakes, and what the rules of a workflow make of its entries.
 
 The sections of a configuration are stages, and their entries are figures, tables and datasets. All
 that an entry may have besides its parameters is `described` among the definitions of the schema.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from itertools import chain, repeat
+from pathlib import Path
 from typing import Any
 
 import yaml
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
+
+
+def checked(config: Mapping, schema_file: Path, files: Iterable[str]) -> dict:
+    """Return a configuration, which was read from files, with an int for each whole number.
+
+    A mistake ends the program, with a line for each.
+    """
+    schema = yaml.safe_load(schema_file.read_text("utf-8"))
+    found = [
+        f"{Path(file).name}, {line}"
+        for file in files
+        for line in repeated_keys(Path(file).read_text("utf-8"))
+    ]
+    if found := found or [*mistakes(config, schema)]:
+        stop(found)
+    return with_whole_numbers(config, schema, schema["$defs"])
+
+
+def stop(mistakes: Iterable[str]) -> None:
+    """End the program with the mistakes in the configuration."""
+    sys.exit("\n".join(f"configuration: {line}" for line in mistakes))
 
 
 def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
@@ -28,6 +51,10 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
+    settings = config.keys() - stages(config)
+    for name, entry in entries(config).items():
+        for key in settings.intersection(entry if isinstance(entry, Mapping) else ()):
+            yield f"{name}.{key}: {key} is a setting of the run, and of no entry"
     described = schema.get("$defs", {}).get("described", {}).get("properties", {})
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
@@ -45,10 +72,14 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
 
+def stages(config: Mapping) -> dict[str, Mapping]:
+    """Return the sections of a configuration, by name."""
+    return {name: section for name, section in config.items() if isinstance(section, Mapping)}
+
+
 def entries(config: Mapping) -> dict[str, Mapping]:
     """Return the figures, tables and datasets of all stages, by name."""
-    stages = [section for section in config.values() if isinstance(section, Mapping)]
-    return {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
+    return {name: each[name] for each in stages(config).values() for name in names(each)}
 
 
 SHOWN_BY = ("caption", "table")
@@ -62,6 +93,50 @@ def shown_as(entry: Mapping) -> list[str]:
     ['png', 'svg', 'md', 'csv']
     """
     return ["png", "svg"] * ("caption" in entry) + ["md", "csv"] * bool(entry.get("table"))
+
+
+def names(section: Mapping) -> list[str]:
+    """The figures, tables and datasets of a stage, of which this is the section."""
+    return [name for name in section if name != "title"]
+
+
+def datasets(section: Mapping) -> dict[str, str]:
+    """The files of the datasets of a stage, by name."""
+    return {name: f"results/figures/{name}.nc" for name in names(section)}
+
+
+def parameters(section: Mapping) -> dict[str, dict]:
+    """The title and the parameters of each dataset of a stage."""
+    return {
+        name: {key: value for key, value in section[name].items() if key not in SHOWN_BY}
+        for name in names(section)
+    }
+
+
+def captions(name: str, entry: Mapping) -> dict[str, str]:
+    """What `snakemake --report` shows beside a figure or a table."""
+    return {"name": name, "title": entry["title"], "caption": entry.get("caption", "")}
+
+
+def named(config: Mapping, targets: Iterable[str]) -> list[str]:
+    """The figures, tables and datasets that targets name; none for all.
+
+    Claims and texts follow from all datasets: with them, everything is compared.
+    """
+    found: set[str] = set()
+    sections = stages(config)
+    for target in {*targets} - {"diff"}:
+        found.update(names(sections[target]) if target in sections else [Path(target).stem])
+    return sorted(found) if found <= {*entries(config)} else []
+
+
+def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator[str]:
+    """Yield a line for each entry for which a file of code, from a folder, has no function."""
+    for file, entries_of_file in needed.items():
+        text = (top / file).read_text("utf-8")
+        for name in entries_of_file:
+            if f'"{name}":' not in text:
+                yield f"{name}: {file} needs a function for it"
 
 
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:

@@ -11,17 +11,18 @@ it could not be compared.
 """
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "src"))
 
 import xarray as xr  # noqa: E402
+from project import PROJECT  # noqa: E402
 
 from carbonelli2011.figures import FIGURES, draw  # noqa: E402
 from carbonelli2011.tables import TABLES  # noqa: E402
-from carbonelli2011.variables import described  # noqa: E402
-from paper_replication.compare import Project, main, report_of_run  # noqa: E402
+from paper_replication.compare import main, report_of_run  # noqa: E402
 from paper_replication.drawing import save_picture  # noqa: E402
 from paper_replication.texts import comma_separated, markdown  # noqa: E402
 
@@ -37,13 +38,7 @@ def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
         (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
 
 
-PROJECT = Project(
-    top=TOP,
-    texts=("paper.md", "supplement.md"),
-    make=make,
-    describe=described,
-    code=("Snakefile", "config", "src", "workflow"),
-)
+PROJECT = replace(PROJECT, make=make)
 
 if __name__ == "__main__" and "snakemake" not in globals():
     sys.exit(main(PROJECT, sys.argv[1:]))

@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from carbonelli2011.figures import Empty, draw
 from paper_replication.datasets import read, save_record
 from paper_replication.drawing import save_picture
@@ -15,4 +17,4 @@ try:
 except Empty as error:
     sys.exit(f"configuration: {error}")
 save_picture(figure, png, snakemake.output.svg)
-save_record(snakemake)
+save_record(snakemake, PROJECT)

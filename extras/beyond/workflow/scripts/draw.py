@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from paper_replication.datasets import read, save_record
 from paper_replication.drawing import save_picture
 from studies.figures import draw
@@ -11,4 +13,4 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = snakemake.input.data
 picture = draw(Path(data).stem, read(data))
 save_picture(picture, snakemake.output.png, snakemake.output.svg)
-save_record(snakemake)
+save_record(snakemake, PROJECT)

@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from paper_replication.datasets import read, save_record
 from paper_replication.texts import comma_separated, markdown
 from studies.tables import TABLES
@@ -13,4 +15,4 @@ rows = TABLES[Path(data).stem](read(data))
 texts = {snakemake.output.md: markdown(rows), snakemake.output.csv: comma_separated(rows)}
 for path, text in texts.items():
     Path(path).write_text(text, encoding="utf-8", newline="\n")
-save_record(snakemake)
+save_record(snakemake, PROJECT)

@@ -4,7 +4,6 @@ On the orbits of one branch w′(φ + θ) = C - s with θ = s + t_c: the level C
 restitution coefficient, and the angle θ the duration of the contact.
 """
 
-import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -22,9 +21,6 @@ from bouncing_ball_beyond.errors.error_law import (
 )
 from bouncing_ball_beyond.motions.bounces import Balls, step
 from bouncing_ball_beyond.tables.table import Table
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import save_stage
-from studies.variables import described
 from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -343,7 +339,3 @@ def ext_phase(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_phase": ext_phase}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

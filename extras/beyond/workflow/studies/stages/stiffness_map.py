@@ -5,8 +5,6 @@ the restitution model. Positions of Λ from saddle-node (0) to period doubling (
 equally spaced angles, so that they are dense at both ends.
 """
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -17,9 +15,7 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from bouncing_ball_beyond.contacts.balls import SpringDamper
 from bouncing_ball_beyond.errors.error_law import free_impact, law_errors, law_thresholds
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
-from studies.variables import described
+from paper_replication.datasets import grid
 
 LEVELS = (10.0, 20.0, 50.0, 100.0, 200.0, 1000.0)
 """The ϖ of the lines of the figure; that of the paper is added."""
@@ -84,7 +80,3 @@ def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
 
 
 STAGE = {"ext_map": ext_map}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

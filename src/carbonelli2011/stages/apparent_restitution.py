@@ -2,7 +2,6 @@
 13).
 """
 
-import sys
 from collections.abc import Iterable
 
 import numpy as np
@@ -12,8 +11,7 @@ from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 QUANTITIES = (
     "phase",
@@ -99,7 +97,3 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

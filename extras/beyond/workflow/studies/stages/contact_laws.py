@@ -11,7 +11,6 @@ contact, or v₀ = 2nπ/(1 + r), that of the restitution model's orbit. They dif
 1/ϖ. If r depends on the speed, this changes the error of the restitution model in its first order.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -31,10 +30,8 @@ from bouncing_ball_beyond.errors.error_law import (
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
 from bouncing_ball_beyond.periodic.search import guess_of_instants
 from bouncing_ball_beyond.tables.table import SINE
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 from studies.orbits import flight_height, last_zero, solved
-from studies.variables import described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -269,7 +266,3 @@ def ext_laws(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_laws": ext_laws}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,6 +1,6 @@
 """Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
 
-import sys
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,8 +11,7 @@ from bouncing_ball.errors import lowest_period_doublings
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from carbonelli2011.paper import PARAMETERS, printed_table
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 QUANTITIES = (
     "amplitude",
@@ -78,7 +77,7 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
             }
         )
     axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}
-    variables = {"damping_ratio": zeta}
+    variables: dict[str, Any] = {"damping_ratio": zeta}
     for name in rows[0]:
         inner = axes.get(name.partition("_")[0], ("point",))
         variables[name] = (("frequency_ratio", *inner), [row[name] for row in rows])
@@ -191,7 +190,3 @@ STAGE = {
     "table1": table1,
     "lowest_doubling": lowest_doubling,
 }
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -4,7 +4,6 @@ An orbit has a place between saddle-node (0) and period doubling (1) of the rest
 is linear in Λ. The places are denser at the saddle-node, beside which the errors change fastest.
 """
 
-import sys
 from itertools import pairwise
 
 import numpy as np
@@ -18,8 +17,7 @@ from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio
 from carbonelli2011.paper import CURVES
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 FINER = (16, 8)
 """Steps of the interpolation in each step of the grid of r, and of places. With twice as many, the
@@ -213,7 +211,3 @@ def last_positive(values: NDArray, r: NDArray) -> float:
 
 
 STAGE = {"validity_map": validity_map}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

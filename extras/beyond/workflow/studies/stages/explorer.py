@@ -1,7 +1,5 @@
 """Stage: random orbits and balls with which the explorer's page compares what it computes."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -13,10 +11,8 @@ from bouncing_ball_beyond.errors.error_law import contact_values, rows_of_orbits
 from bouncing_ball_beyond.motions.simulation import simulate
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits import OrbitNotFound, orbit
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 from studies.orbits import follow_compliant, random_orbits
-from studies.variables import described
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
@@ -204,7 +200,3 @@ def explorer(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"explorer": explorer}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

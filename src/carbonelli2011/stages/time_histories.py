@@ -1,7 +1,5 @@
 """Stage: heights of ball and table over a cycle (Figs. 7 and 12)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -9,8 +7,6 @@ from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import save_stage
 
 # Quantities of each orbit in the datasets.
 STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
@@ -93,7 +89,3 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig07": fig07, "fig12": fig12}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,7 +1,5 @@
 """Stage: which share of starts ends on a stable n-T orbit of a contact."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -9,9 +7,6 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.contacts.balls import SpringDamper
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.periodic.orbits import orbit
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import save_stage
-from studies.variables import described
 
 NEAR = 1e-3
 """Sum of the distances in phase and in relative speed below which a touch is that of the orbit."""
@@ -86,7 +81,3 @@ def ext_basin(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_basin": ext_basin}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,7 +1,5 @@
 """Stage: from which frequency ratio on the restitution model is right (Fig. 14 and thresholds)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -10,8 +8,7 @@ from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 
 def fig14(parameters: dict, release: str) -> xr.Dataset:
@@ -70,7 +67,3 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig14": fig14, "thresholds": thresholds}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,0 +1,9 @@
+import sys
+from pathlib import Path
+
+from pendulum import PROJECT
+
+from paper_replication.compare import report_of_run
+
+given = snakemake.params.config, snakemake.params.names
+sys.exit(report_of_run(PROJECT, Path("results"), *given))

@@ -90,14 +90,22 @@ def stage(name):
 MODELS = checkout(*sorted(TOP.glob("src/bouncing_ball/[!_]*.py"))) + modules("datasets")
 PAPER = modules("paper")
 DRAWING = modules("figures", "curves", "paper", "drawing", "texts", "datasets")
-JUDGING = (
-    MODELS + PAPER + modules("claims", "measures", "tables", "verdicts", "judgements", "texts")
-)
-WRITING = JUDGING + modules("article", "index", "pages", "origins", "templates")
+JUDGING = MODELS + PAPER + modules("claims", "measures", "verdicts", "judgements", "texts")
+WRITING = JUDGING + modules("tables", "article", "index", "pages", "origins", "templates")
+# The stages that the study of choices computes again.
+VARIED = [
+    "restitution_model",
+    "apparent_restitution",
+    "continuation",
+    "permanent_contact",
+    "error_thresholds",
+    "time_histories",
+]
 PICTURES = checkout("workflow/scripts/draw.py") + DRAWING
-TABULATING = checkout("workflow/scripts/tables.py") + JUDGING
+TABULATING = checkout("workflow/scripts/tables.py") + JUDGING + modules("tables")
 CLAIMS = checkout("workflow/scripts/claims.py") + JUDGING
-CHOICES = checkout("workflow/scripts/choices.py") + JUDGING + modules("choices", "stages/[!_]*")
+CHOICES = checkout("workflow/scripts/choices.py") + JUDGING
+CHOICES += modules("choices", *(f"stages/{name}" for name in VARIED))
 TEXTS = checkout("workflow/scripts/article.py") + WRITING
 TEXTS += checkout(*sorted(TOP.glob("src/carbonelli2011/templates/*.j2")))
 
@@ -113,6 +121,7 @@ rule restitution_model:
         **datasets(config["restitution_model"]),
         record="results/records/restitution_model.json",
     params:
+        stage="restitution_model",
         entries=parameters(config["restitution_model"]),
         settings={},
     log:
@@ -131,6 +140,7 @@ rule apparent_restitution:
         **datasets(config["apparent_restitution"]),
         record="results/records/apparent_restitution.json",
     params:
+        stage="apparent_restitution",
         entries=parameters(config["apparent_restitution"]),
         settings={"release": config["release"]},
     log:
@@ -149,6 +159,7 @@ rule continuation:
         **datasets(config["continuation"]),
         record="results/records/continuation.json",
     params:
+        stage="continuation",
         entries=parameters(config["continuation"]),
         settings={"release": config["release"], "largest_step": config["largest_step"]},
     log:
@@ -167,6 +178,7 @@ rule permanent_contact:
         **datasets(config["permanent_contact"]),
         record="results/records/permanent_contact.json",
     params:
+        stage="permanent_contact",
         entries=parameters(config["permanent_contact"]),
         settings={"release": config["release"]},
     log:
@@ -185,6 +197,7 @@ rule error_thresholds:
         **datasets(config["error_thresholds"]),
         record="results/records/error_thresholds.json",
     params:
+        stage="error_thresholds",
         entries=parameters(config["error_thresholds"]),
         settings={"release": config["release"]},
     log:
@@ -203,6 +216,7 @@ rule validity:
         **datasets(config["validity"]),
         record="results/records/validity.json",
     params:
+        stage="validity",
         entries=parameters(config["validity"]),
         settings={"release": config["release"]},
     log:
@@ -221,6 +235,7 @@ rule time_histories:
         **datasets(config["time_histories"]),
         record="results/records/time_histories.json",
     params:
+        stage="time_histories",
         entries=parameters(config["time_histories"]),
         settings={"release": config["release"]},
     log:
@@ -234,11 +249,12 @@ rule time_histories:
 rule printed_numbers:
     """Printed numbers under hypotheses on what the authors computed"""
     input:
-        code=stage("printed_numbers") + MODELS + PAPER + modules("measures", "verdicts"),
+        code=stage("printed_numbers") + MODELS + PAPER + modules("verdicts"),
     output:
         **datasets(config["printed_numbers"]),
         record="results/records/printed_numbers.json",
     params:
+        stage="printed_numbers",
         entries=parameters(config["printed_numbers"]),
         settings={},
     log:

@@ -18,12 +18,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
-from tests.jobs import Named, git_of_its_own  # noqa: F401
+from tests.jobs import Named
 from tests.reference import ROOT
 
 from carbonelli2011 import variables
 from paper_replication import compare, datasets
 from paper_replication.drawing import save_picture
+
+pytestmark = pytest.mark.usefixtures("git_of_its_own")
 
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
@@ -61,22 +63,24 @@ def make(name, data, folder, form="{:.3g}"):
     figure = Figure(figsize=(1, 1))
     numbers = [] if data is None else data.max_height.values
     figure.text(0, 0.5, " ".join(form.format(each) for each in numbers))
-    save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
+    save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "a salt")
 
 
 def project_in(top):
     return datasets.Project(
         top=top,
         checkout=top,
-        describe=variables.described,
-        texts=("paper.md", "supplement.md"),
         code=("src", "config"),
+        texts=("paper.md", "supplement.md"),
+        references="",
+        describe=variables.described,
+        described_in=("src/variables.py",),
         make=make,
     )
 
 
 @pytest.fixture(scope="module")
-def accepted(tmp_path_factory):
+def accepted(git_of_its_own, tmp_path_factory):
     """A checkout whose reference is accepted and committed, with results that agree."""
     top = tmp_path_factory.mktemp("accepted") / "checkout"
     for file in FILES:

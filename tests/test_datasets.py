@@ -26,7 +26,8 @@ def small():
 
 @pytest.fixture
 def project(tmp_path):
-    return Project(tmp_path, tmp_path, described)
+    """A replication in this folder, without a reference."""
+    return Project(tmp_path, tmp_path, (), (), "", described, ("variables.py",), print)
 
 
 def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_path):

@@ -5,14 +5,13 @@ import subprocess
 
 import pytest
 from tests.conftest import Checkout
-from tests.jobs import git_of_its_own  # noqa: F401
 from tests.reference import ROOT
 
 from paper_replication.datasets import parameters, read
 
 
 @pytest.fixture(scope="module")
-def replicated(tmp_path_factory):
+def replicated(git_of_its_own, tmp_path_factory):
     """A copy of the folder whose results are its reference."""
     there = Checkout(tmp_path_factory.mktemp("another") / "pendulum")
     shutil.copytree(ROOT / "tests/pendulum", there.path)

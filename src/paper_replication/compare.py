@@ -458,10 +458,8 @@ class Comparison:
             return Finding("agrees", new.wrong)
         if is_data and self.config is not None and about(old.contents) != about(new.contents):
             # Descriptions are not among the code that a dataset records.
-            checkout = self.project.checkout
-            folders = [checkout / name for name in self.project.code]
-            described = [path for folder in folders for path in folder.rglob("variables.py")]
-            new.record["code"] |= contents(described, checkout)
+            described = map(self.project.checkout.joinpath, self.project.described_in)
+            new.record["code"] |= contents(described, self.project.checkout)
         main = old.record["code"] if self.config is None else self.main
         why = causes(old.record, new.record, main)
         follows = [Path(each).stem for each in new.record["data"] if each in self.findings]

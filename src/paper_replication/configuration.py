@@ -4,6 +4,7 @@ The sections of a configuration are stages, and their entries are figures, table
 that an entry may have besides its parameters is `described` among the definitions of the schema.
 """
 
+import ast
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import get_close_matches
@@ -132,11 +133,21 @@ def named(config: Mapping, targets: Iterable[str]) -> list[str]:
 
 def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator[str]:
     """Yield a line for each entry for which a file of code, from a folder, has no function."""
-    for file, entries_of_file in needed.items():
-        text = (top / file).read_text("utf-8")
-        for name in entries_of_file:
-            if f'"{name}":' not in text:
+    for file, names_of_entries in needed.items():
+        known = registered(top / file)
+        for name in names_of_entries:
+            if name not in known:
                 yield f"{name}: {file} needs a function for it"
+
+
+def registered(file: Path) -> set[str]:
+    """The keys of the dictionaries that a file of code has, such as those of its functions.
+
+    The file is not imported: with conda, its libraries are in the environment of the jobs only.
+    """
+    nodes = ast.walk(ast.parse(file.read_text("utf-8")))
+    keys = [key for node in nodes if isinstance(node, ast.Dict) for key in node.keys]
+    return {key.value for key in keys if isinstance(key, ast.Constant)}
 
 
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:

@@ -61,27 +61,29 @@ class Project:
         The folder with the configuration and the reference.
     checkout
         The folder of the repository, from which records name files of code.
-    describe
-        Today's descriptions of the variables of a dataset, by its name.
-    references
-        The paper, as its datasets cite it.
-    texts
-        Files of the reference beside its folder `figures`.
     code
         Folders and files of code, from the checkout.
+    texts
+        Files of the reference beside its folder `figures`.
+    references
+        The paper, as its datasets cite it.
+    describe
+        Today's descriptions of the variables of a dataset, by its name.
+    described_in
+        Files of code with the descriptions, from the checkout. No dataset records them.
     make
         Writes the files that follow from one dataset into a folder: pictures, tables and pages. It
-        takes their name, the dataset, or none for a picture without data, and the folder. Only a
-        comparison needs it.
+        takes their name, the dataset, or none for a picture without data, and the folder.
     """
 
     top: Path
     checkout: Path
+    code: tuple[str, ...]
+    texts: tuple[str, ...]
+    references: str
     describe: Describe
-    references: str = ""
-    texts: tuple[str, ...] = ()
-    code: tuple[str, ...] = ("Snakefile", "config", "src", "workflow")
-    make: Callable[[str, Any, Path], None] | None = None
+    described_in: tuple[str, ...]
+    make: Callable[[str, Any, Path], None]
 
 
 def grid(limits: Mapping, spaced: Callable[..., np.ndarray] = np.geomspace) -> np.ndarray:
@@ -132,7 +134,8 @@ def save(
     variables = project.describe(path.stem)
     unknown = [str(name) for name in dataset.variables if name not in variables]
     if unknown:
-        raise ValueError(f"{path.name}: describe {', '.join(unknown)} in variables.py")
+        where = ", ".join(project.described_in)
+        raise ValueError(f"{path.name}: describe {', '.join(unknown)} in {where}")
     complete = dataset.drop_encoding().assign_attrs(
         Conventions="CF-1.11",
         title=title,

@@ -11,34 +11,14 @@ it could not be compared.
 """
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "src"))
 
-import xarray as xr  # noqa: E402
 from project import PROJECT  # noqa: E402
 
-from carbonelli2011.figures import FIGURES, draw  # noqa: E402
-from carbonelli2011.tables import TABLES  # noqa: E402
 from paper_replication.compare import main, report_of_run  # noqa: E402
-from paper_replication.drawing import save_picture  # noqa: E402
-from paper_replication.texts import comma_separated, markdown  # noqa: E402
-
-
-def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
-    """Write the pictures and the tables of a dataset into a folder."""
-    if name in FIGURES:
-        figure = draw(name) if data is None else draw(name, data)
-        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
-    if name in TABLES:
-        rows = TABLES[name](data)
-        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
-        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
-
-
-PROJECT = replace(PROJECT, make=make)
 
 if __name__ == "__main__" and "snakemake" not in globals():
     sys.exit(main(PROJECT, sys.argv[1:]))

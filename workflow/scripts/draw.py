@@ -5,6 +5,7 @@ from pathlib import Path
 
 from project import PROJECT
 
+from carbonelli2011.curves import SALT
 from carbonelli2011.figures import Empty, draw
 from paper_replication.datasets import read, save_record
 from paper_replication.drawing import save_picture
@@ -16,5 +17,5 @@ try:
     figure = draw(Path(png).stem, *shown)
 except Empty as error:
     sys.exit(f"configuration: {error}")
-save_picture(figure, png, snakemake.output.svg)
+save_picture(figure, png, snakemake.output.svg, SALT)
 save_record(snakemake, PROJECT)

@@ -2,15 +2,39 @@
 
 from pathlib import Path
 
+import xarray as xr
+
 from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import Project
+
+
+def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
+    """Write the pictures and the tables of a dataset into a folder, for a comparison."""
+    # A stage depends on neither figures nor tables.
+    from carbonelli2011.curves import SALT
+    from carbonelli2011.figures import FIGURES, draw
+    from carbonelli2011.tables import TABLES
+    from paper_replication.drawing import save_picture
+    from paper_replication.texts import comma_separated, markdown
+
+    if name in FIGURES:
+        figure = draw(name) if data is None else draw(name, data)
+        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", SALT)
+    if name in TABLES:
+        rows = TABLES[name](data)
+        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
+        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+
 
 TOP = Path(__file__).resolve().parents[2]
 
 PROJECT = Project(
     top=TOP,
     checkout=TOP,
-    describe=described,
-    references=REFERENCE,
+    code=("Snakefile", "config", "src", "workflow"),
     texts=("paper.md", "supplement.md"),
+    references=REFERENCE,
+    describe=described,
+    described_in=("src/carbonelli2011/variables.py",),
+    make=make,
 )

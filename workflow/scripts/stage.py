@@ -2,12 +2,11 @@
 
 import sys
 from importlib import import_module
-from pathlib import Path
 
 from project import PROJECT
 
 from paper_replication.datasets import save_stage
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-stage = import_module(f"carbonelli2011.stages.{Path(snakemake.output.record).stem}")
+stage = import_module(f"carbonelli2011.stages.{snakemake.params.stage}")
 save_stage(stage.STAGE, snakemake, PROJECT)

@@ -2,18 +2,42 @@
 
 from pathlib import Path
 
+import xarray as xr
+
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import Project
 from studies.variables import described
 
+
+def make(name: str, data: xr.Dataset, folder: Path) -> None:
+    """Write the pictures, the tables and the page of a dataset into a folder, for a comparison."""
+    # A stage depends on none of them.
+    from carbonelli2011.curves import SALT
+    from paper_replication.drawing import save_picture
+    from paper_replication.texts import comma_separated, markdown
+    from studies.explorer import page
+    from studies.figures import FIGURES, draw
+    from studies.tables import TABLES
+
+    if name in FIGURES:
+        save_picture(draw(name, data), folder / f"{name}.png", folder / f"{name}.svg", SALT)
+    if name in TABLES:
+        rows = TABLES[name](data)
+        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
+        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+    if name == "explorer":
+        (folder / "explorer.html").write_text(page(data), encoding="utf-8")
+
+
 TOP = Path(__file__).resolve().parents[2]
-OURS = ("Snakefile", "config", "src", "workflow")
 
 PROJECT = Project(
     top=TOP,
     checkout=TOP.parents[1],
-    describe=described,
-    references=REFERENCE,
+    code=(*(f"extras/beyond/{name}" for name in ("Snakefile", "config", "src", "workflow")), "src"),
     texts=("article.md", "appendix.md", "phase.md"),
-    code=(*(f"extras/beyond/{name}" for name in OURS), "src"),
+    references=REFERENCE,
+    describe=described,
+    described_in=("extras/beyond/workflow/studies/variables.py",),
+    make=make,
 )

@@ -123,7 +123,7 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
     )
 
 
-def shift(table: Table, r: NDArray, n: int) -> NDArray:
+def shift(table: Table, r: float | NDArray, n: int) -> NDArray:
     """ϖ times the relative shift of the period doubling by the law, Eq. R6."""
     unit = SpringDamper(1.0, restitution=r)
     # The period doubling does not depend on Λ, which the law needs for other quantities.

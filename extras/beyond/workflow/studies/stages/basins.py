@@ -21,11 +21,13 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
     Of those that the contact has, and on which a ball stays, the first ones are taken.
     """
     wanted = parameters["orbits"]
+    r_min, r_max = parameters["restitution"]
+    first, last = parameters["position"]
     found = []
     for n in parameters["n"]:
         # Next to the period doubling the contact's orbit has doubled: some are drawn in vain.
-        r = generator.uniform(*parameters["restitution"], 2 * wanted)
-        place = generator.uniform(*parameters["position"], 2 * wanted)
+        r = generator.uniform(r_min, r_max, 2 * wanted)
+        place = generator.uniform(first, last, 2 * wanted)
         low = saddle_node(n, r)
         amplitude = low + place * (period_doubling(n, r) - low)
         ball = SpringDamper(parameters["frequency_ratio"], restitution=r)

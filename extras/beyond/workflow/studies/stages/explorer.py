@@ -1,5 +1,7 @@
 """Stage: random orbits and balls with which the explorer's page compares what it computes."""
 
+from typing import cast
+
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -102,7 +104,7 @@ def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     ends = equations.ends(z)
     duration = ends.leaves[:, 0] - touch
     bounce = ends.speed[:, 0]
-    ball = equations.ball
+    ball = cast(SpringDamper, equations.ball)
     middle = ball.contact(touch, speed, scaled_duration / 2, amplitude)
     ratio = ball.frequency_ratio
     return {
@@ -124,7 +126,13 @@ def followed(ball: Ball, amplitude: float) -> dict[str, float]:
     The motion is given by the numbers of impacts and of periods of the table until it repeats; a
     ball at rest has no impacts. The time is that of the impact, or of the rest that follows it.
     """
-    found = simulate(ball, amplitude=amplitude, impacts=SETTLED, **START)
+    found = simulate(
+        ball,
+        amplitude=amplitude,
+        phase=START["phase"],
+        velocity=START["velocity"],
+        impacts=SETTLED,
+    )
     times = found.time.values
     phases = found.impact_phase.values
     speeds = -found.relative_impact_velocity.values
@@ -164,7 +172,7 @@ def balls() -> xr.Dataset:
     """How balls start and end, over (model, motion)."""
     models = {
         "restitution": Rigid(BALL["restitution"]),
-        "spring-damper": SpringDamper(**BALL),
+        "spring-damper": SpringDamper(BALL["frequency_ratio"], restitution=BALL["restitution"]),
     }
     ends = [[followed(ball, each) for each in AMPLITUDES] for ball in models.values()]
     size = len(AMPLITUDES)

@@ -177,7 +177,7 @@ def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp
         (first / name).write_text("a line\n", "utf-8")
     commit(first)
     hook = first / ".git/hooks/pre-commit"
-    test = f"'{sys.executable}' -m pytest -q --noconftest '{__file__}' -k test_equal_results"
+    test = f"'{sys.executable}' -m pytest -q '{__file__}' -k test_equal_results"
     # Once: tests that commit into this repository would start its hook again.
     hook.write_text(f'#!/bin/sh\n[ "$HOOK" ] || HOOK=1 exec {test}\n', "utf-8")
     hook.chmod(0o755)

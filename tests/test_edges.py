@@ -19,7 +19,7 @@ import yaml
 from tests import independent
 from tests.reference import CONFIG, ENTRIES, ROOT, reference, stage
 
-from bouncing_ball.continuation import NoOrbit
+from bouncing_ball.orbits import NoOrbit
 from carbonelli2011 import article, figures, index, paper, tables
 from carbonelli2011.claims import CLAIMS, CONTACT_OF_FIG11, judge, table1_ends
 from carbonelli2011.figures import Empty

@@ -15,7 +15,7 @@ from tests import independent
 from tests.reference import CONFIG, ROOT, reference, stage, table_with_another_row
 
 from bouncing_ball import errors, orbits
-from bouncing_ball.continuation import NoOrbit
+from bouncing_ball.orbits import NoOrbit
 from bouncing_ball.spring_damper import RELEASES
 from carbonelli2011 import claims, index
 from carbonelli2011.paper import QUANTITIES

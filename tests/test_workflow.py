@@ -1,6 +1,6 @@
 """The graph of the workflow: its targets, and what runs again after a change.
 
-The scripts only write their outputs here (see conftest): the rules are tested, and no numbers.
+The scripts only write their outputs here (see checkout.py): the rules are tested, and no numbers.
 """
 
 import ast
@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from tests.conftest import Checkout
+from tests.checkout import Checkout
 from tests.reference import stage
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -30,18 +30,11 @@ MODELS = {f"bouncing_ball/{path.name}" for path in (ROOT / "src/bouncing_ball").
 MODELS |= {"paper_replication/datasets.py", "scripts/stage.py"}
 
 
-def made(folder: Path) -> set[str]:
-    """The results in a folder of a run."""
-    base = folder / "results"
-    files = {str(path.relative_to(base)) for path in base.rglob("*") if path.is_file()}
-    return {name for name in files if not name.startswith(("logs/", "records/"))}
-
-
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     files = {f"figures/{path.name}" for path in (ROOT / "figures").iterdir()}
     pages = {f"{name}.html" for name in ("index", "claims", "paper", "supplement", "numbers")}
     texts = {"paper.md", "supplement.md", *pages}
-    results = made(complete.path)
+    results = complete.made()
     assert files - {"figures/accepted.json"} | texts <= results
     # A figure that is new is not accepted yet.
     assert {Path(file).stem for file in results - files - texts} <= ENTRIES.keys()
@@ -64,7 +57,7 @@ def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.planned("error_thresholds", "diff") == stage
     assert fresh.run("--cores", "1", "fig14")[0] == 0
     files = {f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")}
-    assert made(fresh.path) == files | {"figures/thresholds.nc"}
+    assert fresh.made() == files | {"figures/thresholds.nc"}
 
 
 def test_every_rule_is_listed_with_what_it_makes(fresh):
@@ -79,7 +72,7 @@ def test_a_run_in_another_folder_has_its_own_results(fresh, tmp_path):
     (mine / "mine.yaml").write_text("error_thresholds: {fig14: {restitution: 0.7}}", "utf-8")
     command = ["--directory", str(mine), "--configfile", str(mine / "mine.yaml"), "--", "fig14"]
     assert fresh.run("--cores", "1", *command)[0] == 0
-    assert "figures/fig14.png" in made(mine) and not (fresh.path / "results").exists()
+    assert "figures/fig14.png" in Checkout(mine).made() and not (fresh.path / "results").exists()
 
 
 def test_another_workflow_has_it_as_a_module_with_a_prefix(fresh, tmp_path, monkeypatch):
@@ -104,7 +97,7 @@ rule mine:
     )
     assert outer.planned("mine") == {"ball_error_thresholds", "ball_fig14", "mine"}
     assert outer.run("--cores", "1", "mine")[0] == 0
-    assert "figures/fig14.png" in made(outer.path / "ball")
+    assert "figures/fig14.png" in outer.made("ball/results")
 
 
 def test_the_page_of_an_earlier_comparison_is_removed(fresh):
@@ -143,9 +136,9 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
 def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
     for path in used.path.rglob("*.*"):
         path.touch()
-    assert used.planned() <= {"all"}
+    assert used.planned() == set()
     used.edit(file, old, new)
-    assert used.planned() - {"all"} == again
+    assert used.planned() == again
 
 
 def imports(package: str) -> set[str]:
@@ -203,5 +196,5 @@ def test_a_failed_figure_does_not_stop_others(fresh):
     draw = fresh.path / "workflow/scripts/draw.py"
     draw.write_text("if 'fig16' in snakemake.output[0]:\n    1 / 0\n" + draw.read_text(), "utf-8")
     assert fresh.run("--cores", "1", "fig16", "fig11")[0] == 1
-    assert made(fresh.path) >= {"figures/fig11.png"}
-    assert "figures/fig16.png" not in made(fresh.path)
+    assert fresh.made() >= {"figures/fig11.png"}
+    assert "figures/fig16.png" not in fresh.made()

@@ -147,7 +147,7 @@ def registered(file: Path) -> set[str]:
     """
     nodes = ast.walk(ast.parse(file.read_text("utf-8")))
     keys = [key for node in nodes if isinstance(node, ast.Dict) for key in node.keys]
-    return {key.value for key in keys if isinstance(key, ast.Constant)}
+    return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 
 
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:

@@ -36,7 +36,7 @@ def draw(name, data, folder):
         figure, axes = drawing.panels(2.0)
         axes.plot(data.angle, data.period, color=drawing.COLOURS[1])
         axes.set(xlabel="angle θ in degrees", ylabel="period T in s")
-        drawing.save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
+        drawing.save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "pendulum")
 
 
 def small_swings(fig1):
@@ -51,5 +51,12 @@ CLAIMS = [
 
 TOP = Path(__file__).parent
 PROJECT = Project(
-    TOP, TOP, lambda name: VARIABLES, "An invented paper", ("paper.md",), ("pendulum.py",), draw
+    top=TOP,
+    checkout=TOP,
+    code=("Snakefile", "config", "pendulum.py"),
+    texts=("paper.md",),
+    references="An invented paper",
+    describe=lambda name: VARIABLES,
+    described_in=("pendulum.py",),
+    make=draw,
 )

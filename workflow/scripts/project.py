@@ -15,15 +15,13 @@ def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
     from carbonelli2011.figures import FIGURES, draw
     from carbonelli2011.tables import TABLES
     from paper_replication.drawing import save_picture
-    from paper_replication.texts import comma_separated, markdown
+    from paper_replication.texts import save_table
 
     if name in FIGURES:
         figure = draw(name) if data is None else draw(name, data)
         save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", SALT)
     if name in TABLES:
-        rows = TABLES[name](data)
-        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
-        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+        save_table(TABLES[name](data), folder / f"{name}.md", folder / f"{name}.csv")
 
 
 TOP = Path(__file__).resolve().parents[2]

@@ -10,7 +10,7 @@ import xarray as xr
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import Contact
 from paper_replication.datasets import grid
 
 QUANTITIES = (
@@ -36,8 +36,7 @@ def along_frequency_ratio(
     names: Iterable[str] = QUANTITIES,
 ) -> xr.Dataset:
     """The named quantities of the orbits, shape (case, ϖ), NaN where there is none."""
-    zeta = damping_ratio(r, release)[:, np.newaxis]
-    family = Family(n, Contact(ratios, zeta, release))
+    family = Family(n, Contact.of_restitution(ratios, r[:, np.newaxis], release))
     quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), names)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]

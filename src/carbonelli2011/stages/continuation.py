@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import Branch, End, NoOrbit, bifurcations, branch
+from bouncing_ball.continuation import Branch, End, bifurcations, branch
 from bouncing_ball.errors import lowest_period_doublings
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from carbonelli2011.paper import PARAMETERS, printed_table
 from paper_replication.datasets import grid
@@ -127,7 +127,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
     printed = printed_table().astype(float)
     printed = printed.where((r, release) == (paper["restitution"], paper["release"]))
     bounds = printed["bound"].values
-    contact = Contact(np.array(ratios), damping_ratio(r, release), release)
+    contact = Contact.of_restitution(np.array(ratios), r, release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = ends
     duration = angle / np.array(ratios)[:, np.newaxis]
@@ -170,7 +170,7 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
         if np.isnan(turn):
             admissible.append(False)
             continue
-        contact = Contact(turn, damping_ratio(r, release), release)
+        contact = Contact.of_restitution(turn, r, release)
         orbit = bifurcations(family, "period doubling", contact)
         admissible.append(bool(Family(family, contact).clearance(orbit) > 0))
     return xr.Dataset(

@@ -7,7 +7,7 @@ from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import Contact
 from paper_replication.datasets import grid
 
 
@@ -17,7 +17,7 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratios = grid(parameters["frequency_ratio"])
-    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratios, r, release))
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
     quantities = family.observables(orbits, names)

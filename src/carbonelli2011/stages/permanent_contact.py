@@ -4,8 +4,8 @@ import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
-from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.errors import permanent_contact_error, threshold
+from bouncing_ball.orbits import NoOrbit
 from paper_replication.datasets import grid
 
 

@@ -163,7 +163,7 @@ def other_numbers(impact: Impact) -> list[float]:
 def damping_of_82() -> NDArray:
     """The ζ with which the height threshold is 81.5 and 82.5, between which it is printed as 82."""
     ratios = np.array([81.5, 82.5])
-    contact = Contact(ratios, damping_ratio(R_OF_THRESHOLDS))
+    contact = Contact.of_restitution(ratios, R_OF_THRESHOLDS)
     highest = restitution.max_height(1, R_OF_THRESHOLDS, 1.0)
     orbits = orbits_along(Family(1, contact), np.ones((1, 1)))[:, 0]
 

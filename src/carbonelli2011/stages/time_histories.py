@@ -6,7 +6,7 @@ import xarray as xr
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import Contact
 
 # Quantities of each orbit in the datasets.
 STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
@@ -21,7 +21,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratio = parameters["frequency_ratio"]
-    family = Family(n, Contact(ratio, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratio, r, release))
     y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
     orbit = family.observables(y, STATE)
     half = parameters["samples"] // 2
@@ -54,7 +54,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratios = np.sort(parameters["frequency_ratio"])
     period = 2 * np.pi * n
-    families = [Family(n, Contact(ratio, damping_ratio(r, release), release)) for ratio in ratios]
+    families = [Family(n, Contact.of_restitution(ratio, r, release)) for ratio in ratios]
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}

@@ -14,7 +14,7 @@ def make(name: str, data: xr.Dataset, folder: Path) -> None:
     # A stage depends on none of them.
     from carbonelli2011.curves import SALT
     from paper_replication.drawing import save_picture
-    from paper_replication.texts import comma_separated, markdown
+    from paper_replication.texts import save_table
     from studies.explorer import page
     from studies.figures import FIGURES, draw
     from studies.tables import TABLES
@@ -22,9 +22,7 @@ def make(name: str, data: xr.Dataset, folder: Path) -> None:
     if name in FIGURES:
         save_picture(draw(name, data), folder / f"{name}.png", folder / f"{name}.svg", SALT)
     if name in TABLES:
-        rows = TABLES[name](data)
-        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
-        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
+        save_table(TABLES[name](data), folder / f"{name}.md", folder / f"{name}.csv")
     if name == "explorer":
         (folder / "explorer.html").write_text(page(data), encoding="utf-8")
 

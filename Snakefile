@@ -64,8 +64,7 @@ def files(name):
 # An entry without a function is found here, because a job would remove its stage's results first.
 FUNCTIONS = {f"src/carbonelli2011/stages/{stage}.py": names(config[stage]) for stage in COMPUTED}
 FUNCTIONS |= {"src/carbonelli2011/figures.py": FIGURES, "src/carbonelli2011/tables.py": TABLES}
-if lines := [*without_function(TOP, FUNCTIONS)]:
-    stop(lines)
+stop(without_function(TOP, FUNCTIONS))
 
 
 # The code of the rules. A change of one of these files runs a rule again; a test compares the lists

@@ -48,8 +48,7 @@ class Checkout:
 
     def planned(self, *arguments: str) -> set[str]:
         """The rules whose jobs a run would execute."""
-        command = ["--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments]
-        status, printed = self.run(*command)
+        status, printed = self.run("--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments)
         assert status == 0, printed
         return {*re.findall(r"^(\w+) +\d+$", printed, re.MULTILINE)} - {"total", "all"}
 

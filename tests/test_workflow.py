@@ -10,17 +10,13 @@ from modulefinder import ModuleFinder
 from pathlib import Path
 
 import pytest
-import yaml
 from tests.checkout import Checkout
-from tests.reference import stage
+from tests.reference import CONFIG, ROOT, stage
 
-ROOT = Path(__file__).resolve().parents[1]
-CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
-STAGES = {name: section for name, section in CONFIG.items() if isinstance(section, dict)}
-COMPUTED = STAGES.keys() - {"schematics"}
-ENTRIES = {
-    name: entry for section in STAGES.values() for name, entry in section.items() if name != "title"
-}
+from paper_replication.configuration import entries, stages
+
+COMPUTED = stages(CONFIG).keys() - {"schematics"}
+ENTRIES = entries(CONFIG)
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}

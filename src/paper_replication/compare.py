@@ -351,8 +351,8 @@ def code_of_main(checkout: Path) -> dict[str, str]:
     """The hashes of the files on the main branch where this one left it; empty if no main branch is
     known, as in a shallow checkout, or if git has other hashes than records, as SHA-256.
     """
-    names = ("origin/HEAD", "origin/main", "main")
-    bases = (git(checkout, "merge-base", "HEAD", name) for name in names)
+    known = ("origin/HEAD", "origin/main", "main")
+    bases = (git(checkout, "merge-base", "HEAD", name) for name in known)
     forks = [base for base in bases if len(base) == 40]
     return tree(checkout, forks[0]) if forks else {}
 
@@ -526,9 +526,8 @@ class Comparison:
         variables = {key: each for key, each in variables.items() if key in told}
         today = {key: attributes(told[key], each.dtype) for key, each in variables.items()}
         found += changes({key: plain(each.attrs) for key, each in variables.items()}, plain(today))
-        checkout = self.project.checkout
-        files = map(checkout.joinpath, record["code"])
-        now = contents((path for path in files if path.is_file()), checkout)
+        files = map(self.project.checkout.joinpath, record["code"])
+        now = contents((path for path in files if path.is_file()), self.project.checkout)
         return found + [each for each, known in record["code"].items() if now.get(each) != known]
 
     def rounded(self, file: str, why: Mapping) -> bool:

@@ -28,14 +28,14 @@ def checked(config: Mapping, schema_file: Path, files: Iterable[str]) -> dict:
         for file in files
         for line in repeated_keys(Path(file).read_text("utf-8"))
     ]
-    if found := found or [*mistakes(config, schema)]:
-        stop(found)
+    stop(found or mistakes(config, schema))
     return with_whole_numbers(config, schema, schema["$defs"])
 
 
 def stop(mistakes: Iterable[str]) -> None:
-    """End the program with the mistakes in the configuration."""
-    sys.exit("\n".join(f"configuration: {line}" for line in mistakes))
+    """End the program with the mistakes in the configuration, if there are some."""
+    if lines := [f"configuration: {line}" for line in mistakes]:
+        sys.exit("\n".join(lines))
 
 
 def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
@@ -146,7 +146,7 @@ def registered(file: Path) -> set[str]:
     The file is not imported: with conda, its libraries are in the environment of the jobs only.
     """
     nodes = ast.walk(ast.parse(file.read_text("utf-8")))
-    keys = [key for node in nodes if isinstance(node, ast.Dict) for key in node.keys]
+    keys = chain.from_iterable(node.keys for node in nodes if isinstance(node, ast.Dict))
     return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 
 

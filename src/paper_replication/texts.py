@@ -106,10 +106,10 @@ def comma_separated(rows: list[list[str]]) -> str:
     return text.getvalue()
 
 
-def save_table(rows: list[list[str]], md: str | Path, csv: str | Path) -> None:
+def save_table(rows: list[list[str]], as_markdown: str | Path, as_csv: str | Path) -> None:
     """Save rows of texts, the header first, as Markdown and as CSV."""
-    write(Path(md), markdown(rows).encode())
-    write(Path(csv), comma_separated(rows).encode())
+    write(Path(as_markdown), markdown(rows).encode())
+    write(Path(as_csv), comma_separated(rows).encode())
 
 
 def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:

@@ -5,5 +5,4 @@ from pendulum import PROJECT
 
 from paper_replication.compare import report_of_run
 
-given = snakemake.params.config, snakemake.params.names
-sys.exit(report_of_run(PROJECT, Path("results"), *given))
+sys.exit(report_of_run(PROJECT, Path("results"), snakemake.params.config, snakemake.params.names))

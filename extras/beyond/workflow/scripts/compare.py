@@ -22,5 +22,6 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names
-    sys.exit(report_of_run(PROJECT, Path("results"), *given))
+    sys.exit(
+        report_of_run(PROJECT, Path("results"), snakemake.params.config, snakemake.params.names)
+    )

@@ -10,6 +10,7 @@ import shutil
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from unittest import mock
 
 import pytest
 from snakemake import cli
@@ -33,8 +34,8 @@ class Checkout:
         what it prints.
         """
         printed = io.StringIO()
-        variables = dict(os.environ)
         with (
+            mock.patch.dict(os.environ),
             warnings.catch_warnings(action="ignore"),
             contextlib.chdir(self.path),
             contextlib.redirect_stdout(printed),
@@ -42,8 +43,6 @@ class Checkout:
             pytest.raises(SystemExit) as ended,
         ):
             cli.main([*arguments])
-        os.environ.clear()
-        os.environ.update(variables)
         return ended.value.code, printed.getvalue()
 
     def planned(self, *arguments: str) -> set[str]:

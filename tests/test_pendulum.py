@@ -18,8 +18,8 @@ def git(there, *arguments):
 @pytest.fixture(scope="module")
 def accepted(git_of_its_own, tmp_path_factory):
     """A copy of the folder, with its first results as its reference."""
-    there = Checkout(tmp_path_factory.mktemp("another") / "pendulum")
-    shutil.copytree(ROOT / "tests/pendulum", there.path)
+    folder = tmp_path_factory.mktemp("another") / "pendulum"
+    there = Checkout(shutil.copytree(ROOT / "tests/pendulum", folder))
     git(there, "init", "-qb", "main")
     git(there, "add", ".")
     git(there, "commit", "-qm", "first")

@@ -5,6 +5,7 @@ The scripts only write their outputs here (see checkout.py): the rules are teste
 
 import ast
 import sys
+import tomllib
 from inspect import signature
 from modulefinder import ModuleFinder
 from pathlib import Path
@@ -152,6 +153,15 @@ def test_the_models_and_what_any_replication_needs_import_no_other_package():
     assert not imports("paper_replication") & {"bouncing_ball", "carbonelli2011"}
 
 
+def test_a_wheel_has_every_file_of_its_packages():
+    setuptools = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
+    patterns = ["*.py", *setuptools["package-data"]["*"]]
+    packages = [path.parent for path in (ROOT / "src").rglob("__init__.py")]
+    packed = {file for package in packages for each in patterns for file in package.glob(each)}
+    files = {path for package in packages for path in package.rglob("*.*")}
+    assert {path for path in files if path.suffix != ".pyc"} == packed
+
+
 def modules_of(script: Path) -> set[str]:
     """The modules of the package and the scripts that a script imports, directly or by another
     module, each with its folder.
@@ -179,10 +189,9 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
     del inputs["all"]
     assert inputs.keys() == {*COMPUTED, "draw", "tables", *TEXTS}
     for name, files in inputs.items():
-        folder = "src/carbonelli2011/stages" if name in COMPUTED else "workflow/scripts"
-        script = ROOT / f"{folder}/{name}.py"
-        assert in_folder(script) in files
-        found = modules_of(script) - NO_NUMBER
+        folder = ROOT / ("src/carbonelli2011/stages" if name in COMPUTED else "workflow/scripts")
+        assert f"{folder.name}/{name}.py" in files
+        found = modules_of(folder / f"{name}.py") - NO_NUMBER
         assert found <= files, name
         # All models count for all that computes.
         assert {file for file in files - found - MODELS if file.endswith(".py")} == set(), name

@@ -41,8 +41,7 @@ def stubs(tmp_path_factory) -> Checkout:
 @pytest.fixture(scope="module")
 def complete(stubs, tmp_path_factory) -> Checkout:
     """The same after a whole run. Tests plan further runs here, and change nothing."""
-    folder = tmp_path_factory.mktemp("complete") / "checkout"
-    shutil.copytree(stubs.path.parents[1], folder)
+    folder = shutil.copytree(stubs.path.parents[1], tmp_path_factory.mktemp("complete") / "copy")
     copy = Checkout(folder / "extras/beyond")
     status, printed = copy.run("--cores", "2")
     assert status == 0, printed
@@ -52,8 +51,8 @@ def complete(stubs, tmp_path_factory) -> Checkout:
 @pytest.fixture
 def used(complete, tmp_path) -> Checkout:
     """A copy for one test, after a whole run."""
-    shutil.copytree(complete.path.parents[1], tmp_path / "checkout")
-    return Checkout(tmp_path / "checkout/extras/beyond")
+    folder = shutil.copytree(complete.path.parents[1], tmp_path / "checkout")
+    return Checkout(folder / "extras/beyond")
 
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
@@ -111,13 +110,12 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         inputs[scripts.get(rule, rule)] = {Path(file.strip()).name for file in files}
     del inputs["all"]
     assert inputs.keys() == {*STAGES, "draw", "tables", *TEXTS}
-    folders = [BEYOND / "src", BEYOND / "workflow", ROOT / "src"]
+    # A project says where files are, and makes pictures for comparisons.
+    folders = [str(BEYOND / "src"), str(BEYOND / "workflow"), str(ROOT / "src")]
     for name, files in inputs.items():
-        folder = "studies/stages" if name in STAGES else "scripts"
-        script = BEYOND / f"workflow/{folder}/{name}.py"
-        # A project says where files are, and makes pictures for comparisons.
-        found = ModuleFinder(path=[*map(str, folders)], excludes=["project"])
-        found.run_script(str(script))
+        folder = BEYOND / "workflow" / ("studies/stages" if name in STAGES else "scripts")
+        found = ModuleFinder(path=folders, excludes=["project"])
+        found.run_script(f"{folder}/{name}.py")
         modules = {Path(each.__file__).name for each in found.modules.values() if each.__file__}
         assert modules - NO_NUMBER <= files, name
 

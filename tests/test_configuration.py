@@ -30,7 +30,7 @@ import pytest
         ),
         (
             "error_thresholds: {fig99: {title: A new one, release: force}}",
-            "fig99.release: release is a setting of the run, and of no entry",
+            "error_thresholds.fig99.release: a setting of the whole run, not of an entry",
         ),
         (
             "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",

@@ -52,10 +52,16 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
-    settings = config.keys() - stages(config)
-    for name, entry in entries(config).items():
-        for key in settings.intersection(entry if isinstance(entry, Mapping) else ()):
-            yield f"{name}.{key}: {key} is a setting of the run, and of no entry"
+    settings_in_entries = [
+        f"{stage}.{name}.{key}"
+        for stage, section in stages(config).items()
+        for name in names(section)
+        for key in (section[name] if isinstance(section[name], Mapping) else ())
+        if key in config.keys() - stages(config)
+    ]
+    yield from (
+        f"{path}: a setting of the whole run, not of an entry" for path in settings_in_entries
+    )
     described = schema.get("$defs", {}).get("described", {}).get("properties", {})
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
@@ -63,7 +69,8 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             known = [*error.schema["properties"], *described]
             for key in error.instance.keys() - {*known}:
                 path = ".".join(filter(None, (where, str(key))))
-                yield f"{path}: unknown key{meant(str(key), known)}"
+                if path not in settings_in_entries:
+                    yield f"{path}: unknown key{meant(str(key), known)}"
         elif error.validator == "required" and error.validator_value == ["title"]:
             stage, name = error.absolute_path
             known = schema["properties"][stage]["properties"]

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from tests.checkout import Checkout, stubbed
+from checkout import Checkout, stubbed
 
 BEYOND = Path(__file__).resolve().parents[1]
 ROOT = BEYOND.parents[1]
@@ -131,7 +131,7 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         ),
         (
             "impacts: {ext_instant: {release: force}}",
-            "ext_instant.release: release is a setting of the run, and of no entry",
+            "impacts.ext_instant.release: a setting of the whole run, not of an entry",
         ),
         ("answers: {}\nanswers: {}", "mine.yaml, line 2: answers stands twice: write its keys"),
     ],

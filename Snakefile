@@ -38,6 +38,9 @@ from paper_replication.configuration import (
 FOLDERS = filter(None, [str(TOP / "src"), os.getenv("PYTHONPATH")])
 os.environ.update(PYTHONPATH=os.pathsep.join(FOLDERS))
 
+if not os.access(".", os.W_OK):
+    sys.exit("This folder cannot be written: give a folder for the results, --directory FOLDER")
+
 
 configfile: TOP / "config/config.yaml"
 

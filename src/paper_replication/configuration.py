@@ -148,11 +148,13 @@ def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator
 
 
 def registered(file: Path) -> set[str]:
-    """The keys of the dictionaries that a file of code has, such as those of its functions.
+    """The keys of the dictionaries that a file of code has, such as those of its functions; none
+    without the file.
 
     The file is not imported: with conda, its libraries are in the environment of the jobs only.
     """
-    nodes = ast.walk(ast.parse(file.read_text("utf-8")))
+    text = file.read_text("utf-8") if file.is_file() else ""
+    nodes = ast.walk(ast.parse(text))
     keys = chain.from_iterable(node.keys for node in nodes if isinstance(node, ast.Dict))
     return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 

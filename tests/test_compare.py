@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib.figure import Figure
+from tests.checkout import ROOT
 from tests.jobs import Named
-from tests.reference import ROOT
 
 from carbonelli2011 import variables
 from paper_replication import compare, datasets

@@ -17,7 +17,8 @@ import numpy as np
 import pytest
 import yaml
 from tests import independent
-from tests.reference import CONFIG, ENTRIES, ROOT, reference, stage
+from tests.checkout import ROOT
+from tests.reference import CONFIG, ENTRIES, reference, stage
 
 from bouncing_ball.orbits import NoOrbit
 from carbonelli2011 import article, figures, index, paper, tables

@@ -4,8 +4,7 @@ import shutil
 import subprocess
 
 import pytest
-from tests.checkout import Checkout
-from tests.reference import ROOT
+from tests.checkout import ROOT, Checkout
 
 from paper_replication.datasets import parameters, read
 

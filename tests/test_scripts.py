@@ -12,7 +12,8 @@ import xarray as xr
 import yaml
 from scipy.optimize import brentq, minimize_scalar
 from tests import independent
-from tests.reference import CONFIG, ROOT, reference, table_with_another_row
+from tests.checkout import ROOT
+from tests.reference import CONFIG, reference, table_with_another_row
 
 from bouncing_ball import errors, orbits
 from bouncing_ball.orbits import NoOrbit

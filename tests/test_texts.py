@@ -5,7 +5,8 @@ import re
 
 import pytest
 import yaml
-from tests.reference import ROOT, TOP, reference
+from tests.checkout import ROOT
+from tests.reference import TOP, reference
 
 import bouncing_ball
 from paper_replication import judgements, texts

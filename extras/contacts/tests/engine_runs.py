@@ -781,7 +781,7 @@ def measure(design, shape, slide=0.0, instants=13):
     speed = bounce.impact_speed
     g = bounce.gravity
     rubs = bounce.friction
-    deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
+    deepest = max(outcome.depth, default=0.0) or speed * step
     found = []
     for share in np.linspace(0.01, 0.99, instants):
         # It comes out with about r times its speed.
@@ -817,7 +817,7 @@ def measure(design, shape, slide=0.0, instants=13):
         found.append((r, depth, peak))
     r, depth, force = np.array(found).T
     rest = math.nan
-    if outcome.rest > 0:
+    if outcome.rest:
         # Laid where it should rest, it stays there, or swings about where it rests.
         period = 2 * math.pi * math.sqrt(outcome.rest / g)
         steps = max(20, int(4 * period / step))

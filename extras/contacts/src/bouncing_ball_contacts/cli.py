@@ -1,6 +1,7 @@
 """The command ``bounce``: design, diagnose, fit and engines."""
 
 import dataclasses
+import io
 import json
 import sys
 from pathlib import Path
@@ -323,6 +324,9 @@ def run() -> None:
         is_far = isinstance(mistake, ArithmeticError)
         said = "a quantity is too large or too small to be computed: " if is_far else ""
         click.echo(f"bounce: {said}{' '.join(str(text).split())}", err=True)
+        if isinstance(mistake, OSError):
+            # At its end Python would write what a full disk left in the buffer, and fail again.
+            sys.stdout = io.StringIO()
         sys.exit(2)
     except click.Abort:
         sys.exit(130)

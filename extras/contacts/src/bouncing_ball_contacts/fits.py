@@ -37,7 +37,7 @@ _WITH_DRAG = ("flights", "heights", "drops", "track")
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """Restitution coefficient of a recording at a speed.
 

@@ -98,7 +98,7 @@ _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # Readings to impacts.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Impacts:
     """Impacts of a recording.
 
@@ -317,7 +317,7 @@ def without_contacts(recording: Recording, lasts: float) -> Recording:
 # Impacts to r at one speed.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curves:
     """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 

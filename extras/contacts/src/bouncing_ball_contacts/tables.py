@@ -183,7 +183,7 @@ class Column:
         return 10.0 ** min(powers, default=0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Table:
     """Columns, the numbers of their lines, and the quantities of the head."""
 

@@ -185,8 +185,8 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     note = (
         f"the drag of the air is removed, which raises r by {by_drag:.2g}"
         if is_known
-        else "the drag of the air is not removed: r of a table tennis ball is too low by "
-        f"{by_drag:.2g}, that of heavier balls by less; give --mass and --diameter"
+        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a table "
+        "tennis ball, and by less for a heavier ball; give --mass and --diameter"
     )
     low, high = found.interval
     return note * (by_drag > (high - low) / 2)

@@ -540,15 +540,16 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
-        is_counted = each.role == counted and (
-            counted == "touch" or re.search(r"\d$", each.name + other.name)
+        counted = {"heights": ["height"], "times": ["touch"]}.get(kind, ["trial", "height"])
+        is_counted = each.role in counted and (
+            "touch" in counted or re.search(r"\d$", each.name + other.name)
         )
         if each.role == other.role and not is_counted:
             raise Refused(
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
                 f"{other.name!r}: write trial 1,trial 2 over repeated drops, h0,h1,h2 over "
-                "successive tops, and the same heading over runs side by side"
+                "successive tops, the same heading over runs side by side of one ball, and 'height "
+                "(cm) (golf)' over those of several balls"
             )
     return kind, columns
 

@@ -44,7 +44,10 @@ def touching(ball, amplitude, tau, u, harmonics=SINE, gravity=1.0):
     def release(t, y):
         if t < tau + 1e-6:
             return -1.0
-        return y[0] if ball.release == "displacement" else -acceleration(ball, *y)
+        if ball.release == "displacement":
+            return y[0]
+        # A contact ends where its force ends, at the surface at the latest.
+        return -1.0 if y[0] < 0 < acceleration(ball, *y) else 1.0
 
     release.terminal, release.direction = True, 1
     start = 2 * float(ball.zeta) / ball.frequency_ratio * u if u < 0 else 0.0

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.contacts.balls import (
+    ENDLESS,
     Ball,
     check_one_ball,
     check_whole_numbers,
@@ -124,6 +125,8 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
         elif near[i] or found[i]:
             found[i] = near[i] or found[i]
             continue
+        elif not ends[i]:
+            why = f"none is found; {ENDLESS}"
         ball = equations.ball.rows(i)
         values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
         found[i] = OrbitNotFound(

@@ -114,7 +114,10 @@ def weakest_grip(ball, amplitude, harmonics=SINE):
 
     def grip(t):
         gap, rate = motion(t)
-        return -gap / deep if ball.release == "displacement" else acceleration(ball, gap, rate)
+        if ball.release == "displacement":
+            return -gap / deep
+        # A power of the depth is flat at the surface, where the depth itself is not.
+        return min(-gap / deep, acceleration(ball, gap, rate))
 
     times = np.linspace(0.1, 2 * np.pi + 0.1, 2001) % (2 * np.pi)
     near = times[np.argmin([grip(t) for t in times])]

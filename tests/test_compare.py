@@ -22,7 +22,7 @@ from tests.checkout import ROOT
 from tests.jobs import Named
 
 from carbonelli2011 import variables
-from paper_replication import compare, datasets
+from paper_replication import compare, datasets, provenance
 from paper_replication.drawing import save_picture
 
 pytestmark = pytest.mark.usefixtures("git_of_its_own")
@@ -30,6 +30,11 @@ pytestmark = pytest.mark.usefixtures("git_of_its_own")
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
 CONFIG = {"release": "force", "stage": ENTRIES}
+MADE = (
+    *("figures/claims.nc", "figures/fig14.nc"),
+    *("figures/fig01.png", "figures/fig01.svg", "figures/fig14.png", "figures/fig14.svg"),
+    *("paper.md", "supplement.md"),
+)
 FILES = (
     "src/model.py",
     "src/variables.py",
@@ -42,20 +47,16 @@ FILES = (
 def note(project, rule, files, code, data=(), **parameters):
     """Write the record of a job."""
     results = project.top / "results"
-    record = results / f"records/{rule}.json"
-    made = {file: str(results / file) for file in files}
-    inputs = {
-        "code": [project.top / code],
-        "data": [results / f"figures/{each}.nc" for each in data],
-    }
-    datasets.save_record(
-        SimpleNamespace(
-            input=SimpleNamespace(**inputs),
-            output=Named(record=str(record), **made),
-            params=SimpleNamespace(**parameters),
-        ),
-        project,
-    )
+    record = str(results / f"records/{rule}.json")
+    output = Named(record=record, **{file: str(results / file) for file in files})
+    paths = [str(results / f"figures/{each}.nc") for each in data]
+    job = SimpleNamespace(output=output, params=SimpleNamespace(**parameters))
+    datasets.save_record(job, read_by(project, code, paths), project)
+
+
+def read_by(project, code, data=()):
+    """What a job reads."""
+    return provenance.sources(SimpleNamespace(code=[str(project.top / code)], data=data))
 
 
 def make(name, data, folder, form="{:.3g}"):
@@ -91,7 +92,7 @@ def accepted(git_of_its_own, tmp_path_factory):
     git(top, "init", "-qb", "main")
     (top / ".gitignore").write_text("results\n", "utf-8")
     commit(top)
-    assert len(compare.accept(project, top / "results")) == 8
+    assert len(accept(project)) == 8
     commit(top)
     return top
 
@@ -129,11 +130,11 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
         {"max_height": ("frequency_ratio", list(height))}, {"frequency_ratio": [1.0, 2.0]}
     )
     judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
-    code = [project.top / "src/model.py"]
+    sources = read_by(project, "src/model.py")
     given = {"n": 1, "release": "force"} | given
     title = entries["fig14"]["title"]
-    datasets.save(data, folder / "figures/fig14.nc", title, given, code, project)
-    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code, project)
+    datasets.save(data, folder / "figures/fig14.nc", title, given, sources, project)
+    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, sources, project)
     project.make("fig14", data, folder / "figures")
     project.make("fig01", None, folder / "figures")
     # The page is no part of the reference.
@@ -154,10 +155,18 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
     )
 
 
-def report(project, names=(), config=CONFIG):
+def report(project, names=(), config=CONFIG, made=MADE):
     reference = compare.run_in(project.top, "the reference")
     results = compare.run_in(project.top / "results", "the results")
-    return compare.compare(project, reference, results, config, names)
+    main = provenance.main_branch(project.checkout)
+    checkout = compare.Checkout(project, main, config, made)
+    return compare.compare(project, reference, results, checkout, names)
+
+
+def accept(project):
+    """Accept the results; the rules make a page, too, which is no part of the reference."""
+    results = project.top / "results"
+    return compare.accept(project, results, [results / file for file in (*MADE, "index.html")])
 
 
 def printed(found):
@@ -200,7 +209,7 @@ def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
     assert lines(project) == []
 
 
-def test_a_parameter_is_the_cause_and_names_no_file(project):
+def test_a_changed_parameter_is_named_with_what_follows_from_it(project):
     entries = {"fig14": ENTRIES["fig14"] | {"n": 2}}
     run(project, height=(1.0, 2.5), verdict="contradicted", text="83", entries=entries, n=2)
     config = {"release": "force", "stage": entries}
@@ -252,7 +261,7 @@ def test_a_caption_of_the_checkout_makes_texts_stale(project):
     assert lines(project, config=config) == [f"paper: {since}", f"supplement: {since}"]
 
 
-NOTHING = "no parameter, code or version that is recorded has changed"
+SAME = "made by: the same parameters, code and versions"
 
 
 def changed(project):
@@ -261,41 +270,46 @@ def changed(project):
     return lines(project)[0].partition("; ")[2]
 
 
-def test_code_that_is_accepted_or_on_the_main_branch_is_no_cause(project):
+def test_code_that_differs_from_the_acceptance_is_listed_and_marked_if_main_has_it(project):
+    assert changed(project) == SAME
     edit(project, "src/model.py")
+    assert changed(project) == "changed code: src/model.py"
     commit(project.top)
-    # The main branch itself is red.
-    assert changed(project) == "changed since the last acceptance: src/model.py"
+    assert changed(project) == "changed code: src/model.py (also on main)"
     git(project.top, "checkout", "-qb", "branch")
-    assert changed(project) == "changed since the last acceptance: src/model.py"
     edit(project, "src/model.py")
     commit(project.top)
-    assert changed(project) == "changed: src/model.py"
+    assert changed(project) == "changed code: src/model.py"
+    # Main goes on, and has this content too.
+    git(project.top, "branch", "-f", "main")
+    assert changed(project) == "changed code: src/model.py (also on main)"
     run(project)
-    written = compare.accept(project, project.top / "results")
-    assert written == []
+    assert accept(project) == []
+    assert changed(project) == SAME
 
 
-@pytest.mark.parametrize("left", ["nothing", "a branch master"])
-def test_without_a_main_branch_the_last_acceptance_is_what_is_known(project, left):
-    if left == "nothing":
-        shutil.rmtree(project.top / ".git")
-    else:
-        git(project.top, "branch", "-m", "master")
-    assert changed(project) == f"cause: {NOTHING}"
+@pytest.mark.parametrize("change", ["no git", "no main branch", "other hashes", "of origin"])
+def test_the_mark_needs_a_main_branch_with_the_hashes_of_records(project, tmp_path, change):
     edit(project, "src/model.py")
-    assert changed(project) == (
-        "changed since the last acceptance (the main branch is not known here): src/model.py"
-    )
-
-
-def test_the_main_branch_of_another_name_is_that_of_origin(project, tmp_path):
-    git(project.top, "branch", "-m", "master")
-    git(project.top, "clone", "-q", str(project.top), str(tmp_path / "copy"))
-    shutil.rmtree(project.top / ".git")
-    shutil.move(tmp_path / "copy/.git", project.top / ".git")
-    edit(project, "src/drawing.py", "src/model.py")
-    assert changed(project) == "changed: src/model.py"
+    commit(project.top)
+    if change == "no main branch":
+        git(project.top, "branch", "-m", "master")
+    if change == "of origin":
+        git(project.top, "branch", "-m", "master")
+        git(project.top, "clone", "-q", str(project.top), str(tmp_path / "copy"))
+    if change != "no main branch":
+        shutil.rmtree(project.top / ".git")
+    if change == "other hashes":
+        git(project.top, "init", "-qb", "main", "--object-format=sha256")
+        commit(project.top)
+        run(project)
+        assert accept(project) == []
+        edit(project, "src/model.py")
+        commit(project.top)
+    if change == "of origin":
+        shutil.move(tmp_path / "copy/.git", project.top / ".git")
+    mark = " (also on main)" if change == "of origin" else ""
+    assert changed(project) == f"changed code: src/model.py{mark}"
 
 
 def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
@@ -313,10 +327,10 @@ def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
     data.to_netcdf(path)
     note(project, "stage", ["figures/fig14.nc"], "src/model.py")
     described = "fig14: max_height.long_name maximum height of the ball over a cycle → highest"
-    assert lines(project)[0] == f"{described}; changed: src/variables.py"
+    assert lines(project)[0] == f"{described}; changed code: src/variables.py"
     # The file of today says nothing about two runs.
     runs = [compare.run_in(top, "a run") for top in (project.top, project.top / "results")]
-    assert compare.compare(project, *runs).lines()[0] == f"{described}; cause: {NOTHING}"
+    assert compare.compare(project, *runs).lines()[0] == f"{described}; {SAME}"
 
 
 @pytest.mark.parametrize(
@@ -387,11 +401,11 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     edit(project, "src/drawing.py")
     run(drawn)
     cause = f"other versions: matplotlib {matplotlib.__version__} → 9.9"
-    assert lines(project) == [f"fig14: the picture differs; changed: src/drawing.py; {cause}"]
+    assert lines(project) == [f"fig14: the picture differs; changed code: src/drawing.py; {cause}"]
     # The main branch has this code, and was accepted with the other matplotlib.
     commit(project.top)
     assert report(project).status == 0
-    assert compare.accept(project, project.top / "results")[1] == "figures/fig14.svg"
+    assert accept(project)[1] == "figures/fig14.svg"
     record = json.loads((project.top / compare.ACCEPTED).read_text("utf-8"))
     assert record["versions"] == other
 
@@ -403,10 +417,10 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     missing = "figures/fig14.png in the reference, figures/fig14.png in the results"
     assert lines(project, names=["fig14"]) == [f"fig14: missing: {missing}"]
     assert lines(project)[0].startswith("claims: cannot be compared: figures/claims.nc in the res")
-    # The configuration registers two figures that nobody made.
-    config = {"stage": {"fig14": ENTRIES["fig14"], "fig18": {"title": "T", "caption": "C"}}}
-    found = report(project, names=["fig18"], config=config)
-    assert ([*found.found], found.status) == (["figures/fig18.png", "figures/fig18.svg"], 2)
+    # Rules make two pictures that nobody made.
+    pictures = ("figures/fig18.png", "figures/fig18.svg")
+    found = report(project, names=["fig18"], made=pictures)
+    assert ([*found.found], found.status) == ([*pictures], 2)
     found = report(project, names=["fig19"])
     assert (printed(found), found.status) == (["There is nothing to compare."], 2)
 
@@ -414,7 +428,10 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
 def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project, capsys):
     run(project, height=(1.0, 2.5))
     results = project.top / "results"
-    assert compare.report_of_run(project, results, CONFIG, []) == 1
+    job = SimpleNamespace(
+        input=[results / file for file in MADE], params=SimpleNamespace(config=CONFIG, names=[])
+    )
+    assert compare.report_of_run(project, results, job) == 1
     page = results / "diff/index.html"
     text = page.read_text("utf-8")
     assert "max_height 2 → 2.5" in text
@@ -427,7 +444,7 @@ def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project, capsy
     assert (results / "diff/report.txt").read_text("utf-8") == printed
     assert printed.splitlines()[-2:] == ["Differences in fig14.", str(page)]
     run(project)
-    assert compare.report_of_run(project, results, CONFIG, []) == 0
+    assert compare.report_of_run(project, results, job) == 0
     assert "fig14" not in page.read_text("utf-8")
 
 
@@ -502,7 +519,7 @@ def test_a_damaged_record_is_named_and_that_of_the_reference_is_mended(project, 
     record.write_text(before, "utf-8")
     (project.top / compare.ACCEPTED).write_text(left, "utf-8")
     assert "in the reference, figures/accepted.json cannot be" in lines(project)[0]
-    compare.accept(project, results)
+    accept(project)
     assert lines(project) == []
 
 
@@ -549,7 +566,7 @@ def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
     edit(project, "src/model.py")
     run(project, height=(1.0, 2.5))
     runs = [compare.run_in(folder, "a run") for folder in (one, project.top / "results")]
-    causes = {"changed": ["src/model.py"], "other versions": [f"numpy {np.__version__} → 9.9"]}
+    causes = {"changed code": ["src/model.py"], "other versions": [f"numpy {np.__version__} → 9.9"]}
     (found,) = compare.compare(project, *runs).findings.values()
     assert found.causes == causes
 
@@ -559,10 +576,10 @@ def test_what_differs_is_accepted_and_what_agrees_stays(project):
     edit(project, "src/model.py")
     commit(project.top)
     run(project, height=(1.0, 2.0 + 1e-12), text="83")
-    assert compare.accept(project, project.top / "results") == ["paper.md", "supplement.md"]
+    assert accept(project) == ["paper.md", "supplement.md"]
     assert (project.top / "figures/fig14.nc").read_bytes() == before
     run(project, height=(1.0, 2.5))
-    written = compare.accept(project, project.top / "results")
+    written = accept(project)
     assert written[:3] == ["figures/fig14.nc", "figures/fig14.png", "figures/fig14.svg"]
     assert lines(project) == []
 
@@ -575,9 +592,9 @@ def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
     for kind in ("png", "svg"):
         (results / f"figures/fig01.{kind}").unlink()
     with pytest.raises(ValueError, match=r"missing: figures/fig01\.png in the results"):
-        compare.accept(project, results)
+        accept(project)
     (results / "records/fig01.json").unlink()
-    assert compare.accept(project, results) == ["figures/fig01.png", "figures/fig01.svg"]
+    assert accept(project) == ["figures/fig01.png", "figures/fig01.svg"]
     assert not (project.top / "figures/fig01.png").exists()
     assert (project.top / "figures/mine.md").exists()
     unnamed = "mine: no record names: figures/mine.md in the reference; missing: figures/mine.md"
@@ -624,15 +641,7 @@ def mixed(project):
 def test_nothing_is_accepted_that_cannot_be_made_again(project, change, line):
     change(project)
     with pytest.raises(ValueError, match=line):
-        compare.accept(project, project.top / "results")
-
-
-def test_a_repository_with_other_hashes_blames_nobody(project):
-    shutil.rmtree(project.top / ".git")
-    git(project.top, "init", "-qb", "main", "--object-format=sha256")
-    commit(project.top)
-    assert compare.accept(project, project.top / "results") == []
-    assert changed(project) == f"cause: {NOTHING}"
+        accept(project)
 
 
 # All situations
@@ -701,17 +710,20 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
     form = given.pop("form", "{!r}")
     digits = replace(project, make=partial(make, form="{!r}"))
     run(digits)
-    compare.accept(digits, project.top / "results")
+    accept(digits)
     today = replace(project, make=partial(make, form=form))
     run(today, **given)
     kept = shutil.copytree(project.top, tmp_path / "kept")
     results = project.top / "results"
 
-    def compared():
-        runs = (compare.run_in(project.top, "old"), compare.run_in(results, "new"))
-        return compare.Comparison(today, *runs, CONFIG if with_reference else None, {})
+    checkout = compare.Checkout(today, {}, CONFIG, MADE) if with_reference else None
 
-    data = compared().finding("figures/fig14.nc")
+    def sides(file):
+        runs = (compare.run_in(project.top, "old"), compare.run_in(results, "new"))
+        return compare.side(runs[0], file), compare.side(runs[1], file, checkout)
+
+    data = compare.finding(*sides("figures/fig14.nc"), checkout, ()).verdict
+    differing = ["figures/fig14.nc"] if data == "differs" else []
     records = (project.top / compare.ACCEPTED, results / f"records/{rule}.json")
     for old, new, stale in product(STATES, STATES, (False, True)):
         for path in (project.top / file, results / file, *records, project.top / code):
@@ -720,7 +732,8 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         brought(new, results / file, records[1])
         if stale:
             edit(project, code)
-        found = replace(compared(), found={"figures/fig14.nc": data}).finding(file)
+        pair = sides(file)
+        found = compare.finding(*pair, checkout, differing)
         situation = (old, new, stale, contents, file.endswith(".nc"), with_reference)
         assert found.verdict == wanted(*situation), situation
         assert (
@@ -729,31 +742,39 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
             or compare.EDITED in found.causes
         ), situation
         # Only what is fresh and recorded is accepted.
-        assert (not found.wrong) == (new == "recorded" and not (stale and with_reference))
+        assert (not pair[1].wrong) == (new == "recorded" and not (stale and with_reference))
 
 
-CODE = [*product("ab", ("a", "b", None), (1, 2), "12")]
-
-
-@pytest.mark.parametrize("code, main, n, version", CODE)
-def test_no_innocent_is_a_cause(code, main, n, version):
-    """A file of code was accepted as "a". The results and the main branch may have another one."""
-    before, after = (
-        {
-            "code": {"guilty": name, "innocent": "a"},
-            "parameters": {"n": number},
-            "versions": {"numpy": numpy},
-        }
-        for name, number, numpy in (("a", 1, "1"), (code, n, version))
+@pytest.mark.parametrize("after, main, n, version", product("ab", "ab ", (1, 2), "12"))
+def test_all_that_differs_in_what_made_a_file_is_listed(project, after, main, n, version):
+    """A file of code was accepted as "a". Another one stays as it is."""
+    old, new = (
+        compare.Side(
+            project.top,
+            {},
+            record={
+                "code": {"edited": code, "other": "a"},
+                "parameters": {"n": number},
+                "versions": {"numpy": numpy},
+                "data": {},
+            },
+        )
+        for code, number, numpy in (("a", 1, "1"), (after, n, version))
     )
-    known = {"guilty": main, "innocent": "a"} if main else {}
-    told = str(compare.causes(before, after, known))
-    changed = {"n 1 → 2": n == 2, "numpy 1 → 2": version == "2"}
-    assert {text: text in told for text in changed} == changed
-    others = any(changed.values())
-    assert ("guilty" in told) == (code == "b" and (main != "b" or not others))
-    assert "innocent" not in told
-    assert (told == str(compare.NOTHING)) == (code == "a" and not others)
+    checkout = compare.Checkout(project, {"edited": main, "other": "a"})
+    assert compare.what_differs(old, new, checkout, ()) == (
+        {
+            kind: [text]
+            for kind, text, is_told in (
+                ("changed parameter", "n 1 → 2", n == 2),
+                ("changed code", "edited (also on main)", after == main == "b"),
+                ("changed code", "edited", after == "b" and main != "b"),
+                ("other versions", "numpy 1 → 2", version == "2"),
+            )
+            if is_told
+        }
+        or compare.SAME
+    )
 
 
 OTHERS = {
@@ -783,12 +804,19 @@ def moved(data, name, share, largest):
     return other
 
 
+def differ(old, new):
+    """What differs in two datasets."""
+    return compare.differences(
+        *(compare.Side(ROOT, {}, each, str(id(each))) for each in (old, new))
+    )
+
+
 def test_the_reference_declares_a_tolerance_and_gives_its_scale():
     """A coordinate may be named tolerance."""
     data = xr.Dataset({"a": ("tolerance", [1.0], {"tolerance": 0.6, "floor": 0.1})})
     data["tolerance"] = ("tolerance", [5.0], {"tolerance": 0.1, "floor": 1.0})
     told = ["a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
-    assert compare.differences("a.nc", data, data.assign(a=data.a.copy(data=[2.0]))) == told
+    assert differ(data, data.assign(a=data.a.copy(data=[2.0]))) == told
 
 
 @pytest.mark.parametrize(
@@ -809,6 +837,6 @@ def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
             values = OTHERS[each.dtype.kind](each.values)
             cases = [(1.1, data.assign({name: (each.dims, values, each.attrs)}))]
         for share, other in cases:
-            lines = compare.differences(path.name, data, other)
+            lines = differ(data, other)
             is_named = any(line.startswith(f"{name} ") for line in lines)
             assert is_named == (abs(share) > 1 and not other.equals(data)), (name, share)

@@ -25,11 +25,4 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    sys.exit(
-        report_of_run(
-            PROJECT,
-            Path(snakemake.log[0]).parents[1],
-            snakemake.params.config,
-            snakemake.params.names,
-        )
-    )
+    sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], snakemake))

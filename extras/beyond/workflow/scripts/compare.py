@@ -22,6 +22,4 @@ if __name__ == "__main__" and "snakemake" not in globals():
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    sys.exit(
-        report_of_run(PROJECT, Path("results"), snakemake.params.config, snakemake.params.names)
-    )
+    sys.exit(report_of_run(PROJECT, Path("results"), snakemake))

@@ -8,9 +8,10 @@ import json
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import chain, product
+from itertools import chain, count, product, takewhile
 from types import SimpleNamespace
 
 import matplotlib
@@ -90,7 +91,7 @@ def accepted(git_of_its_own, tmp_path_factory):
     project = project_in(top)
     run(project)
     git(top, "init", "-qb", "main")
-    (top / ".gitignore").write_text("results\n", "utf-8")
+    shutil.copy(ROOT / ".gitignore", top)
     commit(top)
     assert len(accept(project)) == 8
     commit(top)
@@ -113,7 +114,7 @@ def git(top, *arguments):
 
 def commit(top):
     git(top, "add", ".")
-    git(top, "commit", "-qm", "a commit")
+    git(top, "commit", "-qm", "a commit", "--allow-empty")
 
 
 def edit(project, *files):
@@ -163,10 +164,10 @@ def report(project, names=(), config=CONFIG, made=MADE):
     return compare.compare(project, reference, results, checkout, names)
 
 
-def accept(project):
+def accept(project, made=MADE):
     """Accept the results; the rules make a page, too, which is no part of the reference."""
     results = project.top / "results"
-    return compare.accept(project, results, [results / file for file in (*MADE, "index.html")])
+    return compare.accept(project, results, [results / file for file in (*made, "index.html")])
 
 
 def printed(found):
@@ -386,8 +387,8 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     project, monkeypatch
 ):
-    other = datasets.versions() | {"matplotlib": "9.9"}
-    monkeypatch.setattr(datasets, "versions", lambda: other)
+    other = provenance.versions() | {"matplotlib": "9.9"}
+    monkeypatch.setattr(provenance, "versions", lambda: other)
     drawn = replace(project, make=partial(make, form="height {:.3g}"))
     run(drawn)
     agree = "6 of 8 files agree with the reference."
@@ -405,7 +406,7 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     # The main branch has this code, and was accepted with the other matplotlib.
     commit(project.top)
     assert report(project).status == 0
-    assert accept(project)[1] == "figures/fig14.svg"
+    assert accept(project) == [f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")]
     record = json.loads((project.top / compare.ACCEPTED).read_text("utf-8"))
     assert record["versions"] == other
 
@@ -561,8 +562,8 @@ def test_a_text_with_another_title_has_no_sentences(project):
 
 def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
     one = two_runs(project, tmp_path)[0]
-    other = datasets.versions() | {"numpy": "9.9"}
-    monkeypatch.setattr(datasets, "versions", lambda: other)
+    other = provenance.versions() | {"numpy": "9.9"}
+    monkeypatch.setattr(provenance, "versions", lambda: other)
     edit(project, "src/model.py")
     run(project, height=(1.0, 2.5))
     runs = [compare.run_in(folder, "a run") for folder in (one, project.top / "results")]
@@ -585,20 +586,104 @@ def test_what_differs_is_accepted_and_what_agrees_stays(project):
 
 
 def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
-    """A file of the user stays."""
+    """A file of the user stays. A figure of another branch is to be removed from the results."""
     (project.top / "figures/mine.md").write_text("mine", "utf-8")
     (project.top / "figures/old").mkdir()
-    results = project.top / "results"
-    for kind in ("png", "svg"):
-        (results / f"figures/fig01.{kind}").unlink()
+    made = [file for file in MADE if "fig01" not in file]
+    left = [project.top / f"results/figures/fig01.{kind}" for kind in ("png", "svg")]
+    assert f"fig01: no rule makes it, remove it: {left[0]}" in lines(project, made=made)
+    with pytest.raises(ValueError, match=f"remove first what no rule makes: {left[0]} {left[1]}"):
+        accept(project, made)
+    for path in left:
+        path.unlink()
     with pytest.raises(ValueError, match=r"missing: figures/fig01\.png in the results"):
         accept(project)
-    (results / "records/fig01.json").unlink()
-    assert accept(project) == ["figures/fig01.png", "figures/fig01.svg"]
+    assert "fig01: missing: figures/fig01.png in the results" in lines(project, made=made)
+    assert accept(project, made) == ["figures/fig01.png", "figures/fig01.svg"]
     assert not (project.top / "figures/fig01.png").exists()
     assert (project.top / "figures/mine.md").exists()
     unnamed = "mine: no record names: figures/mine.md in the reference; missing: figures/mine.md"
-    assert (lines(project)[0], report(project).status) == (f"{unnamed} in the results", 2)
+    assert lines(project, made=made)[0] == f"{unnamed} in the results"
+    assert report(project, made=made).status == 2
+
+
+PROCESSORS = (np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-12]))
+"""The same numbers, rounded differently."""
+CHANGES = {
+    "nothing": {},
+    "a label": {"form": "height {!r}"},
+    "a caption": {"caption": "D", "text": "83"},
+    "a number": {"add": 0.5},
+    "dataset and picture": {"add": 0.5, "form": "height {!r}", "text": "83"},
+}
+
+
+@pytest.mark.parametrize("first, second", [*product((0, 1), repeat=2)])
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_one_processor_accepts_is_green_on_each(project, tmp_path, what, first, second):
+    """One processor made the reference, one accepts a change, and both compare with it."""
+    given = {"form": "{!r}", "add": 0.0, "caption": "C", "text": "82"} | CHANGES[what]
+    before = replace(project, make=partial(make, form="{!r}"))
+    run(before, PROCESSORS[first])
+    accept(before)
+    today = replace(project, make=partial(make, form=given["form"]))
+    entries = {"fig14": ENTRIES["fig14"] | {"caption": given["caption"]}}
+    config = {"release": "force", "stage": entries}
+    (project.top / "config/config.yaml").write_text(json.dumps(config), "utf-8")
+    commit(project.top)
+    run(today, PROCESSORS[second] + given["add"], text=given["text"], entries=entries)
+    accept(today)
+    for numbers in PROCESSORS:
+        run(today, numbers + given["add"], text=given["text"], entries=entries)
+        assert lines(today, config=config) == []
+    today.make("fig14", datasets.read(project.top / "figures/fig14.nc"), tmp_path)
+    for name in ("fig14.png", "fig14.svg"):
+        assert (tmp_path / name).read_bytes() == (project.top / "figures" / name).read_bytes()
+
+
+def reference(project):
+    """The files of the reference; git would commit no others."""
+    asked = [
+        "git",
+        "-C",
+        str(project.top),
+        "ls-files",
+        "--cached",
+        "--others",
+        "--exclude-standard",
+    ]
+    files = subprocess.check_output(asked, text=True).split()
+    paths = [project.top / file for file in files if (project.top / file).exists()]
+    return {path.relative_to(project.top): path.read_bytes() for path in paths}
+
+
+def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path, monkeypatch):
+    """Each attempt is killed within its second write, until one has nothing more to write."""
+    made = [file for file in MADE if "fig01" not in file]
+    run(project, (1.0, 2.5), text="83")
+    for kind in ("png", "svg"):
+        (project.top / f"results/figures/fig01.{kind}").unlink()
+    whole = project_in(shutil.copytree(project.top, tmp_path / "whole"))
+    accept(whole, made)
+
+    def killed(attempt):
+        writes = []
+
+        def move(*paths):
+            writes.append(paths)
+            if len(writes) == 2:
+                patch.setattr(compare.Path, "unlink", lambda *_, **__: None)
+                raise KeyboardInterrupt
+            shutil.move(*paths)
+
+        with pytest.MonkeyPatch.context() as patch, suppress(KeyboardInterrupt):
+            patch.setattr(datasets.os, "replace", move)
+            accept(project, made)
+        return len(writes) == 2
+
+    assert sum(1 for _ in takewhile(killed, count())) == 5
+    assert [*(project.top / "figures").glob(".*")]
+    assert reference(project) == reference(whole)
 
 
 def untracked(project):
@@ -745,12 +830,12 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         assert (not pair[1].wrong) == (new == "recorded" and not (stale and with_reference))
 
 
-@pytest.mark.parametrize("after, main, n, version", product("ab", "ab ", (1, 2), "12"))
-def test_all_that_differs_in_what_made_a_file_is_listed(project, after, main, n, version):
+@pytest.mark.parametrize("after, main, n, version", [*product("ab", "ab ", (1, 2), "12")])
+def test_all_that_differs_in_what_made_a_file_is_listed(after, main, n, version):
     """A file of code was accepted as "a". Another one stays as it is."""
     old, new = (
         compare.Side(
-            project.top,
+            ROOT,
             {},
             record={
                 "code": {"edited": code, "other": "a"},
@@ -761,7 +846,7 @@ def test_all_that_differs_in_what_made_a_file_is_listed(project, after, main, n,
         )
         for code, number, numpy in (("a", 1, "1"), (after, n, version))
     )
-    checkout = compare.Checkout(project, {"edited": main, "other": "a"})
+    checkout = compare.Checkout(project_in(ROOT), {"edited": main, "other": "a"})
     assert compare.what_differs(old, new, checkout, ()) == (
         {
             kind: [text]

@@ -140,8 +140,9 @@ def configuration(project: Project) -> dict:
 
 
 def one_line(error: Exception) -> str:
-    """The kind of an error and its message, without line ends."""
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+    """The message of an error without line ends, with its kind if it may need one."""
+    kind = "" if isinstance(error, ValueError) else f"{type(error).__name__}: "
+    return kind + " ".join(str(error).split())
 
 
 @dataclass(frozen=True)
@@ -595,7 +596,7 @@ def compare(
     files = old.files().union(new.files(), checkout.made if checkout else ())
     sides = {
         file: (side(old, file), side(new, file, checkout))
-        for file in files - {ACCEPTED}
+        for file in sorted(files - {ACCEPTED})
         if (file.startswith("figures/") or file in project.texts)
         and (not names or Path(file).stem in names)
     }
@@ -629,7 +630,7 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     report = compare(project, old, run_in(results, "the results"), checkout)
     for reason in refusals(project, report, made, committed):
         raise ValueError(f"nothing is accepted, {reason}")
-    accepted = {file: sides for file, sides in report.sides.items() if file in made}
+    accepted = {file: report.sides[file] for file in report.found if file in made}
     changed = {Path(file).stem for file in accepted if report.found[file].verdict != "agrees"}
     written = [
         file

@@ -28,7 +28,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
 from functools import cache
-from itertools import chain, takewhile, zip_longest
+from itertools import takewhile, zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, TextIO, cast
@@ -108,14 +108,13 @@ class Run:
 
     def newer(self, record: Mapping) -> list[str]:
         """The datasets of a file that were made again after it."""
-        used = {file: made for file, made in record["data"].items() if file in self.records}
-        return [file for file, made in used.items() if self.records[file]["made"][file] != made]
+        now = {file: known["made"][file] for file, known in self.records.items()}
+        return [file for file, used in record["data"].items() if now.get(file, used) != used]
 
     def files(self) -> set[str]:
         """The files that the records name, and whatever is in the folder `figures`."""
-        data = [record["data"] for record in self.records.values()]
         there = [f"figures/{path.name}" for path in self.folder.glob("figures/[!.]*")]
-        return {*there}.union(self.records, *data)
+        return {*there}.union(self.records, *(record["data"] for record in self.records.values()))
 
 
 def run_in(folder: Path, label: str) -> Run:
@@ -180,13 +179,14 @@ class Checkout:
             now = {key: attributes(described[str(key)], variables[key].dtype) for key in variables}
             then = {key: variables[key].attrs for key in variables}
             lines = changes(plain(then), plain(now)) + lines
-            settings = (self.config or {}).items()
-            entry = known.get(name, {}).items()
-            known = {key: value for key, value in settings if key in record["parameters"]}
-            known |= {key: value for key, value in entry if key not in SHOWN_BY}
+            entry = {key: each for key, each in known.get(name, {}).items() if key not in SHOWN_BY}
+            settings = record["parameters"].keys() & (self.config or {}).keys()
+            known = {key: (self.config or {})[key] for key in settings} | entry
         if self.config and record["parameters"]:
-            other = changes(record["parameters"], plain(known))
-            lines = [f"{line} (config/config.yaml or the Snakefile)" for line in other] + lines
+            lines = [
+                f"{line} (config/config.yaml or the Snakefile)"
+                for line in changes(record["parameters"], plain(known))
+            ] + lines
         return lines
 
 
@@ -311,9 +311,12 @@ def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
     Both datasets have the same variables.
     """
     far = {name: distances(name, old, new) for name in map(str, old.variables)}
-    too_far = [name for name in far if (far[name] > 1).any()]
-    furthest_first = sorted(too_far, key=lambda name: -far[name].max())
-    return [furthest_value(old[name], new[name], far[name]) for name in furthest_first]
+    furthest_first = sorted(far, key=lambda name: -far[name].max(initial=0.0))
+    return [
+        furthest_value(old[name], new[name], far[name])
+        for name in furthest_first
+        if (far[name] > 1).any()
+    ]
 
 
 def furthest_value(old: xr.DataArray, new: xr.DataArray, far: np.ndarray) -> str:
@@ -484,8 +487,7 @@ def of_product(
 def drawn_elsewhere(old: Mapping, new: Mapping, checkout: Checkout | None) -> bool:
     """Whether another matplotlib drew a picture, with the same code or that of the main branch."""
     drawn_by = {made["versions"].get("matplotlib") for made in (old, new)} - {None}
-    main = checkout.main if checkout else {}
-    known = {*old["code"].items(), *main.items()}
+    known = {*old["code"].items(), *(checkout.main.items() if checkout else ())}
     return len(drawn_by) == 2 and {*new["code"].items()} <= known
 
 
@@ -523,13 +525,14 @@ def what_differs(
         code = code | contents_in(checkout.project.checkout, checkout.project.described_in)
     main = checkout.main if checkout else {}
     marks = {file: " (also on main)" * (main.get(file) == code[file]) for file in code}
-    given = [each.record["parameters"] for each in (old, new)]
+    given, before = new.record["parameters"], old.record["parameters"]
     versions = [{key: each.record["versions"].get(key) for key in PACKAGES} for each in (old, new)]
-    known = old.record["code"]
     found = {
         "follows from": [Path(file).stem for file in new.record["data"] if file in differing],
-        "changed parameter": changes(given[0], given[1]) if all(given) else [],
-        "changed code": [file + marks[file] for file in code if known.get(file) != code[file]],
+        "changed parameter": changes(before, given) if before and given else [],
+        "changed code": [
+            file + marks[file] for file in code if old.record["code"].get(file) != code[file]
+        ],
         "other versions": changes(versions[0], versions[1]),
     }
     return {kind: details for kind, details in found.items() if details} or SAME
@@ -559,8 +562,8 @@ class Report:
     @property
     def status(self) -> int:
         """The exit status: 1 if a file differs, else 2 if one, or none at all, can be compared."""
-        given = {STATUS[each.verdict] for each in self.found.values()}
-        return next((status for status in (1, 2, 0) if status in given), 2)
+        given = {STATUS[each.verdict] for each in self.found.values()} or {2}
+        return next(status for status in (1, 2, 0) if status in given)
 
     def names(self, verdict: str) -> list[str]:
         """The figures, tables and texts with a verdict."""
@@ -568,8 +571,8 @@ class Report:
 
     def lines(self) -> list[str]:
         """What is wrong, by name. Both pictures of a figure have the same line."""
-        lines = (f"{Path(file).stem}: {finding}" for file, finding in self.findings.items())
-        return list(dict.fromkeys(lines))
+        found = self.findings.items()
+        return list(dict.fromkeys(f"{Path(file).stem}: {finding}" for file, finding in found))
 
     def printed(self, template: str, **more: Any) -> str:
         """The report as a template prints it, with invisible characters escaped."""
@@ -601,8 +604,9 @@ def compare(
         and (not names or Path(file).stem in names)
     }
     datasets = {file: pair for file, pair in sides.items() if file.endswith(".nc")}
-    verdicts = {file: finding(*pair, checkout, ()).verdict for file, pair in datasets.items()}
-    differing = [file for file, verdict in verdicts.items() if verdict != "agrees"]
+    differing = [
+        file for file, pair in datasets.items() if finding(*pair, checkout, ()).verdict != "agrees"
+    ]
     # Datasets that are made of others come behind them, and what is made of datasets is last.
     order = sorted(
         sides, key=lambda file: (file not in datasets, bool(sides[file][1].record["data"]), file)
@@ -625,9 +629,8 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     committed = tree(project.checkout, "HEAD", "--", *project.code)
     code = contents_in(project.checkout, committed)
     made = [relative(results, file) for file in inputs]
-    checkout = Checkout(project, {}, configuration(project), made)
-    old = run_in(project.top, "the reference")
-    report = compare(project, old, run_in(results, "the results"), checkout)
+    old, new = run_in(project.top, "the reference"), run_in(results, "the results")
+    report = compare(project, old, new, Checkout(project, {}, configuration(project), made))
     for reason in refusals(project, report, made, committed):
         raise ValueError(f"nothing is accepted, {reason}")
     accepted = {file: report.sides[file] for file in report.found if file in made}
@@ -646,7 +649,7 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
         write(project.top / file, (results / file).read_bytes())
     for file in removed:
         (project.top / file).unlink(missing_ok=True)
-    text = report.new.records[project.texts[0]]
+    text = new.records[project.texts[0]]
     record = {
         "made": contents_in(project.top, accepted),
         "code": code,
@@ -666,13 +669,15 @@ def refusals(
     status = ("status", "--porcelain", "--untracked-files=all", "--", *project.code)
     if edited := git(project.checkout, *status):
         yield f"commit first: {edited}"
-    sides = {file: new for file, (_, new) in report.sides.items()}
-    if left := [*chain.from_iterable(new.wrong.get(LEFT, ()) for new in sides.values())]:
-        yield f"remove first what no rule makes: {' '.join(left)}"
-    for file in sorted(sides.keys() & made):
-        for kind, details in sides[file].wrong.items():
-            yield f"run snakemake again first: {kind}: {', '.join(details)}"
-    records = [report.new.records[file] for file in sides if file in report.new.records]
+    wrong = [
+        f"{kind}: {', '.join(details)}"
+        for file, (_, new) in report.sides.items()
+        if file in made or LEFT in new.wrong
+        for kind, details in new.wrong.items()
+    ]
+    if wrong:
+        yield f"run again or remove first: {'; '.join(dict.fromkeys(wrong))}"
+    records = [report.new.records[file] for file in report.found if file in made]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():
         yield f"commit first: git does not know {min(unknown)}"
     versions = sorted({json.dumps(record["versions"], sort_keys=True) for record in records})
@@ -730,8 +735,8 @@ def main(project: Project, arguments: list[str]) -> int:
         is_own = new.folder.resolve() == (project.top / "results").resolve()
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
         report = compare(project, old, new, checkout if len(runs) == 1 else None)
-        beside = paths[-1] if paths[-1].is_dir() else paths[-1].parent
-        return written(report, beside / "diff", sys.stdout)
+        folder = paths[-1] if paths[-1].is_dir() else paths[-1].parent
+        return written(report, folder / "diff", sys.stdout)
 
 
 def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
@@ -741,9 +746,8 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
     """
     made = [relative(results, file) for file in snakemake.input]
     checkout = Checkout(project, main_branch(project.checkout), snakemake.params.config, made)
-    old = run_in(project.top, "the reference")
-    new = run_in(results, "the results")
-    report = compare(project, old, new, checkout, snakemake.params.names)
+    reference, run = run_in(project.top, "the reference"), run_in(results, "the results")
+    report = compare(project, reference, run, checkout, snakemake.params.names)
     return written(report, results / "diff", sys.stderr if report.status else sys.stdout)
 
 

@@ -45,10 +45,9 @@ def reading(inputs: Any) -> Iterator[dict[str, dict[str, str]]]:
         yield before
     finally:
         now = sources(inputs)
-        changed = [key for kind in now for key in before[kind].items() - now[kind].items()]
+        changed = {key for kind in now for key, _ in before[kind].items() - now[kind].items()}
         if changed:
-            names = ", ".join(sorted(str(key) for key, _ in changed))
-            sys.exit(f"run again: {names} changed while this job ran")
+            sys.exit(f"run again: {', '.join(sorted(changed))} changed while this job ran")
 
 
 def content(file: str | Path) -> str:
@@ -106,8 +105,8 @@ def git(checkout: Path, *arguments: str) -> str:
 
 def tree(checkout: Path, commit: str, *paths: str) -> dict[str, str]:
     """The hashes of the files of a commit; empty if git does not know it."""
-    listed = git(checkout, "ls-tree", "-r", commit, *paths)
-    return {line.partition("\t")[2]: line.split()[2] for line in listed.splitlines()}
+    lines = git(checkout, "ls-tree", "-r", commit, *paths).splitlines()
+    return {line.partition("\t")[2]: line.split()[2] for line in lines}
 
 
 def main_branch(checkout: Path) -> dict[str, str]:

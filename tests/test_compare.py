@@ -889,19 +889,12 @@ def moved(data, name, share, largest):
     return other
 
 
-def differ(old, new):
-    """What differs in two datasets."""
-    return compare.differences(
-        *(compare.Side(ROOT, {}, each, str(id(each))) for each in (old, new))
-    )
-
-
 def test_the_reference_declares_a_tolerance_and_gives_its_scale():
     """A coordinate may be named tolerance."""
     data = xr.Dataset({"a": ("tolerance", [1.0], {"tolerance": 0.6, "floor": 0.1})})
     data["tolerance"] = ("tolerance", [5.0], {"tolerance": 0.1, "floor": 1.0})
     told = ["a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
-    assert differ(data, data.assign(a=data.a.copy(data=[2.0]))) == told
+    assert compare.differences("a.nc", data, data.assign(a=data.a.copy(data=[2.0]))) == told
 
 
 @pytest.mark.parametrize(
@@ -922,6 +915,6 @@ def test_every_number_of_the_reference_is_compared_with_its_tolerance(path):
             values = OTHERS[each.dtype.kind](each.values)
             cases = [(1.1, data.assign({name: (each.dims, values, each.attrs)}))]
         for share, other in cases:
-            lines = differ(data, other)
+            lines = compare.differences(path.name, data, other)
             is_named = any(line.startswith(f"{name} ") for line in lines)
             assert is_named == (abs(share) > 1 and not other.equals(data)), (name, share)

@@ -25,7 +25,7 @@ import re
 import shutil
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from functools import cache
 from itertools import takewhile, zip_longest
@@ -111,10 +111,9 @@ class Run:
         now = {file: known["made"][file] for file, known in self.records.items()}
         return [file for file, used in record["data"].items() if now.get(file, used) != used]
 
-    def files(self) -> set[str]:
-        """The files that the records name, and whatever is in the folder `figures`."""
-        there = [f"figures/{path.name}" for path in self.folder.glob("figures/[!.]*")]
-        return {*there}.union(self.records, *(record["data"] for record in self.records.values()))
+    def named(self) -> set[str]:
+        """The files that the records name."""
+        return {*self.records}.union(*(record["data"] for record in self.records.values()))
 
 
 def run_in(folder: Path, label: str) -> Run:
@@ -257,19 +256,16 @@ def content_of(path: Path) -> Any:
     return path.read_bytes().replace(b"\r\n", b"\n").decode().split("\n")
 
 
-def differences(old: Side, new: Side) -> list[str]:
-    """What differs in the contents of a file."""
-    if old.hash == new.hash:
-        return []
-    before, after = old.contents, new.contents
-    if isinstance(before, xr.Dataset):
-        return changes(about(before), about(after)) or values_that_differ(before, after)
-    if before is None:
+def differences(name: str, old: Any, new: Any) -> list[str]:
+    """What differs in the contents of a file, which are those of `content_of`."""
+    if isinstance(old, xr.Dataset):
+        return changes(about(old), about(new)) or values_that_differ(old, new)
+    if old is None:
         return ["the picture differs"]
     # An empty line follows the last line feed.
-    number = common(before, after)
-    pair = [[*lines, "the end of the text"][number] or "an empty line" for lines in (before, after)]
-    return [f"{new.path.name}, line {number + 1}: {excerpt(*pair)}"]
+    number = common(old, new)
+    pair = [[*lines, "the end of the text"][number] or "an empty line" for lines in (old, new)]
+    return [f"{name}, line {number + 1}: {excerpt(*pair)}"]
 
 
 def changes(old: Mapping, new: Mapping, above: str = "") -> list[str]:
@@ -445,7 +441,9 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
         return Finding("not comparable" if unknown else "differs", causes=wrong)
     is_data = isinstance(new.contents, xr.Dataset)
     try:
-        lines = differences(old, new)
+        lines = (
+            differences(new.path.name, old.contents, new.contents) if old.hash != new.hash else []
+        )
         # A dataset that was written anew has the same numbers. The reference is as accepted.
         is_anew = is_data and not lines and not (checkout and old.wrong)
         if wrong and not (is_anew and wrong.keys() == {EDITED}):
@@ -453,8 +451,9 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
         of_contents = of_dataset if is_data else of_product
         return of_contents(lines, old, new, checkout, differing)
     except Exception as error:  # Whatever damaged attributes, or drawing again, raise.
-        why = f"{new.path.name}: {one_line(error)}"
-        return Finding("not comparable", causes={UNREADABLE: [why]})
+        return Finding(
+            "not comparable", causes={UNREADABLE: [f"{new.path.name}: {one_line(error)}"]}
+        )
 
 
 def of_dataset(
@@ -562,8 +561,8 @@ class Report:
     @property
     def status(self) -> int:
         """The exit status: 1 if a file differs, else 2 if one, or none at all, can be compared."""
-        given = {STATUS[each.verdict] for each in self.found.values()} or {2}
-        return next(status for status in (1, 2, 0) if status in given)
+        found = {STATUS[each.verdict] for each in self.found.values()}
+        return 1 if 1 in found else max(found, default=2)
 
     def names(self, verdict: str) -> list[str]:
         """The figures, tables and texts with a verdict."""
@@ -592,11 +591,10 @@ def compare(
     Two runs are judged by their records: today's code and configuration do not matter. If a
     checkout is given, the old run is its reference, and the new one must be what it makes today.
     """
-    if checkout and checkout.made:
-        # Records of what no rule makes do not count.
-        known = {file: record for file, record in new.records.items() if file in checkout.made}
-        new = replace(new, records=known)
-    files = old.files().union(new.files(), checkout.made if checkout else ())
+    made = checkout.made if checkout else ()
+    files = old.named().union(made or new.named())
+    for run in (old, new):
+        files |= {f"figures/{path.name}" for path in run.folder.glob("figures/[!.]*")}
     sides = {
         file: (side(old, file), side(new, file, checkout))
         for file in sorted(files - {ACCEPTED})

@@ -9,6 +9,7 @@ Texts, integers and booleans agree only if they are equal.
 
 import json
 import os
+import platform
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from paper_replication.provenance import computed_on, contents_in, relative
+from paper_replication.provenance import contents_in, relative
 
 
 @dataclass(frozen=True)
@@ -152,6 +153,15 @@ def save(
     packed = {name: {"zlib": True} for name in large if complete[name].dtype.kind in "fib"}
     with whole(path) as unfinished:
         complete.to_netcdf(unfinished, engine="netcdf4", encoding=packed)
+
+
+def computed_on() -> str:
+    """Describe the platform and the library of linear algebra, which decide last digits.
+
+    The text is for the reader of a dataset, and is not compared.
+    """
+    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
+    return f"{platform.platform()}, {blas['name']} {blas['version']}"
 
 
 @contextmanager

@@ -15,8 +15,6 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries on which numbers and pictures depend."""
 
@@ -76,15 +74,6 @@ def versions() -> dict[str, str]:
     return {"python": platform.python_version()} | {
         name: metadata.version(name) for name in PACKAGES
     }
-
-
-def computed_on() -> str:
-    """Describe the platform and the library of linear algebra, which decide last digits.
-
-    The text is for the reader of a dataset, and is not compared.
-    """
-    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
-    return f"{platform.platform()}, {blas['name']} {blas['version']}"
 
 
 def git(checkout: Path, *arguments: str) -> str:

@@ -547,7 +547,9 @@ def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
     made = [file for file in MADE if "fig01" not in file]
     left = [project.top / f"results/figures/fig01.{kind}" for kind in ("png", "svg")]
     assert f"fig01: no rule makes it, remove it: {left[0]}" in lines(project, made=made)
-    with pytest.raises(ValueError, match=f"remove first what no rule makes: {left[0]} {left[1]}"):
+    with pytest.raises(
+        ValueError, match="; ".join(f"no rule makes it, remove it: {path}" for path in left)
+    ):
         accept(project, made)
     for path in left:
         path.unlink()
@@ -558,7 +560,6 @@ def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
     assert (project.top / "figures/mine.md").exists()
     unnamed = "mine: no record names: figures/mine.md in the reference; missing: figures/mine.md"
     assert lines(project, made=made)[0] == f"{unnamed} in the results"
-    assert report(project, made=made).status == 2
 
 
 PROCESSORS = (np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-12]))

@@ -12,7 +12,6 @@ import os
 import sys
 from pathlib import Path
 
-import yaml
 from snakemake.utils import min_version
 
 min_version("9.5")
@@ -21,78 +20,51 @@ min_version("9.5")
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
 from paper_replication.configuration import (
-    SHOWN_BY,
+    captions,
+    checked,
+    datasets,
     entries,
-    mistakes,
-    repeated_keys,
+    named,
+    names,
+    parameters,
     shown_as,
-    with_whole_numbers,
+    stages,
+    stop,
+    without_function,
 )
 
-# Scripts import the package of this checkout, whatever else is installed.
-os.environ.update(PYTHONPATH=str(TOP / "src"))
+# Scripts import the package of this checkout, whatever else is installed. A workflow that has this
+# one as a module may have folders of its own.
+FOLDERS = filter(None, [str(TOP / "src"), os.getenv("PYTHONPATH")])
+os.environ.update(PYTHONPATH=os.pathsep.join(FOLDERS))
 
 
 configfile: TOP / "config/config.yaml"
 
 
 # A mistake in the configuration ends the run before any job.
-schema = yaml.safe_load((TOP / "config/schema.yaml").read_text("utf-8"))
-found = [
-    f"{Path(file).name}, {line}"
-    for file in workflow.configfiles
-    for line in repeated_keys(Path(file).read_text("utf-8"))
-]
-if found := found or [*mistakes(config, schema)]:
-    sys.exit("\n".join(f"configuration: {line}" for line in found))
-config.update(with_whole_numbers(config, schema, schema["$defs"]))
+config.update(checked(config, TOP / "config/schema.yaml", workflow.configfiles))
 
 
 # Figures, tables and datasets are registered in config.yaml, each in the section of its stage.
 
-STAGES = {name: section for name, section in config.items() if isinstance(section, dict)}
 ENTRIES = entries(config)
 FIGURES = [name for name, entry in ENTRIES.items() if "caption" in entry]
 TABLES = [name for name, entry in ENTRIES.items() if entry.get("table")]
-DATASETS = [name for name in ENTRIES if name not in STAGES["schematics"]]
-
-
-def names(stage):
-    """The figures, tables and datasets of a stage."""
-    return [name for name in STAGES[stage] if name != "title"]
-
-
-def datasets(stage):
-    """The files of the datasets of a stage, by name."""
-    return {name: f"results/figures/{name}.nc" for name in names(stage)}
-
-
-def parameters(stage):
-    """The title and the parameters of each dataset of a stage."""
-    return {
-        name: {key: value for key, value in ENTRIES[name].items() if key not in SHOWN_BY}
-        for name in names(stage)
-    }
+COMPUTED = [stage for stage in stages(config) if stage != "schematics"]
+DATASETS = [name for stage in COMPUTED for name in names(config[stage])]
 
 
 def files(name):
     """The files of a figure, a table or a dataset."""
-    kinds = ["nc"] * (name in DATASETS)
-    kinds += shown_as(ENTRIES[name])
+    kinds = ["nc"] * (name in DATASETS) + shown_as(ENTRIES[name])
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
 # An entry without a function is found here, because a job would remove its stage's results first.
-for stage in STAGES:
-    for name in names(stage):
-        needed = {
-            f"workflow/scripts/{stage}.py": name in DATASETS,
-            "src/carbonelli2011/figures.py": name in FIGURES,
-            "src/carbonelli2011/tables.py": name in TABLES,
-        }
-        for file in [file for file, is_needed in needed.items() if is_needed]:
-            if f'"{name}":' not in (TOP / file).read_text("utf-8"):
-                sys.exit(f"configuration: {stage}.{name}: {file} needs a function for it")
+FUNCTIONS = {f"src/carbonelli2011/stages/{stage}.py": names(config[stage]) for stage in COMPUTED}
+FUNCTIONS |= {"src/carbonelli2011/figures.py": FIGURES, "src/carbonelli2011/tables.py": TABLES}
+stop(without_function(TOP, FUNCTIONS))
 
 
 # The code of the rules. A change of one of these files runs a rule again; a test compares the lists
@@ -109,13 +81,17 @@ def modules(*names):
     return checkout(*(path for name in names for path in sorted(TOP.glob(f"src/*/{name}.py"))))
 
 
+def stage(name):
+    """The module that computes the datasets of a stage, and the script of all stages."""
+    return checkout(f"src/carbonelli2011/stages/{name}.py", "workflow/scripts/stage.py")
+
+
 MODELS = checkout(*sorted(TOP.glob("src/bouncing_ball/[!_]*.py"))) + modules("datasets")
 PAPER = modules("paper")
 DRAWING = modules("figures", "curves", "paper", "drawing", "texts", "datasets")
-JUDGING = (
-    MODELS + PAPER + modules("claims", "measures", "tables", "verdicts", "judgements", "texts")
-)
-WRITING = JUDGING + modules("article", "index", "pages", "origins", "templates")
+JUDGING = MODELS + PAPER + modules("claims", "measures", "verdicts", "judgements", "texts")
+WRITING = JUDGING + modules("tables", "article", "index", "pages", "origins", "templates")
+# The stages that the study of choices computes again.
 VARIED = [
     "restitution_model",
     "apparent_restitution",
@@ -124,23 +100,13 @@ VARIED = [
     "error_thresholds",
     "time_histories",
 ]
-TEMPLATES = [
-    "paper.md",
-    "supplement.md",
-    "others.md",
-    "verdicts.md",
-    "article.html",
-    "figures.md",
-    "figures.html",
-    "claims.html",
-    "numbers.html",
-]
-
 PICTURES = checkout("workflow/scripts/draw.py") + DRAWING
-TABULATING = checkout("workflow/scripts/tables.py") + JUDGING
+TABULATING = checkout("workflow/scripts/tables.py") + JUDGING + modules("tables")
 CLAIMS = checkout("workflow/scripts/claims.py") + JUDGING
+CHOICES = checkout("workflow/scripts/choices.py") + JUDGING
+CHOICES += modules("choices", *(f"stages/{name}" for name in VARIED))
 TEXTS = checkout("workflow/scripts/article.py") + WRITING
-TEXTS += checkout(*(f"workflow/templates/{name}.j2" for name in TEMPLATES))
+TEXTS += checkout(*sorted(TOP.glob("src/carbonelli2011/templates/*.j2")))
 
 
 # The stages compute datasets.
@@ -149,157 +115,156 @@ TEXTS += checkout(*(f"workflow/templates/{name}.j2" for name in TEMPLATES))
 rule restitution_model:
     """Motions and orbits of the restitution model, Eqs. 1 to 9"""
     input:
-        code=checkout("workflow/scripts/restitution_model.py") + MODELS,
+        code=stage("restitution_model") + MODELS,
     output:
-        **datasets("restitution_model"),
+        **datasets(config["restitution_model"]),
         record="results/records/restitution_model.json",
     params:
-        entries=parameters("restitution_model"),
+        stage="restitution_model",
+        entries=parameters(config["restitution_model"]),
         settings={},
     log:
         "results/logs/restitution_model.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/restitution_model.py"
+        "workflow/scripts/stage.py"
 
 
 rule apparent_restitution:
     """Apparent restitution and other quantities of the orbits along the frequency ratio ϖ"""
     input:
-        code=checkout("workflow/scripts/apparent_restitution.py") + MODELS,
+        code=stage("apparent_restitution") + MODELS,
     output:
-        **datasets("apparent_restitution"),
+        **datasets(config["apparent_restitution"]),
         record="results/records/apparent_restitution.json",
     params:
-        entries=parameters("apparent_restitution"),
+        stage="apparent_restitution",
+        entries=parameters(config["apparent_restitution"]),
         settings={"release": config["release"]},
     log:
         "results/logs/apparent_restitution.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/apparent_restitution.py"
+        "workflow/scripts/stage.py"
 
 
 rule continuation:
     """Branches of n-T orbits along the amplitude Λ, with their bifurcations"""
     input:
-        code=checkout("workflow/scripts/continuation.py") + MODELS + PAPER,
+        code=stage("continuation") + MODELS + PAPER,
     output:
-        **datasets("continuation"),
+        **datasets(config["continuation"]),
         record="results/records/continuation.json",
     params:
-        entries=parameters("continuation"),
+        stage="continuation",
+        entries=parameters(config["continuation"]),
         settings={"release": config["release"], "largest_step": config["largest_step"]},
     log:
         "results/logs/continuation.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/continuation.py"
+        "workflow/scripts/stage.py"
 
 
 rule permanent_contact:
     """Thresholds of permanent contact along the frequency ratio ϖ"""
     input:
-        code=checkout("workflow/scripts/permanent_contact.py") + MODELS,
+        code=stage("permanent_contact") + MODELS,
     output:
-        **datasets("permanent_contact"),
+        **datasets(config["permanent_contact"]),
         record="results/records/permanent_contact.json",
     params:
-        entries=parameters("permanent_contact"),
+        stage="permanent_contact",
+        entries=parameters(config["permanent_contact"]),
         settings={"release": config["release"]},
     log:
         "results/logs/permanent_contact.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/permanent_contact.py"
+        "workflow/scripts/stage.py"
 
 
 rule error_thresholds:
     """Frequency ratios ϖ above which the restitution model is accurate enough"""
     input:
-        code=checkout("workflow/scripts/error_thresholds.py") + MODELS,
+        code=stage("error_thresholds") + MODELS,
     output:
-        **datasets("error_thresholds"),
+        **datasets(config["error_thresholds"]),
         record="results/records/error_thresholds.json",
     params:
-        entries=parameters("error_thresholds"),
+        stage="error_thresholds",
+        entries=parameters(config["error_thresholds"]),
         settings={"release": config["release"]},
     log:
         "results/logs/error_thresholds.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/error_thresholds.py"
+        "workflow/scripts/stage.py"
 
 
 rule validity:
     """Map of the stable orbits for which the advised frequency ratio is enough"""
     input:
-        code=checkout("workflow/scripts/validity.py") + MODELS + PAPER,
+        code=stage("validity") + MODELS + PAPER,
     output:
-        **datasets("validity"),
+        **datasets(config["validity"]),
         record="results/records/validity.json",
     params:
-        entries=parameters("validity"),
+        stage="validity",
+        entries=parameters(config["validity"]),
         settings={"release": config["release"]},
     log:
         "results/logs/validity.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/validity.py"
+        "workflow/scripts/stage.py"
 
 
 rule time_histories:
     """Heights of ball and table over a cycle"""
     input:
-        code=checkout("workflow/scripts/time_histories.py") + MODELS,
+        code=stage("time_histories") + MODELS,
     output:
-        **datasets("time_histories"),
+        **datasets(config["time_histories"]),
         record="results/records/time_histories.json",
     params:
-        entries=parameters("time_histories"),
+        stage="time_histories",
+        entries=parameters(config["time_histories"]),
         settings={"release": config["release"]},
     log:
         "results/logs/time_histories.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/time_histories.py"
+        "workflow/scripts/stage.py"
 
 
 rule printed_numbers:
     """Printed numbers under hypotheses on what the authors computed"""
     input:
-        code=checkout("workflow/scripts/printed_numbers.py")
-        + MODELS
-        + PAPER
-        + modules("measures", "verdicts"),
+        code=stage("printed_numbers") + MODELS + PAPER + modules("verdicts"),
     output:
-        **datasets("printed_numbers"),
+        **datasets(config["printed_numbers"]),
         record="results/records/printed_numbers.json",
     params:
-        entries=parameters("printed_numbers"),
+        stage="printed_numbers",
+        entries=parameters(config["printed_numbers"]),
         settings={},
     log:
         "results/logs/printed_numbers.log",
     conda:
         "workflow/envs/environment.yaml"
     script:
-        "workflow/scripts/printed_numbers.py"
+        "workflow/scripts/stage.py"
 
 
 # Figures and tables are made from their datasets, and texts from all of them.
-
-
-def captions(name):
-    """What `snakemake --report` shows beside a figure or a table."""
-    entry = ENTRIES[name]
-    return {"name": name, "title": entry["title"], "caption": entry.get("caption", "")}
 
 
 for name in FIGURES:
@@ -311,7 +276,11 @@ for name in FIGURES:
             data=[file for file in files(name) if file.endswith(".nc")],
             code=PICTURES,
         output:
-            png=report(f"results/figures/{name}.png", category="Figures", labels=captions(name)),
+            png=report(
+                f"results/figures/{name}.png",
+                category="Figures",
+                labels=captions(name, ENTRIES[name]),
+            ),
             svg=f"results/figures/{name}.svg",
             record=f"results/records/{name}.json",
         log:
@@ -332,7 +301,11 @@ for name in TABLES:
             code=TABULATING,
         output:
             md=f"results/figures/{name}.md",
-            csv=report(f"results/figures/{name}.csv", category="Tables", labels=captions(name)),
+            csv=report(
+                f"results/figures/{name}.csv",
+                category="Tables",
+                labels=captions(name, ENTRIES[name]),
+            ),
             record=f"results/records/{name}.json",
         log:
             f"results/logs/{name}.log",
@@ -364,7 +337,7 @@ rule choices:
     """Judge the claims again, with other choices of what cannot be read in the paper"""
     input:
         data=expand("results/figures/{name}.nc", name=DATASETS),
-        code=checkout(*(f"workflow/scripts/{name}.py" for name in ["choices", *VARIED])) + JUDGING,
+        code=CHOICES,
     output:
         nc="results/figures/choices.nc",
         record="results/records/choices.json",
@@ -416,25 +389,19 @@ rule all:
 # they are named.
 
 
-def named(wildcards):
-    """The figures, tables and datasets to compare, those on the command line; none for all.
-
-    Claims and texts follow from all datasets: with them, everything is compared.
-    """
-    found = set()
-    for target in {*workflow.dag_settings.targets} - {"diff"}:
-        found.update(names(target) if target in STAGES else [Path(target).stem])
-    return sorted(found) if found <= {*ENTRIES} else []
+def asked(wildcards):
+    """The figures, tables and datasets to compare, those on the command line; none for all."""
+    return named(config, workflow.dag_settings.targets)
 
 
 rule diff:
     """Compare the results with the reference"""
     localrule: True
     input:
-        lambda wildcards: [file for name in named(wildcards) for file in files(name)]
+        lambda wildcards: [file for name in asked(wildcards) for file in files(name)]
         or rules.all.input,
     params:
-        names=named,
+        names=asked,
         config=config,
     log:
         "results/logs/diff.log",

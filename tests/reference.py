@@ -1,10 +1,10 @@
 """What several tests read: the configuration, the datasets of the reference, and the stages."""
 
-import importlib.util
 import json
 import os
 from collections.abc import Mapping
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
@@ -38,14 +38,9 @@ def reference() -> dict[str, xr.Dataset]:
     return {path.stem: read(path) for path in FIGURES.glob("*.nc")}
 
 
-@cache
 def stage(name: str) -> ModuleType:
-    """The script of a stage as a module: its functions, without its run."""
-    path = ROOT / "workflow/scripts" / f"{name}.py"
-    specification = importlib.util.spec_from_file_location(name, path)
-    found = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(found)
-    return found
+    """The module of a stage."""
+    return import_module(f"carbonelli2011.stages.{name}")
 
 
 @cache

@@ -85,12 +85,12 @@ def change(clone: Path) -> None:
     computed, drawing, drawn, claim = code
     section = "apparent_restitution"
     insert(clone / "config/config.yaml", rf"^{section}:\n.*\n", indent(entry, "  "))
-    insert(clone / f"workflow/scripts/{section}.py", r"^STAGE = \{", computed)
+    insert(clone / f"src/carbonelli2011/stages/{section}.py", r"^STAGE = \{", computed)
     figures = clone / "src/carbonelli2011/figures.py"
     insert(figures, r"(?=^PLOTS\b)", f"{drawing}\n\n")
     insert(figures, r"^PLOTS\b.*\{", f"\n{drawn}")
     insert(clone / "src/carbonelli2011/claims.py", r"\Z", f"\n\n{claim}")
-    for name in ("metadata.yaml", "CITATION.cff", "workflow/templates/paper.md.j2"):
+    for name in ("metadata.yaml", "CITATION.cff", "src/carbonelli2011/templates/paper.md.j2"):
         content = (clone / name).read_text("utf-8")
         assert AUTHORS in content, name
         (clone / name).write_text(content.replace(AUTHORS, "Somebody Else"), "utf-8")

@@ -143,7 +143,7 @@ def test_a_further_curve_or_row_changes_no_sentence(data, place):
 
 def template(name: str) -> str:
     """A template without formulas, code, links and references, and numbers that may be typed."""
-    text = (ROOT / "workflow" / "templates" / f"{name}.j2").read_text("utf-8")
+    text = (article.TEMPLATES / f"{name}.j2").read_text("utf-8")
     text = text.partition("## References")[0]
     allowed = [
         r"(?s:<style>.*?</style>)",
@@ -178,7 +178,7 @@ def test_templates_have_no_typed_numbers(name):
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_expressions_of_templates_have_no_typed_numbers(name):
-    text = (ROOT / "workflow" / "templates" / f"{name}.j2").read_text("utf-8")
+    text = (article.TEMPLATES / f"{name}.j2").read_text("utf-8")
     expressions = re.findall(r"\{\{(.*?)\}\}|\{%(.*?)%\}", text, flags=re.DOTALL)
     bare = [re.sub(r'"[^"]*"', "", each) for pair in expressions for each in pair]
     # Digits of names, places in lists and numbers of decimals are no results.

@@ -1,28 +1,16 @@
 """The study of the choices: how it judges, and what its result has."""
 
-import importlib
 import json
-import sys
 
 import numpy as np
 import pytest
-from tests.reference import ROOT, reference
+from tests.reference import reference
 
+from carbonelli2011 import choices as study
 from carbonelli2011.claims import CLAIMS
 
 
-@pytest.fixture(scope="module")
-def study():
-    """The study as a module; it imports the scripts of the stages."""
-    folder = str(ROOT / "workflow/scripts")
-    sys.path.insert(0, folder)
-    try:
-        yield importlib.import_module("choices")
-    finally:
-        sys.path.remove(folder)
-
-
-def test_the_parameters_of_a_figure_change_no_verdict(study):
+def test_the_parameters_of_a_figure_change_no_verdict():
     """With fewer points, as datasets of other choices have."""
     compute = study.ALONG_RATIO["fig10"]
     for _, same in study.other_axes(reference()["fig10"], compute, [1.0], [1000.0]):
@@ -30,7 +18,7 @@ def test_the_parameters_of_a_figure_change_no_verdict(study):
         assert changed == study.verdicts(reference(), {"fig10"})
 
 
-def test_an_axis_ends_where_it_is_chosen_to_end(study):
+def test_an_axis_ends_where_it_is_chosen_to_end():
     compute = study.PERMANENT_CONTACT["fig11"]
     axes = dict(study.other_axes(reference()["fig11"], compute, [0.1, 2], [10, 100]))
     names = ["0.1 to 100", "2 to 100", "0.5 to 10", "0.5 to 100"]
@@ -41,14 +29,14 @@ def test_an_axis_ends_where_it_is_chosen_to_end(study):
     assert np.array(ends) == pytest.approx(np.transpose([first, [100, 100, 10, 100]]))
 
 
-def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it(study):
+def test_a_claim_is_judged_if_a_dataset_of_the_choice_decides_it():
     judged = study.verdicts(reference(), {"fig12"})
     assert [name for name, _ in judged] == [
         claim.name for claim in CLAIMS if "fig12" in claim.datasets
     ]
 
 
-def test_another_exponent_of_the_largest_frequency_ratio_judges_the_same_printed_ends(study):
+def test_another_exponent_of_the_largest_frequency_ratio_judges_the_same_printed_ends():
     table = {
         (1e3 if ratio == 1e4 else ratio, n): ends for (ratio, n), ends in study.TABLE_1.items()
     }
@@ -63,7 +51,7 @@ def test_another_exponent_of_the_largest_frequency_ratio_judges_the_same_printed
     assert [name for name, _ in there] == [name.replace("10000", "1000") for name, _ in here]
 
 
-def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):
+def test_what_the_supplement_says_of_the_choices_is_in_the_result():
     result = reference()["choices"]
     pairs = list(zip(result.choice.values, result.changes.values, strict=True))
     assert not any("dip at 1.2" in changes for _, changes in pairs)
@@ -73,7 +61,7 @@ def test_what_the_supplement_says_of_the_choices_is_in_the_result(study):
     assert {*beyond} == {"axis of Fig. 6", "axis of Fig. 16"}
 
 
-def test_a_run_with_other_parameters_has_no_choices(study):
+def test_a_run_with_other_parameters_has_no_choices():
     other = reference()["fig12"]
     given = json.loads(other.attrs["parameters"]) | {"n": 2}
     other = other.assign_attrs(parameters=json.dumps(given))

@@ -5,7 +5,6 @@ The project of these tests has one figure, one table of claims and two texts, an
 
 import base64
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -23,8 +22,10 @@ from tests.jobs import Named
 from tests.reference import ROOT
 
 from carbonelli2011 import variables
-from paper_replication import compare, datasets, provenance
+from paper_replication import compare, datasets
 from paper_replication.drawing import save_picture
+
+pytestmark = pytest.mark.usefixtures("git_of_its_own")
 
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
@@ -52,7 +53,8 @@ def note(project, rule, files, code, data=(), **parameters):
             input=SimpleNamespace(**inputs),
             output=Named(record=str(record), **made),
             params=SimpleNamespace(**parameters),
-        )
+        ),
+        project,
     )
 
 
@@ -61,31 +63,19 @@ def make(name, data, folder, form="{:.3g}"):
     figure = Figure(figsize=(1, 1))
     numbers = [] if data is None else data.max_height.values
     figure.text(0, 0.5, " ".join(form.format(each) for each in numbers))
-    save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
+    save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "a salt")
 
 
-@pytest.fixture(autouse=True, scope="module")
-def git_of_its_own():
-    """Git without the variables of a hook, and without the configuration of a user or a machine.
-
-    A hook exports the index and the repository of its commit. Tests that used them would commit
-    their own project into the user's repository.
-    """
-    asked = ["git", "rev-parse", "--local-env-vars"]
-    names = subprocess.run(asked, check=True, capture_output=True, text=True).stdout.split()
-    with pytest.MonkeyPatch.context() as patch:
-        for name in [*names, "GIT_DEFAULT_HASH", "GIT_TEMPLATE_DIR"]:
-            patch.delenv(name, raising=False)
-        patch.setenv("GIT_CONFIG_GLOBAL", os.devnull)
-        patch.setenv("GIT_CONFIG_NOSYSTEM", "1")
-        yield
-
-
-def project_in(top, patch):
-    for module in (provenance, compare):
-        patch.setattr(module, "CHECKOUT", top)
-    return compare.Project(
-        top, ("paper.md", "supplement.md"), make, ("src", "config"), variables.described
+def project_in(top):
+    return datasets.Project(
+        top=top,
+        checkout=top,
+        code=("src", "config"),
+        texts=("paper.md", "supplement.md"),
+        references="",
+        describe=variables.described,
+        described_in=("src/variables.py",),
+        make=make,
     )
 
 
@@ -96,22 +86,21 @@ def accepted(git_of_its_own, tmp_path_factory):
     for file in FILES:
         (top / file).parent.mkdir(parents=True, exist_ok=True)
         (top / file).write_text(f"{json.dumps(CONFIG)}\n", "utf-8")
-    with pytest.MonkeyPatch.context() as patch:
-        project = project_in(top, patch)
-        run(project)
-        git(top, "init", "-qb", "main")
-        (top / ".gitignore").write_text("results\n", "utf-8")
-        commit(top)
-        assert len(compare.accept(project, top / "results")) == 8
-        commit(top)
+    project = project_in(top)
+    run(project)
+    git(top, "init", "-qb", "main")
+    (top / ".gitignore").write_text("results\n", "utf-8")
+    commit(top)
+    assert len(compare.accept(project, top / "results")) == 8
+    commit(top)
     return top
 
 
 @pytest.fixture
-def project(accepted, tmp_path, monkeypatch):
+def project(accepted, tmp_path):
     """A copy for one test."""
     top = shutil.copytree(accepted, tmp_path / "checkout")
-    return project_in(top, monkeypatch)
+    return project_in(top)
 
 
 def git(top, *arguments):
@@ -142,15 +131,9 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
     judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
     code = [project.top / "src/model.py"]
     given = {"n": 1, "release": "force"} | given
-    datasets.save(
-        data,
-        folder / "figures/fig14.nc",
-        entries["fig14"]["title"],
-        given,
-        code,
-        variables.described,
-    )
-    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code, variables.described)
+    title = entries["fig14"]["title"]
+    datasets.save(data, folder / "figures/fig14.nc", title, given, code, project)
+    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code, project)
     project.make("fig14", data, folder / "figures")
     project.make("fig01", None, folder / "figures")
     # The page is no part of the reference.
@@ -194,7 +177,7 @@ def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp
         (first / name).write_text("a line\n", "utf-8")
     commit(first)
     hook = first / ".git/hooks/pre-commit"
-    test = f"'{sys.executable}' -m pytest -q --noconftest '{__file__}' -k test_equal_results"
+    test = f"'{sys.executable}' -m pytest -q '{__file__}' -k test_equal_results"
     # Once: tests that commit into this repository would start its hook again.
     hook.write_text(f'#!/bin/sh\n[ "$HOOK" ] || HOOK=1 exec {test}\n', "utf-8")
     hook.chmod(0o755)
@@ -389,7 +372,7 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     project, monkeypatch
 ):
-    other = provenance.versions() | {"matplotlib": "9.9"}
+    other = datasets.versions() | {"matplotlib": "9.9"}
     monkeypatch.setattr(datasets, "versions", lambda: other)
     drawn = replace(project, make=partial(make, form="height {:.3g}"))
     run(drawn)
@@ -561,7 +544,7 @@ def test_a_text_with_another_title_has_no_sentences(project):
 
 def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
     one = two_runs(project, tmp_path)[0]
-    other = provenance.versions() | {"numpy": "9.9"}
+    other = datasets.versions() | {"numpy": "9.9"}
     monkeypatch.setattr(datasets, "versions", lambda: other)
     edit(project, "src/model.py")
     run(project, height=(1.0, 2.5))

@@ -29,6 +29,10 @@ import pytest
             "apparent_restitution.fig06.cases.0.restitution: .nan must be a number",
         ),
         (
+            "error_thresholds: {fig99: {title: A new one, release: force}}",
+            "error_thresholds.fig99.release: a setting of the whole run, not of an entry",
+        ),
+        (
             "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",
             "mine.yaml, line 2: continuation stands twice: write its keys together",
         ),
@@ -59,9 +63,9 @@ def test_a_new_figure_needs_a_title_and_functions_and_may_have_any_parameters(fr
     text = "permanent_contact: {fig99: {title: A new one, caption: With a caption, anything: 1}}"
     (fresh.path / "mine.yaml").write_text(text, "utf-8")
     command = ["-n", "--cores", "1", "--configfile", "mine.yaml", "--", "fig99"]
-    for file in ("workflow/scripts/permanent_contact.py", "src/carbonelli2011/figures.py"):
-        line = f"configuration: permanent_contact.fig99: {file} needs a function for it"
-        assert fresh.run(*command)[0] == line
+    for file in ("src/carbonelli2011/stages/permanent_contact.py", "src/carbonelli2011/figures.py"):
+        line = f"configuration: fig99: {file} needs a function for it"
+        assert fresh.run(*command)[0].splitlines()[0] == line
         fresh.edit(file, '"fig11": fig11', '"fig11": fig11, "fig99": fig11')
     status, printed = fresh.run(*command)
     assert status == 0 and "results/figures/fig99.png" in printed, printed

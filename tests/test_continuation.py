@@ -5,8 +5,8 @@ import pytest
 from tests import independent
 
 from bouncing_ball import continuation, restitution
-from bouncing_ball.continuation import MERGES, NoOrbit
-from bouncing_ball.orbits import OBSERVABLES, Family
+from bouncing_ball.continuation import MERGES
+from bouncing_ball.orbits import OBSERVABLES, Family, NoOrbit
 from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,
@@ -310,7 +310,7 @@ def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
 )
 def test_a_walk_ends_where_its_orbits_cease(n, r, release, amplitude):
     ratios = np.geomspace(0.7, 100, 60)
-    contact = Contact(ratios, damping_ratio(r, release), release)
+    contact = Contact.of_restitution(ratios, r, release)
     walks = [continuation.stable_orbits(n, r, amplitude, ratios, release)[:, 0]]
     for kind in continuation.SPECIAL[:2]:
         walks.append(continuation.bifurcations(n, kind, contact)[:, 0])
@@ -325,7 +325,7 @@ def test_a_walk_ends_where_its_orbits_cease(n, r, release, amplitude):
 
 
 def test_the_tangent_turns_by_at_most_14_degrees_in_a_step():
-    family = Family(1, Contact(2.0, damping_ratio(0.85)))
+    family = Family(1, Contact.of_restitution(2.0, 0.85))
     start = continuation.stable_orbits(1, 0.85, 1.3, 2.0)[:, 0, 0]
     path, _ = continuation._follow(family, start, 1.3, largest_step=5.0)
     _, _, vectors = np.linalg.svd(np.moveaxis(family.jacobian(path), -1, 0))
@@ -335,7 +335,7 @@ def test_the_tangent_turns_by_at_most_14_degrees_in_a_step():
 
 
 def test_the_corrector_gives_nan_where_it_fails_and_only_there():
-    family = Family(1, Contact(10.0, damping_ratio(0.85)))
+    family = Family(1, Contact.of_restitution(10.0, 0.85))
     guess = continuation.stiff_guess(family, 0.25, 0.8)
     # There is no orbit with the first amplitude. The phase is not defined at the last one, so that
     # the matrix is singular.

@@ -3,14 +3,15 @@
 import json
 import os
 import platform
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from carbonelli2011.variables import described
-from paper_replication import datasets, provenance
-from paper_replication.datasets import Variable
+from paper_replication import datasets
+from paper_replication.datasets import Project, Variable
 
 # What `git hash-object` says of "pass" and a line end.
 PASS = "2ae28399f5fda2dfb1b04405f4a3b4895f5fac1e"
@@ -23,14 +24,18 @@ def small():
     )
 
 
-def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkeypatch):
+@pytest.fixture
+def project(tmp_path):
+    """A replication in this folder, without a reference."""
+    return Project(tmp_path, tmp_path, (), (), "", described, ("variables.py",), print)
+
+
+def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_path):
     path = tmp_path / "new" / "fig02.nc"
-    monkeypatch.setattr(provenance, "CHECKOUT", tmp_path)
     code = tmp_path / "code.py"
     code.write_bytes(b"pass\r\n")
-    datasets.save(
-        small, path, "Figure 2", {"n": np.int64(1), "range": {"max": 2.0}}, [code], described
-    )
+    given = {"n": np.int64(1), "range": {"max": 2.0}}
+    datasets.save(small, path, "Figure 2", given, [code], project)
     saved = datasets.read(path)
     xr.testing.assert_equal(saved, small)
     assert saved.phase.attrs == {
@@ -50,14 +55,13 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, tmp_path, monkey
     assert small.phase.attrs == {}
 
 
-def test_a_variable_without_description_is_refused(small, tmp_path):
+def test_a_variable_without_description_is_refused(small, project, tmp_path):
     with pytest.raises(ValueError, match=r"^fig02.nc: describe height, speed in variables.py$"):
-        datasets.save(
-            small.assign(height=1.0, speed=2.0), tmp_path / "fig02.nc", "", {}, [], described
-        )
+        unknown = small.assign(height=1.0, speed=2.0)
+        datasets.save(unknown, tmp_path / "fig02.nc", "", {}, [], project)
 
 
-def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
+def test_a_failed_save_leaves_the_old_file(small, project, tmp_path, monkeypatch):
     path = tmp_path / "fig02.nc"
     path.write_text("old")
 
@@ -66,18 +70,17 @@ def test_a_failed_save_leaves_the_old_file(small, tmp_path, monkeypatch):
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="disk full"):
-        datasets.save(small, path, "", {}, [], described)
+        datasets.save(small, path, "", {}, [], project)
     assert path.read_text() == "old"
 
 
-def test_a_description_belongs_to_its_dataset(small, tmp_path):
+def test_a_description_belongs_to_its_dataset(small, project, tmp_path):
     """A variable of one dataset has none in another; another package gives its own."""
     named = small.assign(impacts=3)
-    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [], described)
+    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [], project)
     with pytest.raises(ValueError, match="describe impacts in"):
-        datasets.save(named, tmp_path / "fig02.nc", "", {}, [], described)
+        datasets.save(named, tmp_path / "fig02.nc", "", {}, [], project)
     own = {"n": Variable("order"), "phase": Variable("angle"), "stable": Variable("whether")}
-    datasets.save(
-        small, tmp_path / "mine.nc", "", {}, [], lambda name: own if name == "mine" else {}
-    )
+    mine = replace(project, describe=lambda name: own if name == "mine" else {})
+    datasets.save(small, tmp_path / "mine.nc", "", {}, [], mine)
     assert datasets.read(tmp_path / "mine.nc").phase.long_name == "angle"

@@ -19,7 +19,7 @@ import yaml
 from tests import independent
 from tests.reference import CONFIG, ENTRIES, ROOT, reference, stage
 
-from bouncing_ball.continuation import NoOrbit
+from bouncing_ball.orbits import NoOrbit
 from carbonelli2011 import article, figures, index, paper, tables
 from carbonelli2011.claims import CLAIMS, CONTACT_OF_FIG11, judge, table1_ends
 from carbonelli2011.figures import Empty
@@ -29,7 +29,7 @@ from paper_replication.datasets import computed, other_parameters
 from paper_replication.verdicts import VERDICTS, answer
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema.yaml").read_text("utf-8"))
-STAGES = [name for name in CONFIG if (ROOT / f"workflow/scripts/{name}.py").exists()]
+STAGES = [name for name in CONFIG if (ROOT / f"src/carbonelli2011/stages/{name}.py").exists()]
 COARSE = {"samples": 7, "points": 15, "places": 4, "impacts": 256}
 """Sizes of grids. Their upper bounds are not tried, because they take minutes."""
 
@@ -317,7 +317,7 @@ def assert_texts_are_true(changed: dict) -> None:
         return
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(texts, "fixed", finite)
-        filters = templates.environment(templates.TEMPLATES, True).filters
+        filters = templates.environment(article.TEMPLATES, True).filters
         patch.setitem(filters, "fixed", finite)
         for name in ("paper", "supplement"):
             if changed.keys() & named_in(name):

@@ -6,9 +6,8 @@ from scipy.optimize import brentq, minimize_scalar
 from tests import independent
 
 from bouncing_ball import errors, restitution
-from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.errors import Error
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.spring_damper import (
     RELEASES,
     Contact,

@@ -506,7 +506,7 @@ def saved(folder, name, settings=None):
     """The bytes of both pictures of a figure."""
     paths = folder / f"{name}.png", folder / f"{name}.svg"
     with matplotlib.rc_context(settings):
-        drawing.save_picture(figures.draw(name, *data_of(name)), *paths)
+        drawing.save_picture(figures.draw(name, *data_of(name)), *paths, curves.SALT)
     return [path.read_bytes() for path in paths]
 
 

@@ -9,9 +9,9 @@ import xarray as xr
 from tests.reference import ENTRIES, FIGURES, TOP, reference
 
 from carbonelli2011 import article, index, tables
+from carbonelli2011 import pages as text_pages
 from carbonelli2011.claims import judge
 from paper_replication import judgements, origins
-from paper_replication import pages as text_pages
 
 CAPTIONS = {name: entry["caption"] for name, entry in ENTRIES.items() if "caption" in entry}
 

@@ -12,13 +12,23 @@ import xarray as xr
 import yaml
 from scipy.optimize import brentq, minimize_scalar
 from tests import independent
-from tests.reference import CONFIG, ROOT, reference, stage, table_with_another_row
+from tests.reference import CONFIG, ROOT, reference, table_with_another_row
 
 from bouncing_ball import errors, orbits
-from bouncing_ball.continuation import NoOrbit
+from bouncing_ball.orbits import NoOrbit
 from bouncing_ball.spring_damper import RELEASES
 from carbonelli2011 import claims, index
 from carbonelli2011.paper import QUANTITIES
+from carbonelli2011.stages import (
+    apparent_restitution,
+    continuation,
+    error_thresholds,
+    permanent_contact,
+    printed_numbers,
+    restitution_model,
+    time_histories,
+    validity,
+)
 from paper_replication import texts
 from paper_replication.verdicts import against_print
 
@@ -67,7 +77,7 @@ def quantities(n, r, ratio, release, duration):
 
 def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
     given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "periods": 2, "samples": 401}
-    data = stage("restitution_model").STAGE["fig02"](given)
+    data = restitution_model.STAGE["fig02"](given)
     impact = 2 * np.pi * given["n"]
     table_speed = given["amplitude"] * np.cos(float(data.phase))
     # Eq. 2, with the velocity before the impact from a fall over the whole flight.
@@ -84,7 +94,7 @@ def test_the_ball_of_figure_2_obeys_the_law_of_the_impact():
 
 def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
     given = {"n": [1, 2, 3], "restitution": 0.85, "amplitude_max": 2.0, "points": 41}
-    data = stage("restitution_model").STAGE["fig03"](given)
+    data = restitution_model.STAGE["fig03"](given)
     # Eq. 6: X = Λ cos φ is nπ(1 - r)/(1 + r) on a whole branch, at equal steps of Λ sin φ.
     x = data.n * np.pi * 0.15 / 1.85
     xr.testing.assert_allclose((data.amplitude * np.cos(data.phase) / x), 0 * data.amplitude + 1)
@@ -97,7 +107,7 @@ def test_the_branches_of_figure_3_are_orbits_up_to_the_largest_amplitude():
 
 def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
     given = registered("restitution_model", "three_balls", impacts=256)
-    data = stage("restitution_model").STAGE["three_balls"](given)
+    data = restitution_model.STAGE["three_balls"](given)
     r = given["restitution"]
     assert data.amplitude.values.tolist() == given["amplitude"]
     for ball in (data.sel(amplitude=amplitude) for amplitude in given["amplitude"]):
@@ -137,7 +147,7 @@ def test_the_three_balls_move_by_independent_flights_and_repeat_as_recorded():
 
 def test_the_direct_map_has_the_multipliers_of_eq_8_and_separates_neighbours():
     given = registered("restitution_model", "three_balls")
-    data = stage("restitution_model").STAGE["three_balls"](given)
+    data = restitution_model.STAGE["three_balls"](given)
     r = given["restitution"]
     # Before the period doubling of Eq. 8 the multipliers are complex, and their product is r.
     assert data.direct_exponent.values[0] == pytest.approx(np.log(r) / 2, abs=1e-3)
@@ -171,7 +181,7 @@ def test_the_direct_map_has_the_multipliers_of_eq_8_and_separates_neighbours():
 def test_the_orbits_along_the_frequency_ratio_are_those_of_the_closed_form(name, release):
     ratios = {"min": 2.0, "max": 1000.0, "samples": 4}
     given = registered("apparent_restitution", name, frequency_ratio=ratios)
-    data = stage("apparent_restitution").STAGE[name](given, release)
+    data = apparent_restitution.STAGE[name](given, release)
     if "cases" in given:
         cases = [(case["restitution"], case["amplitude"]) for case in given["cases"]]
     else:
@@ -194,7 +204,7 @@ def test_figures_10_and_13_have_the_limits_of_a_stiff_contact():
     for name in ("fig10", "fig13"):
         ratios = {"min": 1e4, "max": 1e5, "samples": 2}
         given = registered("apparent_restitution", name, frequency_ratio=ratios)
-        data = stage("apparent_restitution").STAGE[name](given, "displacement")
+        data = apparent_restitution.STAGE[name](given, "displacement")
         for quantity in ("phase", "bounce_velocity", "impact_velocity"):
             off = (data[quantity] - data[f"restitution_{quantity}"]).isel(frequency_ratio=[0, -1])
             # They differ by a term in 1/ϖ.
@@ -205,7 +215,7 @@ def test_figures_10_and_13_have_the_limits_of_a_stiff_contact():
 def test_figure_13_has_labels_at_round_frequency_ratios_within_its_axis():
     ratios = {"min": 1.0, "max": 1000.0, "samples": 5}
     given = registered("apparent_restitution", "fig13", frequency_ratio=ratios)
-    data = stage("apparent_restitution").STAGE["fig13"](given, "displacement")
+    data = apparent_restitution.STAGE["fig13"](given, "displacement")
     labelled = data.frequency_ratio.values[data.labelled.values]
     assert labelled.tolist() == [1, 2, 5, 10, 100, 1000]
     others = data.frequency_ratio.values[~data.labelled.values]
@@ -219,7 +229,7 @@ def test_figure_13_has_labels_at_round_frequency_ratios_within_its_axis():
 def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
     """A stiff and a compliant contact, whose branches have different numbers of them."""
     given = registered("continuation", "fig08", frequency_ratio=[10.0, 2.0], points=61)
-    data = stage("continuation").STAGE["fig08"](given, "displacement", 0.2)
+    data = continuation.STAGE["fig08"](given, "displacement", 0.2)
     zeta = independent.restitution_to_damping(given["restitution"])
     assert float(data.damping_ratio) == pytest.approx(zeta)
     counts = []
@@ -259,7 +269,7 @@ def test_branches_have_the_special_points_of_each_contact_and_nothing_else():
 def test_a_contact_without_orbits_has_a_row_of_nan_with_the_reason():
     """The saddle-node of the 5-T orbits rises on compliant contacts beyond this Λ."""
     given = {"n": 5, "restitution": 0.65, "amplitude_max": 3.5, "points": 5}
-    compute = stage("continuation").STAGE["fig08"]
+    compute = continuation.STAGE["fig08"]
     with np.errstate(invalid="ignore"):
         data = compute(given | {"frequency_ratio": [3.0, 1.0]}, "displacement", 0.2)
     reason = "no 5-T orbit is found at Λ = 3.5 and ϖ = 1: give a larger Λ or ϖ"
@@ -273,7 +283,7 @@ def test_a_contact_without_orbits_has_a_row_of_nan_with_the_reason():
 
 def test_figure_15_has_the_orbits_of_the_restitution_model():
     given = registered("continuation", "fig15", points=15)
-    data = stage("continuation").STAGE["fig15"](given, "displacement", 0.2)
+    data = continuation.STAGE["fig15"](given, "displacement", 0.2)
     n = given["n"]
     r = given["restitution"]
     x = n * np.pi * (1 - r) / (1 + r)
@@ -327,7 +337,7 @@ def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
     for other in ({"restitution": 0.65}, {"release": "force"}):
         few = {"n": [1], "restitution": 0.85, "frequency_ratio": [10.0], "release": "displacement"}
         alone = few | other
-        data = stage("continuation").table1(alone, alone["release"])
+        data = continuation.table1(alone, alone["release"])
         assert np.isnan(data.printed).all()
     # The restitution model, to which the stiffest row tends.
     x = data.n * np.pi * 0.15 / 1.85
@@ -341,7 +351,7 @@ def test_table_1_has_the_bifurcations_of_the_closed_form_and_the_printed_ends():
 def test_an_end_of_table_1_that_no_ball_follows_is_marked():
     """At r = 0.1, n = 2, ϖ = 0.7 the orbit touches the table before its landing."""
     given = registered("continuation", "table1", n=[2], restitution=0.1, frequency_ratio=[0.7])
-    data = stage("continuation").STAGE["table1"](given, "displacement").squeeze()
+    data = continuation.STAGE["table1"](given, "displacement").squeeze()
     doubling = data.sel(bound="period doubling")
     assert float(doubling.computed) == pytest.approx(7.62590, abs=1e-5)
     assert not doubling.admissible
@@ -370,7 +380,7 @@ def threshold_of_permanent_contact(ratio, zeta, release):
 def test_the_thresholds_of_permanent_contact_are_those_of_the_steady_oscillation(release):
     ratios = {"min": 0.5, "max": 100.0, "samples": 21}
     given = registered("permanent_contact", "fig16", frequency_ratio=ratios)
-    data = stage("permanent_contact").STAGE["fig16"](given, release)
+    data = permanent_contact.STAGE["fig16"](given, release)
     zeta = independent.restitution_to_damping(given["restitution"], release)
 
     def threshold(ratio):
@@ -387,7 +397,7 @@ def test_the_thresholds_of_permanent_contact_are_those_of_the_steady_oscillation
     assert float(data.minimum_threshold) == pytest.approx(lowest.fun)
     assert float(data.minimum_frequency_ratio) == pytest.approx(lowest.x, abs=1e-4)
     same = given | {"restitution": 0.65}
-    fig11 = stage("permanent_contact").STAGE["fig11"](same, release)
+    fig11 = permanent_contact.STAGE["fig11"](same, release)
     xr.testing.assert_equal(fig11, data[[*fig11]])
 
 
@@ -397,7 +407,7 @@ def test_the_thresholds_of_permanent_contact_are_those_of_the_steady_oscillation
 def test_figure_14_has_the_heights_of_the_closed_form_and_the_threshold_of_their_error():
     ratios = {"min": 10.0, "max": 1000.0, "samples": 5}
     given = registered("error_thresholds", "fig14", frequency_ratio=ratios)
-    data = stage("error_thresholds").STAGE["fig14"](given, "displacement")
+    data = error_thresholds.STAGE["fig14"](given, "displacement")
     r = given["restitution"]
     amplitude = given["amplitude"]
     x = np.pi * (1 - r) / (1 + r)
@@ -436,7 +446,7 @@ def test_each_threshold_is_the_last_crossing_of_its_error_and_of_its_tolerance()
     ratios = {"min": 1.0, "max": 1e4, "samples": 13}
     changes = {"frequency_ratio": ratios, "tolerances": [0.1, 0.01]}
     given = registered("error_thresholds", "thresholds", **changes)
-    data = stage("error_thresholds").STAGE["thresholds"](given, "displacement")
+    data = error_thresholds.STAGE["thresholds"](given, "displacement")
     assert data.quantity.values.tolist() == given["quantities"]
     found = data.error_threshold.where(data.threshold_status == "found")
     assert int(found.notnull().sum()) > 10
@@ -462,7 +472,7 @@ def test_each_threshold_is_the_last_crossing_of_its_error_and_of_its_tolerance()
 @pytest.mark.parametrize("release", RELEASES)
 def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     given = {"n": 2, "restitution": 0.65, "amplitude": 1.8, "frequency_ratio": 20.0}
-    data = stage("time_histories").STAGE["fig07"](given | {"samples": 800}, release)
+    data = time_histories.STAGE["fig07"](given | {"samples": 800}, release)
     zeta = independent.restitution_to_damping(0.65, release)
     state = float(data.phase), float(data.impact_velocity)
     moved = independent.cycle(20.0, zeta, release, 1.8, *state)
@@ -481,7 +491,7 @@ def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
 
 def test_the_heights_of_figure_12_are_those_of_the_closed_form_with_both_ends_of_each_contact():
     given = registered("time_histories", "fig12", samples=101)
-    data = stage("time_histories").STAGE["fig12"](given, "displacement")
+    data = time_histories.STAGE["fig12"](given, "displacement")
     zeta = independent.restitution_to_damping(given["restitution"])
     for one in (data.sel(frequency_ratio=ratio) for ratio in given["frequency_ratio"]):
         ratio, phase, duration = (
@@ -510,7 +520,7 @@ def test_the_heights_of_figure_12_are_those_of_the_closed_form_with_both_ends_of
 # The printed numbers under hypotheses
 
 
-NUMBERS = stage("printed_numbers")
+NUMBERS = printed_numbers
 
 
 @pytest.fixture(scope="module")
@@ -621,7 +631,7 @@ def test_the_quantities_of_the_configuration_are_those_that_are_computed_and_nam
 
 
 def test_a_further_quantity_is_that_of_the_figure_that_asks_for_it():
-    apparent = stage("apparent_restitution")
+    apparent = apparent_restitution
     given = registered("apparent_restitution", "fig10")
     given["frequency_ratio"] = {"min": 10.0, "max": 100.0, "samples": 3}
     ratios = np.array([10.0, 100.0])
@@ -648,20 +658,20 @@ def few(**changed):
 
 def test_shares_of_linear_functions():
     place = np.array([0.0, 0.25, 1.0])
-    share = stage("validity").positive_share
+    share = validity.positive_share
     # Positive from 0 to 0.125, and from 0.625 on.
     assert share(np.array([1.0, -1.0, 1.0]), place) == pytest.approx(0.5)
     assert share(np.array([0.0, 0.0, 1.0]), place) == pytest.approx(0.75)
     assert share(np.array([1.0, 1.0, 1.0]), place) == 1
     r = np.array([0.2, 0.3, 0.7])
-    area = stage("validity").positive_area
+    area = validity.positive_area
     column = r[:, np.newaxis]
     # The edge crosses r at 0.45 for the place 0 and at 0.4 for the place 1.
     assert area(0.45 - column - 0.05 * place, r, place) == pytest.approx(0.45)
     assert area(column + 0.05 * place - 0.45, r, place) == pytest.approx(0.55)
     assert area(column + 0 * place, r, place) == 1
     assert area(-column + 0 * place, r, place) == 0
-    last = stage("validity").last_positive
+    last = validity.last_positive
     assert last(np.array([1.0, -1.0, -3.0]), r) == pytest.approx(0.25)
     assert last(np.array([-1.0, 1.0, -3.0]), r) == pytest.approx(0.4)
     assert last(np.array([-1.0, -1.0, 0.1]), r) == 0.7
@@ -676,7 +686,7 @@ def test_the_failures_of_known_errors():
     one = -0.01 * (1 - log + np.log(0.3) - np.sqrt(place))
     errors = np.stack([one, one + 0.02])[:, np.newaxis, ..., np.newaxis] * [1.0, 0.5]
     errors[1, 0, 3, 2, 1] = np.nan
-    share, mean, up_to = stage("validity").failures(errors, r, place, 0.01)
+    share, mean, up_to = validity.failures(errors, r, place, 0.01)
     # |error| > 0.01 where √place < ln(0.3/r): up to r = 0.3 for the place 0.
     assert up_to[0, 0] == pytest.approx(0.3, abs=1e-5)
     exact = np.minimum(np.maximum(np.log(0.3 / r), 0) ** 2, 1)
@@ -687,7 +697,7 @@ def test_the_failures_of_known_errors():
 
 
 def test_the_shares_of_the_validity_map_are_those_of_its_errors():
-    data = stage("validity").validity_map(few(), "displacement")
+    data = validity.validity_map(few(), "displacement")
     fails = (data.stiff_error > 0.01).any("place")
     assert (data.failing_share > 0).where(fails, True).all()
     # At the advised ratio or above an error exceeds the tolerance if more than it is needed.
@@ -705,14 +715,14 @@ def printed_shares(data):
 def test_each_printed_digit_of_the_validity_map_is_that_of_grids_with_half_of_the_points():
     halves = {name: MAP[name] | {"samples": 16} for name in ("restitution", "frequency_ratio")}
     given = MAP | halves | {"places": 13}
-    data = stage("validity").validity_map(given, "displacement")
+    data = validity.validity_map(given, "displacement")
     data.attrs["parameters"] = json.dumps(given)
     assert printed_shares(data) == printed_shares(reference()["validity_map"])
 
 
 def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
     given = few(frequency_ratio={"min": 10.0, "max": 1000.0, "samples": 21})
-    data = stage("validity").validity_map(given, "displacement")
+    data = validity.validity_map(given, "displacement")
     absent = data.enough_from.isnull().sum(["restitution", "place"])
     assert (data.not_reached == absent).all()
     # The height of the 1-T orbits beside their saddle-nodes, at small r.
@@ -722,20 +732,18 @@ def test_orbits_that_need_more_than_the_scan_are_counted_and_have_no_answer():
 
 def test_the_map_of_the_force_release_has_the_restitutions_of_its_contacts():
     given = few(n=[1], restitution={"min": 0.05, "max": 0.95, "samples": 16})
-    data = stage("validity").validity_map(given, "force")
+    data = validity.validity_map(given, "force")
     assert data.restitution.min() > np.exp(-2) and data.sizes["restitution"] == 14
     assert not data.failing_mean.isnull().any() and not data.doubled_mean.isnull().any()
     # Known from another code.
     assert data.failing_up_to.sel(quantity="summit").item() == pytest.approx(0.53, abs=0.01)
     with pytest.raises(NoOrbit, match=r"restitution = .*0\.1353"):
-        stage("validity").validity_map(
-            few(restitution={"min": 0.05, "max": 0.1, "samples": 7}), "force"
-        )
+        validity.validity_map(few(restitution={"min": 0.05, "max": 0.1, "samples": 7}), "force")
 
 
 def test_both_ends_of_the_range_are_those_of_the_contact():
     given = few(n=[2], restitution={"min": 0.2, "max": 0.8, "samples": 2})
-    data = stage("validity").validity_map(given, "displacement")
+    data = validity.validity_map(given, "displacement")
     for r in data.restitution.values:
         zeta = independent.restitution_to_damping(r)
         node = end_of_range(2, 100.0, zeta, "displacement", "saddle-node")[0]

@@ -1,48 +1,37 @@
 """The graph of the workflow: its targets, and what runs again after a change.
 
-The scripts only write their outputs here (see conftest): the rules are tested, and no numbers.
+The scripts only write their outputs here (see checkout.py): the rules are tested, and no numbers.
 """
 
 import ast
 import sys
+import tomllib
 from inspect import signature
 from modulefinder import ModuleFinder
 from pathlib import Path
 
 import pytest
-import yaml
-from tests.conftest import Checkout
-from tests.reference import stage
+from tests.checkout import Checkout
+from tests.reference import CONFIG, ROOT, stage
 
-ROOT = Path(__file__).resolve().parents[1]
-CONFIG = yaml.safe_load((ROOT / "config/config.yaml").read_text("utf-8"))
-STAGES = {name: section for name, section in CONFIG.items() if isinstance(section, dict)}
-COMPUTED = STAGES.keys() - {"schematics"}
-ENTRIES = {
-    name: entry for section in STAGES.values() for name, entry in section.items() if name != "title"
-}
+from paper_replication.configuration import entries, stages
+
+COMPUTED = stages(CONFIG).keys() - {"schematics"}
+ENTRIES = entries(CONFIG)
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}
-NO_NUMBER = {
-    "carbonelli2011/variables.py",
-    "paper_replication/provenance.py",
-}
+NO_NUMBER = {"carbonelli2011/variables.py", "paper_replication/provenance.py"}
 """Modules that decide no number: they are in no list of code."""
-
-
-def made(folder: Path) -> set[str]:
-    """The results in a folder of a run."""
-    base = folder / "results"
-    files = {str(path.relative_to(base)) for path in base.rglob("*") if path.is_file()}
-    return {name for name in files if not name.startswith(("logs/", "records/"))}
+MODELS = {f"bouncing_ball/{path.name}" for path in (ROOT / "src/bouncing_ball").iterdir()}
+MODELS |= {"paper_replication/datasets.py", "scripts/stage.py"}
 
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
     files = {f"figures/{path.name}" for path in (ROOT / "figures").iterdir()}
     pages = {f"{name}.html" for name in ("index", "claims", "paper", "supplement", "numbers")}
     texts = {"paper.md", "supplement.md", *pages}
-    results = made(complete.path)
+    results = complete.made()
     assert files - {"figures/accepted.json"} | texts <= results
     # A figure that is new is not accepted yet.
     assert {Path(file).stem for file in results - files - texts} <= ENTRIES.keys()
@@ -65,7 +54,7 @@ def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.planned("error_thresholds", "diff") == stage
     assert fresh.run("--cores", "1", "fig14")[0] == 0
     files = {f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")}
-    assert made(fresh.path) == files | {"figures/thresholds.nc"}
+    assert fresh.made() == files | {"figures/thresholds.nc"}
 
 
 def test_every_rule_is_listed_with_what_it_makes(fresh):
@@ -80,12 +69,15 @@ def test_a_run_in_another_folder_has_its_own_results(fresh, tmp_path):
     (mine / "mine.yaml").write_text("error_thresholds: {fig14: {restitution: 0.7}}", "utf-8")
     command = ["--directory", str(mine), "--configfile", str(mine / "mine.yaml"), "--", "fig14"]
     assert fresh.run("--cores", "1", *command)[0] == 0
-    assert "figures/fig14.png" in made(mine) and not (fresh.path / "results").exists()
+    assert "figures/fig14.png" in Checkout(mine).made() and not (fresh.path / "results").exists()
 
 
-def test_another_workflow_has_it_as_a_module_with_a_prefix(fresh, tmp_path):
+def test_another_workflow_has_it_as_a_module_with_a_prefix(fresh, tmp_path, monkeypatch):
+    """Its jobs import the modules of a folder that it names itself, too."""
     outer = Checkout(tmp_path / "outer")
     outer.path.mkdir()
+    (outer.path / "of_the_host.py").touch()
+    monkeypatch.setenv("PYTHONPATH", str(outer.path))
     (outer.path / "Snakefile").write_text(
         f"""
 configfile: "{fresh.path / "config/config.yaml"}"
@@ -96,12 +88,13 @@ module ball:
 use rule * from ball as ball_*
 rule mine:
     input: "ball/results/figures/fig14.png"
+    shell: "{sys.executable} -c 'import of_the_host, bouncing_ball'"
 """,
         "utf-8",
     )
     assert outer.planned("mine") == {"ball_error_thresholds", "ball_fig14", "mine"}
     assert outer.run("--cores", "1", "mine")[0] == 0
-    assert "figures/fig14.png" in made(outer.path / "ball")
+    assert "figures/fig14.png" in outer.made("ball/results")
 
 
 def test_the_page_of_an_earlier_comparison_is_removed(fresh):
@@ -134,15 +127,15 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
         ("src/carbonelli2011/figures.py", "import", "import  ", FIGURES),
         ("src/carbonelli2011/variables.py", "import", "import  ", set()),
         ("src/paper_replication/compare.py", "import", "import  ", set()),
-        ("workflow/templates/paper.md.j2", "the", "a", {"article"}),
+        ("src/carbonelli2011/templates/paper.md.j2", "the", "a", {"article"}),
     ],
 )
 def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
     for path in used.path.rglob("*.*"):
         path.touch()
-    assert used.planned() <= {"all"}
+    assert used.planned() == set()
     used.edit(file, old, new)
-    assert used.planned() - {"all"} == again
+    assert used.planned() == again
 
 
 def imports(package: str) -> set[str]:
@@ -160,11 +153,21 @@ def test_the_models_and_what_any_replication_needs_import_no_other_package():
     assert not imports("paper_replication") & {"bouncing_ball", "carbonelli2011"}
 
 
+def test_a_wheel_has_every_file_of_its_packages():
+    setuptools = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
+    patterns = ["*.py", *setuptools["package-data"]["*"]]
+    packages = [path.parent for path in (ROOT / "src").rglob("__init__.py")]
+    packed = {file for package in packages for each in patterns for file in package.glob(each)}
+    files = {path for package in packages for path in package.rglob("*.*")}
+    assert {path for path in files if path.suffix != ".pyc"} == packed
+
+
 def modules_of(script: Path) -> set[str]:
     """The modules of the package and the scripts that a script imports, directly or by another
     module, each with its folder.
     """
-    found = ModuleFinder(path=[str(ROOT / "src"), str(ROOT / "workflow/scripts")])
+    # A project says where files are, and makes pictures for comparisons.
+    found = ModuleFinder(path=[str(ROOT / "src")], excludes=["project"])
     found.run_script(str(script))
     files = {Path(each.__file__) for each in found.modules.values() if each.__file__}
     return {in_folder(path) for path in files if path.name != "__init__.py"}
@@ -186,14 +189,17 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
     del inputs["all"]
     assert inputs.keys() == {*COMPUTED, "draw", "tables", *TEXTS}
     for name, files in inputs.items():
-        script = ROOT / f"workflow/scripts/{name}.py"
-        assert in_folder(script) in files
-        assert modules_of(script) - NO_NUMBER <= files, name
+        folder = ROOT / ("src/carbonelli2011/stages" if name in COMPUTED else "workflow/scripts")
+        assert f"{folder.name}/{name}.py" in files
+        found = modules_of(folder / f"{name}.py") - NO_NUMBER
+        assert found <= files, name
+        # All models count for all that computes.
+        assert {file for file in files - found - MODELS if file.endswith(".py")} == set(), name
 
 
 def test_a_failed_figure_does_not_stop_others(fresh):
     draw = fresh.path / "workflow/scripts/draw.py"
     draw.write_text("if 'fig16' in snakemake.output[0]:\n    1 / 0\n" + draw.read_text(), "utf-8")
     assert fresh.run("--cores", "1", "fig16", "fig11")[0] == 1
-    assert made(fresh.path) >= {"figures/fig11.png"}
-    assert "figures/fig16.png" not in made(fresh.path)
+    assert fresh.made() >= {"figures/fig11.png"}
+    assert "figures/fig16.png" not in fresh.made()

@@ -16,9 +16,9 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from bouncing_ball import restitution
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.restitution import Numbers
-from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, free_duration
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, free_duration
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
 """Fourth equation of an orbit: a function of the family and of orbits y, shape (4, ...). It returns
@@ -47,10 +47,6 @@ by the squared velocity of the impact."""
 
 SPECIAL = ("saddle-node", "period doubling", "grazing")
 """Kinds of special points of a branch."""
-
-
-class NoOrbit(ValueError):
-    """The orbit does not exist, or Newton's method does not find it."""
 
 
 def at_amplitude(amplitude: Numbers) -> Condition:
@@ -282,8 +278,7 @@ def stable_orbits(
     (4, 2, 2)
     """
     r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
-    zeta = damping_ratio(r, release)[:, np.newaxis]
-    contact = Contact(np.atleast_1d(ratios), zeta, release)
+    contact = Contact.of_restitution(np.atleast_1d(ratios), r[:, np.newaxis], release)
     return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis])
 
 

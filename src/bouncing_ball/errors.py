@@ -19,7 +19,6 @@ from bouncing_ball.continuation import (
     SPECIAL,
     WALK_START,
     Condition,
-    NoOrbit,
     at_amplitude,
     at_bifurcation,
     bifurcations,
@@ -27,9 +26,9 @@ from bouncing_ball.continuation import (
     stable_orbits,
     walk,
 )
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.restitution import Numbers, is_stable
-from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, permanent_contact
 
 
 class Error(NamedTuple):
@@ -187,7 +186,7 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
             restitution.period_doubling(n, r),
         ),
     }
-    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratios, r, release))
     found = {}
     for name, (kind, test, limit) in kinds.items():
         orbits = bifurcations(n, kind, family.contact)[:, 0]
@@ -260,7 +259,7 @@ def errors(
     >>> found["bounce_velocity"].values.round(3).tolist()
     [0.061, 0.006]
     """
-    contact = Contact(ratios, damping_ratio(r, release), release)
+    contact = Contact.of_restitution(ratios, r, release)
     if np.isnan(contact.damping_ratio):
         raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
     known: dict[str, Error] = {}
@@ -386,7 +385,7 @@ def lowest_period_doublings(
     doubling. A frequency ratio has half as many exact digits as the amplitude, because the minimum
     is flat.
     """
-    contact = Contact(ratios, damping_ratio(r, release), release)
+    contact = Contact.of_restitution(ratios, r, release)
     orbits = bifurcations(n, "period doubling", contact)
     families = np.atleast_1d(n)
     turns = np.full(families.size, np.nan)

@@ -22,6 +22,10 @@ from bouncing_ball.restitution import is_stable
 from bouncing_ball.spring_damper import Contact
 
 
+class NoOrbit(ValueError):
+    """The orbit does not exist, or Newton's method does not find it."""
+
+
 @dataclass(frozen=True)
 class ContactEnd:
     """State of ball and table when a contact ends.

@@ -142,6 +142,17 @@ class Contact:
     release: str = "displacement"
     weight: float | NDArray = 1.0
 
+    @classmethod
+    def of_restitution(
+        cls, frequency_ratio: Numbers, r: Numbers, release: str = "displacement"
+    ) -> "Contact":
+        """Return the contact with whose damping a free impact has the restitution r.
+
+        >>> Contact.of_restitution(82.0, 0.65) == Contact(82.0, damping_ratio(0.65))
+        True
+        """
+        return cls(frequency_ratio, damping_ratio(r, release), release)
+
     def __post_init__(self):
         if self.release not in RELEASES:
             raise unknown(self.release)

@@ -4,10 +4,12 @@
     what the paper prints, and the parameters of its figures
 `variables`
     meaning, units and tolerance of the variables of the datasets
+`stages`
+    the functions that compute the datasets
 `curves`, `figures`, `tables`
     the figures and tables
-`measures`, `claims`
-    numbers that follow from datasets, and the claims that they decide
-`article`, `index`
-    the article, its supplement and the page of the results
+`measures`, `claims`, `choices`
+    numbers that follow from datasets, the claims that they decide, and what they depend on
+`article`, `index`, `pages`
+    the article, its supplement and the page of the results, as texts and as pages for a browser
 """

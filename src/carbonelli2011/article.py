@@ -7,6 +7,7 @@ name the differences instead.
 
 import json
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,8 +19,10 @@ from carbonelli2011 import measures, paper
 from paper_replication import origins
 from paper_replication.datasets import Datasets, parameters
 from paper_replication.judgements import counted, summary
-from paper_replication.templates import TEMPLATES, environment
+from paper_replication.templates import environment
 from paper_replication.texts import fixed, listed, markdown
+
+TEMPLATES = Path(__file__).with_name("templates")
 
 BEHIND = {
     "durations": ("fig08", "fig09"),

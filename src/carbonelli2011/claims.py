@@ -983,7 +983,7 @@ def table1_ends(
             ends.append(
                 Claim(
                     f"Table 1: {ratio:g}, {n}, {bound}",
-                    "Table 1",
+                    TABLE,
                     f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
                     {"table1": PARAMETERS["table1"]},
                     lambda table1, where=where: at(table1["computed"], **where),
@@ -1044,6 +1044,9 @@ FORMULAS = [
 compared with its printed form in tests/test_formulas.py.
 """
 
+
+TABLE = "Table 1"
+"""Where the ends stand that have a table of their own."""
 
 INTRODUCTION = """\
 # The claims of the paper and the verdict on each

@@ -26,6 +26,9 @@ from paper_replication.drawing import Look, latex_number, legend_below, pale, sa
 TABLE = "#8c8c8c"
 """Colour of the table."""
 
+SALT = "bouncing-ball"
+"""Of the identifiers in the SVGs."""
+
 KINDS: Mapping[str, Any] = {
     "stable": "-",
     "unstable": (0, (4.5, 2.25)),

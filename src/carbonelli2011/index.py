@@ -10,13 +10,8 @@ import numpy as np
 import xarray as xr
 
 from carbonelli2011 import article
-from carbonelli2011.claims import CLAIMS
-from carbonelli2011.paper import QUANTITIES
-from carbonelli2011.tables import TABLES
-from paper_replication import judgements, texts
-from paper_replication.datasets import Datasets, parameters
-from paper_replication.origins import bare
-from paper_replication.pages import (
+from carbonelli2011.claims import CLAIMS, TABLE
+from carbonelli2011.pages import (
     Part,
     framed,
     numbers,
@@ -25,6 +20,11 @@ from paper_replication.pages import (
     unbroken,
     with_subscripts,
 )
+from carbonelli2011.paper import QUANTITIES
+from carbonelli2011.tables import TABLES
+from paper_replication import judgements, texts
+from paper_replication.datasets import Datasets, parameters
+from paper_replication.origins import bare
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
@@ -103,14 +103,13 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
                 title=entry["title"],
                 caption=entry.get("caption", ""),
                 files={label: f"{name}.{kind}" for label, kind in kinds.items()},
-                rows=rows_beside(name, datasets, "Table 1"),
+                rows=rows_beside(name, datasets, TABLE),
                 table=TABLES[name](datasets[name]) if entry.get("table") else (),
                 elsewhere=sorted(decided & {*entries}),
             )
         )
     general = [
-        Part(key, title, rows=rows_beside(key, datasets, "Table 1"))
-        for key, title in SEVERAL.items()
+        Part(key, title, rows=rows_beside(key, datasets, TABLE)) for key, title in SEVERAL.items()
     ]
     return found + general
 

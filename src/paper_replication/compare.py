@@ -42,12 +42,10 @@ import yaml
 from PIL import Image
 
 from paper_replication.configuration import SHOWN_BY, entries, shown_as
-from paper_replication.datasets import Variable, attributes, plain, read, write
-from paper_replication.provenance import CHECKOUT, PACKAGES, content, contents
-from paper_replication.templates import TEMPLATES, environment
+from paper_replication.datasets import Project, attributes, plain, read, write
+from paper_replication.provenance import PACKAGES, content, contents
+from paper_replication.templates import environment
 
-FOLLOWING = ("claims", "choices")
-"""Datasets that are made of all others."""
 ACCEPTED = "figures/accepted.json"
 PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
 """Attributes of a dataset that are causes of a difference, or are not compared."""
@@ -125,51 +123,27 @@ def run_in(folder: Path, label: str) -> Run:
     return Run(label, folder, records, damaged)
 
 
-@dataclass(frozen=True)
-class Project:
-    """A workflow whose results are compared.
-
-    Attributes
-    ----------
-    top
-        The folder with the reference and the configuration.
-    texts
-        Files of the reference beside its folder `figures`.
-    make
-        Writes the files that follow from one dataset into a folder: pictures, tables and pages. It
-        takes their name, the dataset, or none for a picture without data, and the folder.
-    code
-        Folders and files of code, from the top of the repository.
-    describe
-        Today's descriptions of the variables of a dataset, by its name.
+def files_of(project: Project, runs: Sequence[Run], config: Mapping) -> list[str]:
+    """What is compared: the files that a configuration and the records of runs register, and
+    whatever else is in their folders `figures`. Datasets are first, and what is made of them last.
     """
+    records = [record for run in runs for record in run.records.values()]
+    found = {file for record in records for file in (*record["made"], *record["data"])}
+    for known in (entries(config), *(record["entries"] for record in records)):
+        found |= {f"figures/{name}.{kind}" for name in known for kind in shown_as(known[name])}
+    for run in runs:
+        found |= {f"figures/{path.name}" for path in run.folder.glob("figures/[!.]*")}
+    following = {file for record in records if record["data"] for file in record["made"]}
+    return sorted(
+        {file for file in found if file.startswith("figures/") or file in project.texts}
+        - {ACCEPTED},
+        key=lambda file: (file[-3:] != ".nc", file in following, file),
+    )
 
-    top: Path
-    texts: tuple[str, ...]
-    make: Callable[[str, xr.Dataset | None, Path], None]
-    code: tuple[str, ...]
-    describe: Callable[[str], Mapping[str, Variable]]
 
-    def files(self, runs: Sequence[Run], config: Mapping) -> list[str]:
-        """What is compared: the files that a configuration and the records of runs register, and
-        whatever else is in their folders `figures`. Datasets are first, and `FOLLOWING` last of
-        them.
-        """
-        records = [record for run in runs for record in run.records.values()]
-        found = {file for record in records for file in (*record["made"], *record["data"])}
-        for known in (entries(config), *(record["entries"] for record in records)):
-            found |= {f"figures/{name}.{kind}" for name in known for kind in shown_as(known[name])}
-        for run in runs:
-            found |= {f"figures/{path.name}" for path in run.folder.glob("figures/[!.]*")}
-        return sorted(
-            {file for file in found if file.startswith("figures/") or file in self.texts}
-            - {ACCEPTED},
-            key=lambda file: (file[-3:] != ".nc", Path(file).stem in FOLLOWING, file),
-        )
-
-    def configuration(self) -> dict:
-        """The configuration of the checkout."""
-        return yaml.safe_load((self.top / "config/config.yaml").read_text("utf-8"))
+def configuration(project: Project) -> dict:
+    """The configuration of the checkout."""
+    return yaml.safe_load((project.top / "config/config.yaml").read_text("utf-8"))
 
 
 @dataclass(frozen=True)
@@ -351,8 +325,8 @@ def shown(value: object) -> str:
 # Causes
 
 
-def git(*arguments: str) -> str:
-    """What git answers about the repository; empty without git.
+def git(checkout: Path, *arguments: str) -> str:
+    """What git answers about a repository; empty without git.
 
     A hook has variables that name the repository and the index of its commit. They are dropped, as
     git advises for another repository.
@@ -361,25 +335,26 @@ def git(*arguments: str) -> str:
     try:
         names = run(["git", "rev-parse", "--local-env-vars"]).stdout.split()
         environment = {name: value for name, value in os.environ.items() if name not in names}
-        command = ["git", "-C", str(CHECKOUT), "-c", "core.quotePath=off", *arguments]
+        command = ["git", "-C", str(checkout), "-c", "core.quotePath=off", *arguments]
         return run(command, env=environment).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
         return ""
 
 
-def tree(commit: str, *paths: str) -> dict[str, str]:
+def tree(checkout: Path, commit: str, *paths: str) -> dict[str, str]:
     """The hashes of the files of a commit."""
-    listed = git("ls-tree", "-r", commit, *paths)
+    listed = git(checkout, "ls-tree", "-r", commit, *paths)
     return {line.partition("\t")[2]: line.split()[2] for line in listed.splitlines()}
 
 
-def code_of_main() -> dict[str, str]:
+def code_of_main(checkout: Path) -> dict[str, str]:
     """The hashes of the files on the main branch where this one left it; empty if no main branch is
     known, as in a shallow checkout, or if git has other hashes than records, as SHA-256.
     """
-    bases = (git("merge-base", "HEAD", name) for name in ("origin/HEAD", "origin/main", "main"))
+    known = ("origin/HEAD", "origin/main", "main")
+    bases = (git(checkout, "merge-base", "HEAD", name) for name in known)
     forks = [base for base in bases if len(base) == 40]
-    return tree(forks[0]) if forks else {}
+    return tree(checkout, forks[0]) if forks else {}
 
 
 def causes(before: Mapping, after: Mapping, main: Mapping) -> Mapping[str, Sequence[str]]:
@@ -460,7 +435,7 @@ class Comparison:
 
     def printed(self, template: str, **more: Any) -> str:
         """The report as a template prints it, with invisible characters escaped."""
-        printing = environment(TEMPLATES).overlay(finalize=shown)
+        printing = environment(Path(__file__).parent).overlay(finalize=shown)
         return printing.get_template(template).render(report=self, **more)
 
     def finding(self, file: str) -> Finding:
@@ -483,11 +458,8 @@ class Comparison:
             return Finding("agrees", new.wrong)
         if is_data and self.config is not None and about(old.contents) != about(new.contents):
             # Descriptions are not among the code that a dataset records.
-            new.record["code"] |= contents(
-                path
-                for name in self.project.code
-                for path in (CHECKOUT / name).rglob("variables.py")
-            )
+            described = map(self.project.checkout.joinpath, self.project.described_in)
+            new.record["code"] |= contents(described, self.project.checkout)
         main = old.record["code"] if self.config is None else self.main
         why = causes(old.record, new.record, main)
         follows = [Path(each).stem for each in new.record["data"] if each in self.findings]
@@ -554,7 +526,8 @@ class Comparison:
         variables = {key: each for key, each in variables.items() if key in told}
         today = {key: attributes(told[key], each.dtype) for key, each in variables.items()}
         found += changes({key: plain(each.attrs) for key, each in variables.items()}, plain(today))
-        now = contents(path for path in map(CHECKOUT.joinpath, record["code"]) if path.is_file())
+        files = map(self.project.checkout.joinpath, record["code"])
+        now = contents((path for path in files if path.is_file()), self.project.checkout)
         return found + [each for each, known in record["code"].items() if now.get(each) != known]
 
     def rounded(self, file: str, why: Mapping) -> bool:
@@ -592,8 +565,9 @@ def compare(
     makes with this configuration. If it is empty, the new run has parameters of its own. If it is
     None, both runs are judged by their records.
     """
-    report = Comparison(project, old, new, config, {} if config is None else code_of_main())
-    for file in project.files((old, new), config or {}):
+    main = {} if config is None else code_of_main(project.checkout)
+    report = Comparison(project, old, new, config, main)
+    for file in files_of(project, (old, new), config or {}):
         if not names or Path(file).stem in names:
             try:
                 report.found[file] = report.finding(file)
@@ -643,11 +617,13 @@ def accept(project: Project, results: Path) -> list[str]:
     reference names them. Raises ValueError if a result is not fresh and as recorded, if the results
     were made with several versions of libraries, or if their code is not committed.
     """
-    committed = tree("HEAD", "--", *project.code)
-    if edited := git("status", "--porcelain", "--untracked-files=all", "--", *project.code):
+    committed = tree(project.checkout, "HEAD", "--", *project.code)
+    if edited := git(
+        project.checkout, "status", "--porcelain", "--untracked-files=all", "--", *project.code
+    ):
         raise ValueError(f"nothing is accepted, commit first: {edited}")
     new = run_in(results, "the results")
-    report = compare(project, run_in(project.top, "the reference"), new, project.configuration())
+    report = compare(project, run_in(project.top, "the reference"), new, configuration(project))
     for file, found in report.found.items():
         # A file that is missing, and that no record of the results names, is not made any more.
         if found.wrong and (file in new.records or MISSING not in found.wrong):
@@ -667,7 +643,9 @@ def accept(project: Project, results: Path) -> list[str]:
     removed = [
         file
         for file, found in report.found.items()
-        if found.wrong and file in report.old.records and git("ls-files", str(project.top / file))
+        if found.wrong
+        and file in report.old.records
+        and git(project.checkout, "ls-files", str(project.top / file))
     ]
     for file in taken:
         write(project.top / file, (results / file).read_bytes())
@@ -675,7 +653,7 @@ def accept(project: Project, results: Path) -> list[str]:
         (project.top / file).unlink(missing_ok=True)
     accepted = {
         "made": {file: content(project.top / file) for file in report.found if file in new.records},
-        "code": contents(CHECKOUT / file for file in committed),
+        "code": contents(map(project.checkout.joinpath, committed), project.checkout),
         "versions": records[0]["versions"],
         "entries": new.record(project.texts[0])["entries"],
     }
@@ -729,7 +707,7 @@ def main(project: Project, arguments: list[str]) -> int:
             runs.insert(0, run_in(project.top, "the reference"))
             # A run in another folder has parameters of its own.
             config = (
-                project.configuration()
+                configuration(project)
                 if folders[0].resolve() == (project.top / "results").resolve()
                 else {}
             )

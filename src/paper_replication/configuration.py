@@ -1,17 +1,41 @@
-"""Judge a configuration by its JSON schema, in one line for each mistake.
+"""A configuration: its mistakes, and what the rules of a workflow make of its entries.
 
 The sections of a configuration are stages, and their entries are figures, tables and datasets. All
 that an entry may have besides its parameters is `described` among the definitions of the schema.
 """
 
-from collections.abc import Collection, Iterator, Mapping
+import ast
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from itertools import chain, repeat
+from pathlib import Path
 from typing import Any
 
 import yaml
 from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
+
+
+def checked(config: Mapping, schema_file: Path, files: Iterable[str]) -> dict:
+    """Return a configuration, which was read from files, with an int for each whole number.
+
+    A mistake ends the program, with a line for each.
+    """
+    schema = yaml.safe_load(schema_file.read_text("utf-8"))
+    found = [
+        f"{Path(file).name}, {line}"
+        for file in files
+        for line in repeated_keys(Path(file).read_text("utf-8"))
+    ]
+    stop(found or mistakes(config, schema))
+    return with_whole_numbers(config, schema, schema["$defs"])
+
+
+def stop(mistakes: Iterable[str]) -> None:
+    """End the program with the mistakes in the configuration, if there are some."""
+    if lines := [f"configuration: {line}" for line in mistakes]:
+        sys.exit("\n".join(lines))
 
 
 def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
@@ -28,6 +52,16 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
+    settings_in_entries = [
+        f"{stage}.{name}.{key}"
+        for stage, section in stages(config).items()
+        for name in names(section)
+        for key in (section[name] if isinstance(section[name], Mapping) else ())
+        if key in config.keys() - stages(config)
+    ]
+    yield from (
+        f"{path}: a setting of the whole run, not of an entry" for path in settings_in_entries
+    )
     described = schema.get("$defs", {}).get("described", {}).get("properties", {})
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
@@ -35,7 +69,8 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             known = [*error.schema["properties"], *described]
             for key in error.instance.keys() - {*known}:
                 path = ".".join(filter(None, (where, str(key))))
-                yield f"{path}: unknown key{meant(str(key), known)}"
+                if path not in settings_in_entries:
+                    yield f"{path}: unknown key{meant(str(key), known)}"
         elif error.validator == "required" and error.validator_value == ["title"]:
             stage, name = error.absolute_path
             known = schema["properties"][stage]["properties"]
@@ -45,10 +80,14 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
 
 
+def stages(config: Mapping) -> dict[str, Mapping]:
+    """Return the sections of a configuration, by name."""
+    return {name: section for name, section in config.items() if isinstance(section, Mapping)}
+
+
 def entries(config: Mapping) -> dict[str, Mapping]:
     """Return the figures, tables and datasets of all stages, by name."""
-    stages = [section for section in config.values() if isinstance(section, Mapping)]
-    return {name: entry for stage in stages for name, entry in stage.items() if name != "title"}
+    return {name: each[name] for each in stages(config).values() for name in names(each)}
 
 
 SHOWN_BY = ("caption", "table")
@@ -62,6 +101,60 @@ def shown_as(entry: Mapping) -> list[str]:
     ['png', 'svg', 'md', 'csv']
     """
     return ["png", "svg"] * ("caption" in entry) + ["md", "csv"] * bool(entry.get("table"))
+
+
+def names(section: Mapping) -> list[str]:
+    """The figures, tables and datasets of a stage, of which this is the section."""
+    return [name for name in section if name != "title"]
+
+
+def datasets(section: Mapping) -> dict[str, str]:
+    """The files of the datasets of a stage, by name."""
+    return {name: f"results/figures/{name}.nc" for name in names(section)}
+
+
+def parameters(section: Mapping) -> dict[str, dict]:
+    """The title and the parameters of each dataset of a stage."""
+    return {
+        name: {key: value for key, value in section[name].items() if key not in SHOWN_BY}
+        for name in names(section)
+    }
+
+
+def captions(name: str, entry: Mapping) -> dict[str, str]:
+    """What `snakemake --report` shows beside a figure or a table."""
+    return {"name": name, "title": entry["title"], "caption": entry.get("caption", "")}
+
+
+def named(config: Mapping, targets: Iterable[str]) -> list[str]:
+    """The figures, tables and datasets that targets name; none for all.
+
+    Claims and texts follow from all datasets: with them, everything is compared.
+    """
+    found: set[str] = set()
+    sections = stages(config)
+    for target in {*targets} - {"diff"}:
+        found.update(names(sections[target]) if target in sections else [Path(target).stem])
+    return sorted(found) if found <= {*entries(config)} else []
+
+
+def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator[str]:
+    """Yield a line for each entry for which a file of code, from a folder, has no function."""
+    for file, names_of_entries in needed.items():
+        known = registered(top / file)
+        for name in names_of_entries:
+            if name not in known:
+                yield f"{name}: {file} needs a function for it"
+
+
+def registered(file: Path) -> set[str]:
+    """The keys of the dictionaries that a file of code has, such as those of its functions.
+
+    The file is not imported: with conda, its libraries are in the environment of the jobs only.
+    """
+    nodes = ast.walk(ast.parse(file.read_text("utf-8")))
+    keys = chain.from_iterable(node.keys for node in nodes if isinstance(node, ast.Dict))
+    return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 
 
 def with_whole_numbers(value: Any, schema: Mapping, known: Mapping) -> Any:

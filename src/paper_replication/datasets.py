@@ -51,6 +51,41 @@ Datasets = Mapping[str, xr.Dataset]
 """Datasets by the names of their figures and tables."""
 
 
+@dataclass(frozen=True)
+class Project:
+    """The replication of a paper: where it lies, and what its records and comparisons need.
+
+    Attributes
+    ----------
+    top
+        The folder with the configuration and the reference.
+    checkout
+        The folder of the repository, from which records name files of code.
+    code
+        Folders and files of code, from the checkout.
+    texts
+        Files of the reference beside its folder `figures`.
+    references
+        The paper, as its datasets cite it.
+    describe
+        Today's descriptions of the variables of a dataset, by its name.
+    described_in
+        Files of code with the descriptions, from the checkout. No dataset records them.
+    make
+        Writes the files that follow from one dataset into a folder: pictures, tables and pages. It
+        takes their name, the dataset, or none for a picture without data, and the folder.
+    """
+
+    top: Path
+    checkout: Path
+    code: tuple[str, ...]
+    texts: tuple[str, ...]
+    references: str
+    describe: Describe
+    described_in: tuple[str, ...]
+    make: Callable[[str, Any, Path], None]
+
+
 def grid(limits: Mapping, spaced: Callable[..., np.ndarray] = np.geomspace) -> np.ndarray:
     """Return the values of a range of the configuration, by default at equal steps of their
     logarithm.
@@ -71,8 +106,7 @@ def save(
     title: str,
     parameters: Mapping,
     code: Iterable[str | Path],
-    describe: Describe,
-    references: str = "",
+    project: Project,
 ) -> None:
     """Save a dataset as netCDF, atomically, with descriptions and provenance.
 
@@ -88,8 +122,8 @@ def save(
         The parameters with which it was computed, and the settings of the run.
     code
         Files of code that decide its numbers; the dataset records the content of each.
-    describe
-        Returns the descriptions of the variables of a dataset, by its name.
+    project
+        What describes its variables, and the checkout with its code.
 
     Raises
     ------
@@ -97,16 +131,17 @@ def save(
         If a variable has no description.
     """
     path = Path(path)
-    variables = describe(path.stem)
+    variables = project.describe(path.stem)
     unknown = [str(name) for name in dataset.variables if name not in variables]
     if unknown:
-        raise ValueError(f"{path.name}: describe {', '.join(unknown)} in variables.py")
+        where = ", ".join(project.described_in)
+        raise ValueError(f"{path.name}: describe {', '.join(unknown)} in {where}")
     complete = dataset.drop_encoding().assign_attrs(
         Conventions="CF-1.11",
         title=title,
-        references=references,
+        references=project.references,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
-        code=json.dumps(contents(code)),
+        code=json.dumps(contents(code, project.checkout)),
         versions=json.dumps(versions()),
         computed_on=computed_on(),
     )
@@ -138,10 +173,7 @@ def write(path: Path, content: bytes) -> None:
 
 
 def save_stage(
-    stage: Mapping[str, Callable[..., xr.Dataset]],
-    snakemake: Any,
-    describe: Describe,
-    references: str = "",
+    stage: Mapping[str, Callable[..., xr.Dataset]], snakemake: Any, project: Project
 ) -> None:
     """Compute and save the datasets of a stage, for the job of its rule.
 
@@ -156,8 +188,8 @@ def save_stage(
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = computed(stage[name], entry | settings)
-        save(dataset, path, title, parameters(dataset), snakemake.input.code, describe, references)
-    save_record(snakemake)
+        save(dataset, path, title, parameters(dataset), snakemake.input.code, project)
+    save_record(snakemake, project)
 
 
 def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
@@ -172,7 +204,7 @@ def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
     return found.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
 
 
-def save_record(snakemake: Any) -> None:
+def save_record(snakemake: Any, project: Project) -> None:
     """Record what a job made, and from what, in its output `record`: a file of JSON.
 
     Paths are those from the folder of the results, and files of code those from the checkout. Each
@@ -184,7 +216,7 @@ def save_record(snakemake: Any) -> None:
     found = {
         "made": contents(set(snakemake.output) - {snakemake.output.record}, results),
         "data": contents([data] if isinstance(data, str) else data, results),
-        "code": contents(snakemake.input.code),
+        "code": contents(snakemake.input.code, project.checkout),
         "versions": versions(),
         "entries": plain(getattr(snakemake.params, "entries", {})),
     }

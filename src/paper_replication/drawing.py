@@ -19,6 +19,7 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
+from scipy.optimize import isotonic_regression
 
 from paper_replication.datasets import whole
 
@@ -46,9 +47,8 @@ SETTINGS: Look = {
     "hatch.linewidth": 0.6,
     "figure.constrained_layout.use": True,
     "figure.dpi": 300,
-    # A fixed salt gives each run the same identifiers. Letters are paths, because the layout is
-    # computed for one font, which the reader of an SVG may not have.
-    "svg.hashsalt": "bouncing-ball",
+    # Letters are paths, because the layout is computed for one font, which the reader of an SVG may
+    # not have.
     "svg.fonttype": "path",
 }
 
@@ -152,21 +152,6 @@ MARK_RADIUS = 3
 """Half the size of a mark, in points."""
 
 
-def ascending(values: np.ndarray) -> np.ndarray:
-    """Return the ascending numbers that are closest to some values in the least-squares sense.
-
-    This is isotonic regression by the min-max formula.
-
-    Examples
-    --------
-    >>> ascending(np.array([3.0, 1.0, 4.0])).tolist()
-    [2.0, 2.0, 4.0]
-    """
-    count = range(len(values))
-    means = [[values[j : k + 1].mean() for k in count[j:]] for j in count]
-    return np.array([max(min(means[j][i - j :]) for j in count[: i + 1]) for i in count])
-
-
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """Add labels at the right edge of a panel.
 
@@ -182,7 +167,8 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     wanted = axes.transData.transform(ends)[:, 1] * points
     bottom, top = axes.get_window_extent().intervaly * points
     steps = LINE_HEIGHT * np.arange(len(order))
-    lowest = np.clip(ascending(wanted - steps), bottom, max(bottom, top - steps[-1]))
+    ascending = isotonic_regression(wanted - steps).x
+    lowest = np.clip(ascending, bottom, max(bottom, top - steps[-1]))
     moved = lowest + steps - wanted
     look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
     for (text, height, colour), offset in zip(order, moved, strict=True):
@@ -234,9 +220,10 @@ def move(note: Annotation, place: tuple[float, float]) -> None:
 # Files
 
 
-def save_picture(figure: Figure, png: str | Path, svg: str | Path) -> None:
+def save_picture(figure: Figure, png: str | Path, svg: str | Path, salt: str) -> None:
     """Save a figure as PNG and SVG, which name the version of matplotlib.
 
+    The salt, which is any word, gives the SVG the same identifiers in each run.
     The SVG of a figure with a label has this as its title, which a browser shows and reads aloud,
     and its texts as texts, which can be searched and depend on the fonts of the reader. The same
     figure gives the same bytes, and the file appears whole or not at all. Raises OSError if a file
@@ -245,6 +232,7 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path) -> None:
     metadata: dict[str, dict[str, str | None]] = {"png": {}, "svg": {"Date": None}}
     words = str(figure.get_label())
     with style():
+        matplotlib.rcParams["svg.hashsalt"] = salt
         if words:
             metadata["svg"]["Title"] = words
             matplotlib.rcParams["svg.fonttype"] = "none"

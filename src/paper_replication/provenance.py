@@ -12,9 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-CHECKOUT = Path(__file__).resolve().parents[2]
-"""The folder of this repository."""
-
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries on which numbers and pictures depend."""
 
@@ -30,11 +27,10 @@ def content(file: str | Path) -> str:
     return hashlib.sha1(b"blob %d\0" % len(text) + text, usedforsecurity=False).hexdigest()
 
 
-def contents(files: Iterable[str | Path], top: Path | None = None) -> dict[str, str]:
-    """The contents of files, by their paths from a folder, which is CHECKOUT if none is given."""
-    base = (top or CHECKOUT).resolve()
+def contents(files: Iterable[str | Path], top: Path) -> dict[str, str]:
+    """The contents of files, by their paths from a folder."""
     paths = [Path(file).resolve() for file in files]
-    return {path.relative_to(base).as_posix(): content(path) for path in paths}
+    return {path.relative_to(top.resolve()).as_posix(): content(path) for path in paths}
 
 
 @cache

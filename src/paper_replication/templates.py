@@ -6,10 +6,7 @@ from pathlib import Path
 import jinja2
 
 from paper_replication import origins
-from paper_replication.provenance import CHECKOUT
 from paper_replication.texts import fixed, listed, percent, share_text, short
-
-TEMPLATES = CHECKOUT / "workflow" / "templates"
 
 
 @cache

@@ -4,9 +4,12 @@ import csv
 import io
 from collections.abc import Iterable
 from decimal import ROUND_HALF_EVEN, Decimal
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
+
+from paper_replication.datasets import write
 
 # Numbers
 
@@ -101,6 +104,12 @@ def comma_separated(rows: list[list[str]]) -> str:
     text = io.StringIO()
     csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
+
+
+def save_table(rows: list[list[str]], as_markdown: str | Path, as_csv: str | Path) -> None:
+    """Save rows of texts, the header first, as Markdown and as CSV."""
+    write(Path(as_markdown), markdown(rows).encode())
+    write(Path(as_csv), comma_separated(rows).encode())
 
 
 def each(data: xr.Dataset, *dimensions: str) -> list[xr.Dataset]:

@@ -3,7 +3,7 @@
 import sys
 from pathlib import Path
 
-from compare import PROJECT
+from project import PROJECT
 
 from carbonelli2011.article import unlike_the_paper
 from paper_replication.compare import accept

@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from carbonelli2011.index import written
 from paper_replication.datasets import read, save_record
 
@@ -11,4 +13,4 @@ results = Path(snakemake.output.index).parent
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 for name, text in written(datasets, snakemake.params.entries).items():
     (results / name).write_text(text, encoding="utf-8", newline="\n")
-save_record(snakemake)
+save_record(snakemake, PROJECT)

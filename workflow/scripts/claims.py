@@ -3,9 +3,10 @@
 import sys
 from pathlib import Path
 
-from carbonelli2011.claims import INTRODUCTION, judge
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import read, save, save_record
+from project import PROJECT
+
+from carbonelli2011.claims import INTRODUCTION, TABLE, judge
+from paper_replication.datasets import read, save, save_record, write
 from paper_replication.judgements import all_claims, claims_markdown
 from paper_replication.texts import comma_separated
 
@@ -13,10 +14,7 @@ sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 verdicts = judge(datasets)
 title = "Verdicts on the paper's claims"
-save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code, described, REFERENCE)
-Path(snakemake.output.md).write_text(
-    claims_markdown(verdicts, INTRODUCTION, "Table 1"), encoding="utf-8", newline="\n"
-)
-table = comma_separated(all_claims(verdicts))
-Path(snakemake.output.csv).write_text(table, encoding="utf-8", newline="\n")
-save_record(snakemake)
+save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code, PROJECT)
+write(Path(snakemake.output.md), claims_markdown(verdicts, INTRODUCTION, TABLE).encode())
+write(Path(snakemake.output.csv), comma_separated(all_claims(verdicts)).encode())
+save_record(snakemake, PROJECT)

@@ -16,39 +16,20 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "src"))
 
-import xarray as xr  # noqa: E402
+from project import PROJECT  # noqa: E402
 
-from carbonelli2011.figures import FIGURES, draw  # noqa: E402
-from carbonelli2011.tables import TABLES  # noqa: E402
-from carbonelli2011.variables import described  # noqa: E402
-from paper_replication.compare import Project, main, report_of_run  # noqa: E402
-from paper_replication.drawing import save_picture  # noqa: E402
-from paper_replication.texts import comma_separated, markdown  # noqa: E402
-
-
-def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
-    """Write the pictures and the tables of a dataset into a folder."""
-    if name in FIGURES:
-        figure = draw(name) if data is None else draw(name, data)
-        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg")
-    if name in TABLES:
-        rows = TABLES[name](data)
-        (folder / f"{name}.md").write_text(markdown(rows), encoding="utf-8")
-        (folder / f"{name}.csv").write_text(comma_separated(rows), encoding="utf-8")
-
-
-PROJECT = Project(
-    top=TOP,
-    texts=("paper.md", "supplement.md"),
-    make=make,
-    describe=described,
-    code=("Snakefile", "config", "src", "workflow"),
-)
+from paper_replication.compare import main, report_of_run  # noqa: E402
 
 if __name__ == "__main__" and "snakemake" not in globals():
     sys.exit(main(PROJECT, sys.argv[1:]))
 
 if __name__ == "__main__":
     sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    given = snakemake.params.config, snakemake.params.names
-    sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], *given))
+    sys.exit(
+        report_of_run(
+            PROJECT,
+            Path(snakemake.log[0]).parents[1],
+            snakemake.params.config,
+            snakemake.params.names,
+        )
+    )

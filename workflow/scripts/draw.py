@@ -3,6 +3,9 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
+from carbonelli2011.curves import SALT
 from carbonelli2011.figures import Empty, draw
 from paper_replication.datasets import read, save_record
 from paper_replication.drawing import save_picture
@@ -14,5 +17,5 @@ try:
     figure = draw(Path(png).stem, *shown)
 except Empty as error:
     sys.exit(f"configuration: {error}")
-save_picture(figure, png, snakemake.output.svg)
-save_record(snakemake)
+save_picture(figure, png, snakemake.output.svg, SALT)
+save_record(snakemake, PROJECT)

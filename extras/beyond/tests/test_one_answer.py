@@ -14,8 +14,9 @@ from browser import Frame, shown
 
 import bouncing_ball_beyond
 from bouncing_ball import restitution
-from bouncing_ball.continuation import NoOrbit, bifurcations
+from bouncing_ball.continuation import bifurcations
 from bouncing_ball.errors import errors
+from bouncing_ball.orbits import NoOrbit
 from bouncing_ball.spring_damper import Contact, contact_of_duration, damping_ratio
 from bouncing_ball_beyond import OrbitNotFound, Rigid, SpringDamper, limits, on_shaker, orbit
 from paper_replication.datasets import read
@@ -89,7 +90,7 @@ def balls():
         low, high = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
         if isinstance(place, str):
             end = low if place == "saddle-node" else high
-            found = bifurcations(n, place, Contact(ratio, damping_ratio(r, release), release))[0]
+            found = bifurcations(n, place, Contact.of_restitution(ratio, r, release))[0]
             amplitude = (end + np.nan_to_num(found.item())) / 2
         else:
             amplitude = low + place * (high - low)
@@ -153,7 +154,7 @@ def stable_numbers(amplitude, r):
 
 def by_errors(ball):
     """`errors` and `bifurcations`, as in the example of docs/your-ball.md."""
-    contact = Contact(ball.ratio, damping_ratio(ball.r, ball.release), ball.release)
+    contact = Contact.of_restitution(ball.ratio, ball.r, ball.release)
     if ball.measured:
         contact = contact_of_duration(ball.rate * ball.time / 1000, ball.r, ball.release)
     ratio = np.asarray(contact.frequency_ratio).item()

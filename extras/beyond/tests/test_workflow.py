@@ -3,27 +3,17 @@
 The scripts only write their outputs here: the rules are tested, and no numbers.
 """
 
-import contextlib
-import io
-import os
 import re
 import shutil
-import warnings
-from dataclasses import dataclass
 from modulefinder import ModuleFinder
 from pathlib import Path
 
 import pytest
 import yaml
-from snakemake import cli
+from checkout import Checkout, stubbed
 
 BEYOND = Path(__file__).resolve().parents[1]
 ROOT = BEYOND.parents[1]
-STUB = """from pathlib import Path
-for file in snakemake.output:
-    Path(file).write_text("made by a stub")
-raise SystemExit
-"""
 CONFIG = yaml.safe_load((BEYOND / "config/config.yaml").read_text("utf-8"))
 STAGES = {
     name: [entry for entry in section if entry != "title"]
@@ -39,73 +29,30 @@ NO_NUMBER = {"variables.py", "provenance.py", "__init__.py"}
 """Modules that decide no number: they are in no list of code."""
 
 
-@dataclass(frozen=True)
-class Checkout:
-    """A copy of the workflow, with shortcuts to run and to change it."""
-
-    path: Path
-
-    def run(self, *arguments: str) -> tuple[int | str, str]:
-        """Snakemake's command in the copy: its exit status and what it prints."""
-        printed = io.StringIO()
-        variables = dict(os.environ)
-        with (
-            # Those of Snakemake's code: files left open, deprecated arguments.
-            warnings.catch_warnings(action="ignore"),
-            contextlib.chdir(self.path / "extras/beyond"),
-            contextlib.redirect_stdout(printed),
-            contextlib.redirect_stderr(printed),
-            pytest.raises(SystemExit) as ended,
-        ):
-            cli.main([*arguments])
-        os.environ.clear()
-        os.environ.update(variables)
-        return ended.value.code, printed.getvalue()
-
-    def planned(self, *arguments: str) -> set[str]:
-        """The rules whose jobs a run would execute."""
-        command = ["--dry-run", "--cores", "1", "--quiet", "host", "--", *arguments]
-        status, printed = self.run(*command)
-        assert status == 0, printed
-        return {*re.findall(r"^(\w+) +\d+$", printed, re.MULTILINE)} - {"total", "all"}
-
-    def made(self) -> set[str]:
-        """The results of a run."""
-        base = self.path / "extras/beyond/results"
-        found = {str(path.relative_to(base)) for path in base.rglob("*") if path.is_file()}
-        return {name for name in found if not name.startswith(("logs/", "records/"))}
-
-
 @pytest.fixture(scope="module")
 def stubs(tmp_path_factory) -> Checkout:
     """The workflow with scripts that only write their outputs, not run yet."""
-    folder = tmp_path_factory.mktemp("stubs") / "checkout"
-    without = shutil.ignore_patterns("__pycache__")
-    for name in ("config", "profiles", "src", "workflow"):
-        shutil.copytree(BEYOND / name, folder / "extras/beyond" / name, ignore=without)
-    shutil.copyfile(BEYOND / "Snakefile", folder / "extras/beyond/Snakefile")
+    folder = tmp_path_factory.mktemp("stubs")
     for name in ("src", "workflow"):
-        shutil.copytree(ROOT / name, folder / name, ignore=without)
-    for script in (folder / "extras/beyond/workflow/scripts").glob("*.py"):
-        script.write_text(STUB + script.read_text("utf-8"), "utf-8")
-    return Checkout(folder)
+        shutil.copytree(ROOT / name, folder / name)
+    return stubbed(BEYOND, folder / "extras/beyond")
 
 
 @pytest.fixture(scope="module")
 def complete(stubs, tmp_path_factory) -> Checkout:
     """The same after a whole run. Tests plan further runs here, and change nothing."""
-    folder = tmp_path_factory.mktemp("complete") / "checkout"
-    shutil.copytree(stubs.path, folder)
-    status, printed = Checkout(folder).run("--cores", "2")
+    folder = shutil.copytree(stubs.path.parents[1], tmp_path_factory.mktemp("complete") / "copy")
+    copy = Checkout(folder / "extras/beyond")
+    status, printed = copy.run("--cores", "2")
     assert status == 0, printed
-    return Checkout(folder)
+    return copy
 
 
 @pytest.fixture
 def used(complete, tmp_path) -> Checkout:
     """A copy for one test, after a whole run."""
-    shutil.copytree(complete.path, tmp_path / "checkout")
-    return Checkout(tmp_path / "checkout")
+    folder = shutil.copytree(complete.path.parents[1], tmp_path / "checkout")
+    return Checkout(folder / "extras/beyond")
 
 
 def test_a_whole_run_makes_every_file_of_the_reference(complete):
@@ -146,13 +93,10 @@ def test_a_name_needs_its_stage_only(stubs):
     ],
 )
 def test_a_change_runs_again_what_follows_from_it(used, file, old, new, again):
-    folder = used.path / "extras/beyond"
-    for path in used.path.rglob("*.*"):
+    for path in used.path.parents[1].rglob("*.*"):
         path.touch()
     assert used.planned() == set()
-    text = (folder / file).read_text("utf-8")
-    assert old in text
-    (folder / file).write_text(text.replace(old, new, 1), "utf-8")
+    used.edit(file, old, new)
     assert used.planned() == again
 
 
@@ -166,11 +110,12 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         inputs[scripts.get(rule, rule)] = {Path(file.strip()).name for file in files}
     del inputs["all"]
     assert inputs.keys() == {*STAGES, "draw", "tables", *TEXTS}
-    folders = [BEYOND / "src", BEYOND / "workflow", ROOT / "src"]
+    # A project says where files are, and makes pictures for comparisons.
+    folders = [str(BEYOND / "src"), str(BEYOND / "workflow"), str(ROOT / "src")]
     for name, files in inputs.items():
-        script = BEYOND / f"workflow/scripts/{name}.py"
-        found = ModuleFinder(path=[*map(str, folders)])
-        found.run_script(str(script))
+        folder = BEYOND / "workflow" / ("studies/stages" if name in STAGES else "scripts")
+        found = ModuleFinder(path=folders, excludes=["project"])
+        found.run_script(f"{folder}/{name}.py")
         modules = {Path(each.__file__).name for each in found.modules.values() if each.__file__}
         assert modules - NO_NUMBER <= files, name
 
@@ -178,17 +123,22 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
 @pytest.mark.parametrize(
     "changes, line",
     [
-        ({"release": "sticky"}, "release: 'sticky' is not one of ['displacement', 'force']"),
-        ({"impacts": {"ext_instant": {"n": 0}}}, "impacts.ext_instant.n: 0 is less than"),
+        ("release: sticky", "release: 'sticky' is not one of ['displacement', 'force']"),
+        ("impacts: {ext_instant: {n: 0}}", "impacts.ext_instant.n: 0 is less than"),
         (
-            {"stiffness_map": {"ext_map": {"position": 3}}},
+            "stiffness_map: {ext_map: {position: 3}}",
             "stiffness_map.ext_map.position: unknown key, did you mean positions?",
         ),
+        (
+            "impacts: {ext_instant: {release: force}}",
+            "impacts.ext_instant.release: a setting of the whole run, not of an entry",
+        ),
+        ("answers: {}\nanswers: {}", "mine.yaml, line 2: answers stands twice: write its keys"),
     ],
 )
 def test_a_mistake_is_one_line(stubs, tmp_path, changes, line):
     file = tmp_path / "mine.yaml"
-    file.write_text(yaml.safe_dump(changes), "utf-8")
+    file.write_text(changes, "utf-8")
     status, _ = stubs.run("--dry-run", "ext_map", "--configfile", str(file))
     assert str(status).startswith(f"configuration: {line}") and "\n" not in str(status)
 

@@ -3,6 +3,8 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from paper_replication.datasets import read, save_record
 from studies.article import filled_in
 
@@ -11,4 +13,4 @@ datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
 for name in ("article", "appendix", "phase", "figures"):
     text = filled_in(name, datasets)
     Path(snakemake.output[name]).write_text(text, encoding="utf-8", newline="\n")
-save_record(snakemake)
+save_record(snakemake, PROJECT)

@@ -3,6 +3,9 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
+from carbonelli2011.curves import SALT
 from paper_replication.datasets import read, save_record
 from paper_replication.drawing import save_picture
 from studies.figures import draw
@@ -10,5 +13,5 @@ from studies.figures import draw
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = snakemake.input.data
 picture = draw(Path(data).stem, read(data))
-save_picture(picture, snakemake.output.png, snakemake.output.svg)
-save_record(snakemake)
+save_picture(picture, snakemake.output.png, snakemake.output.svg, SALT)
+save_record(snakemake, PROJECT)

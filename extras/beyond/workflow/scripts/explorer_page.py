@@ -3,10 +3,12 @@
 import sys
 from pathlib import Path
 
+from project import PROJECT
+
 from paper_replication.datasets import read, save_record
 from studies.explorer import page
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
 data = read(snakemake.input.data)
 Path(snakemake.output.html).write_text(page(data), encoding="utf-8", newline="\n")
-save_record(snakemake)
+save_record(snakemake, PROJECT)

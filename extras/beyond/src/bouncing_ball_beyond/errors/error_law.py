@@ -203,7 +203,7 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
 
 
 def law_errors(
-    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: ArrayLike = 1, table: Table = SINE
 ) -> dict:
     """Use the error law to compute the signed errors of the restitution model.
 
@@ -218,8 +218,8 @@ def law_errors(
         A ball, or its :func:`free_impact` for this n.
     amplitude : array_like
         Λ, which broadcasts with the parameters of the ball.
-    n : int
-        Number of periods of the table in one period of the orbit.
+    n : int or array
+        Number of periods of the table in one period of the orbit; it broadcasts, too.
     table : Table
         The waveform. The impacts of the orbits come after the phase at which the table rises
         fastest.
@@ -285,7 +285,7 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
 
 
 def law_coefficients(
-    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: int = 1, table: Table = SINE
+    impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: ArrayLike = 1, table: Table = SINE
 ) -> dict:
     """Compute coefficients K of errors. A contact that is stretched by γ has the errors Kγ.
 
@@ -302,7 +302,7 @@ def law_thresholds(
     contacts: SpringDamper | ForceLaw | Callable,
     *,
     amplitude: ArrayLike,
-    n: int = 1,
+    n: ArrayLike = 1,
     tolerance: float = 0.01,
     table: Table = SINE,
 ) -> dict:
@@ -641,7 +641,7 @@ def error_thresholds(
     contacts: SpringDamper | ForceLaw | Callable,
     *,
     amplitude: ArrayLike,
-    n: int = 1,
+    n: ArrayLike = 1,
     tolerance: float = 0.01,
     simple: Callable[[Ball], Ball] | None = None,
     quantities: Sequence[str] = QUANTITIES,

@@ -1,7 +1,5 @@
 """Stage: which share of starts ends on a stable n-T orbit of a contact."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -9,9 +7,6 @@ from bouncing_ball.restitution import period_doubling, saddle_node
 from bouncing_ball_beyond.contacts.balls import SpringDamper
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.periodic.orbits import orbit
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import save_stage
-from studies.variables import described
 
 NEAR = 1e-3
 """Sum of the distances in phase and in relative speed below which a touch is that of the orbit."""
@@ -26,11 +21,13 @@ def random_orbits(parameters: dict, generator: np.random.Generator) -> xr.Datase
     Of those that the contact has, and on which a ball stays, the first ones are taken.
     """
     wanted = parameters["orbits"]
+    r_min, r_max = parameters["restitution"]
+    first, last = parameters["position"]
     found = []
     for n in parameters["n"]:
         # Next to the period doubling the contact's orbit has doubled: some are drawn in vain.
-        r = generator.uniform(*parameters["restitution"], 2 * wanted)
-        place = generator.uniform(*parameters["position"], 2 * wanted)
+        r = generator.uniform(r_min, r_max, 2 * wanted)
+        place = generator.uniform(first, last, 2 * wanted)
         low = saddle_node(n, r)
         amplitude = low + place * (period_doubling(n, r) - low)
         ball = SpringDamper(parameters["frequency_ratio"], restitution=r)
@@ -86,7 +83,3 @@ def ext_basin(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_basin": ext_basin}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,15 +1,10 @@
 """Stage: one contact, its force, its ends, and the flights before and after it."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball_beyond.contacts.balls import Impact, SpringDamper, damping_of
 from bouncing_ball_beyond.periodic.orbits import orbit
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import save_stage
-from studies.variables import described
 
 RELEASES = ["displacement", "force"]
 
@@ -88,7 +83,3 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"ext_impact": ext_impact, "ext_instant": ext_instant}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

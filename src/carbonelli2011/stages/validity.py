@@ -4,7 +4,6 @@ An orbit has a place between saddle-node (0) and period doubling (1) of the rest
 is linear in Λ. The places are denser at the saddle-node, beside which the errors change fastest.
 """
 
-import sys
 from itertools import pairwise
 
 import numpy as np
@@ -13,13 +12,12 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import SPECIAL, NoOrbit, bifurcations
+from bouncing_ball.continuation import SPECIAL, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio
 from carbonelli2011.paper import CURVES
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 FINER = (16, 8)
 """Steps of the interpolation in each step of the grid of r, and of places. With twice as many, the
@@ -62,7 +60,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
 
     # The range of stable orbits of the contact, in the range of the restitution model.
     ends = place_all[:, 0] == 1
-    contact = Contact(advised, damping_ratio(r_all[ends], release), release)
+    contact = Contact.of_restitution(advised, r_all[ends], release)
     node, doubling = (bifurcations(n_all[ends, 0], kind, contact)[0] for kind in SPECIAL[:2])
     width = last[ends] - first[ends]
     doubled = ((last[ends] - doubling) / width).reshape(shape[:2])
@@ -106,7 +104,7 @@ def scan(
     """`enough_from` of orbits, shape (quantities, orbits), and their errors at the ratios, with one
     more axis. n, r and Λ have the shape (orbits, 1).
     """
-    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratios, r, release))
     orbits = orbits_along(family, amplitude)
     enough = enough_from(family, orbits, r, amplitude, tolerance)
     return enough, errors_of_orbits(family, orbits, r, amplitude)
@@ -213,7 +211,3 @@ def last_positive(values: NDArray, r: NDArray) -> float:
 
 
 STAGE = {"validity_map": validity_map}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -7,14 +7,13 @@ questions are asked about its compliant rows: whether the distances have a patte
 row would fit some other contact; both beside the same distances in other orders.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations, permutations, product
 
 import numpy as np
 import xarray as xr
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
 from scipy.stats import permutation_test
 
@@ -30,8 +29,6 @@ from bouncing_ball.errors import (
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import RELEASES, Contact, damping_ratio
 from carbonelli2011.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, printed_table
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import save_stage
 from paper_replication.verdicts import ROUNDING
 
 DIGIT = 0.001
@@ -56,7 +53,7 @@ def reproduced(units: NDArray) -> NDArray[np.bool_]:
 class Impact:
     """A contact by its damping ratio as a function of r, its release, and the weight in contact."""
 
-    damping: Callable[[float], float] = damping_ratio
+    damping: Callable[[float], float | NDArray] = damping_ratio
     release: str = "displacement"
     weight: float = 1.0
 
@@ -83,7 +80,7 @@ impact has the restitution r.
 
 def ends_of_ranges(n: NDArray, ratios: NDArray) -> dict[str, NDArray]:
     """Both ends of the ranges of Table 1 for each of `IMPACTS`, shape (ϖ, n, 2)."""
-    found = {}
+    found: dict[str, NDArray] = {}
     for release in RELEASES:
         impacts = {name: each for name, each in IMPACTS.items() if each.release == release}
         # One walk along the contacts has the families of all of them.
@@ -166,7 +163,7 @@ def other_numbers(impact: Impact) -> list[float]:
 def damping_of_82() -> NDArray:
     """The ζ with which the height threshold is 81.5 and 82.5, between which it is printed as 82."""
     ratios = np.array([81.5, 82.5])
-    contact = Contact(ratios, damping_ratio(R_OF_THRESHOLDS))
+    contact = Contact.of_restitution(ratios, R_OF_THRESHOLDS)
     highest = restitution.max_height(1, R_OF_THRESHOLDS, 1.0)
     orbits = orbits_along(Family(1, contact), np.ones((1, 1)))[:, 0]
 
@@ -194,7 +191,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
     last = restitution.holmes_period_doubling(n, R_OF_TABLE_1)
     formulas = np.broadcast_to(np.stack([first, last], axis=-1), plain.shape)
     known = others[AS_THEY_STAND]
-    further = {
+    further: dict[str, tuple[NDArray, ArrayLike]] = {
         "high-bounce stability": (approximate, known),
         "high-bounce stability of the stiff row": (
             np.concatenate([approximate[:1], plain[1:]]),
@@ -312,7 +309,3 @@ def most_reproduced(units: NDArray, slope: NDArray) -> NDArray:
 
 
 STAGE = {"hypotheses": hypotheses}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,16 +1,12 @@
 """Stage: heights of ball and table over a cycle (Figs. 7 and 12)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import save_stage
+from bouncing_ball.spring_damper import Contact
 
 # Quantities of each orbit in the datasets.
 STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
@@ -25,7 +21,7 @@ def fig07(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratio = parameters["frequency_ratio"]
-    family = Family(n, Contact(ratio, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratio, r, release))
     y = stable_orbits(n, r, amplitude, ratio, release)[:, 0, 0]
     orbit = family.observables(y, STATE)
     half = parameters["samples"] // 2
@@ -58,7 +54,7 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     amplitude = parameters["amplitude"]
     ratios = np.sort(parameters["frequency_ratio"])
     period = 2 * np.pi * n
-    families = [Family(n, Contact(ratio, damping_ratio(r, release), release)) for ratio in ratios]
+    families = [Family(n, Contact.of_restitution(ratio, r, release)) for ratio in ratios]
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     rows = [each.observables(y, STATE) for each, y in zip(families, orbits.T, strict=True)]
     state = {name: np.array([row[name] for row in rows]) for name in STATE}
@@ -93,7 +89,3 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig07": fig07, "fig12": fig12}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,7 +1,5 @@
 """Stage: from which frequency ratio on the restitution model is right (Fig. 14 and thresholds)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -9,9 +7,8 @@ from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.errors import errors, threshold
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from bouncing_ball.spring_damper import Contact
+from paper_replication.datasets import grid
 
 
 def fig14(parameters: dict, release: str) -> xr.Dataset:
@@ -20,7 +17,7 @@ def fig14(parameters: dict, release: str) -> xr.Dataset:
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]
     ratios = grid(parameters["frequency_ratio"])
-    family = Family(n, Contact(ratios, damping_ratio(r, release), release))
+    family = Family(n, Contact.of_restitution(ratios, r, release))
     orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
     names = ("max_height", "phase", "contact_duration", "impact_velocity", "admissible")
     quantities = family.observables(orbits, names)
@@ -70,7 +67,3 @@ def thresholds(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig14": fig14, "thresholds": thresholds}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,18 +1,17 @@
 """Stage: branches of n-T orbits along Λ, and their bifurcations (Figs. 8, 9 and 15, Table 1)."""
 
-import sys
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from bouncing_ball.continuation import Branch, End, NoOrbit, bifurcations, branch
+from bouncing_ball.continuation import Branch, End, bifurcations, branch
 from bouncing_ball.errors import lowest_period_doublings
-from bouncing_ball.orbits import Family
+from bouncing_ball.orbits import Family, NoOrbit
 from bouncing_ball.spring_damper import Contact, damping_ratio
 from carbonelli2011.paper import PARAMETERS, printed_table
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 
 QUANTITIES = (
     "amplitude",
@@ -78,7 +77,7 @@ def branches(parameters: dict, release: str, largest_step: float) -> xr.Dataset:
             }
         )
     axes = {"multiplier": ("point", "multiplier"), "special": ("special",), "end": ("end",)}
-    variables = {"damping_ratio": zeta}
+    variables: dict[str, Any] = {"damping_ratio": zeta}
     for name in rows[0]:
         inner = axes.get(name.partition("_")[0], ("point",))
         variables[name] = (("frequency_ratio", *inner), [row[name] for row in rows])
@@ -128,7 +127,7 @@ def table1(parameters: dict, release: str) -> xr.Dataset:
     printed = printed_table().astype(float)
     printed = printed.where((r, release) == (paper["restitution"], paper["release"]))
     bounds = printed["bound"].values
-    contact = Contact(np.array(ratios), damping_ratio(r, release), release)
+    contact = Contact.of_restitution(np.array(ratios), r, release)
     ends = np.stack([bifurcations(n, kind, contact) for kind in bounds], axis=-1)
     amplitude, phase, _, angle = ends
     duration = angle / np.array(ratios)[:, np.newaxis]
@@ -171,7 +170,7 @@ def lowest_doubling(parameters: dict, release: str) -> xr.Dataset:
         if np.isnan(turn):
             admissible.append(False)
             continue
-        contact = Contact(turn, damping_ratio(r, release), release)
+        contact = Contact.of_restitution(turn, r, release)
         orbit = bifurcations(family, "period doubling", contact)
         admissible.append(bool(Family(family, contact).clearance(orbit) > 0))
     return xr.Dataset(
@@ -191,7 +190,3 @@ STAGE = {
     "table1": table1,
     "lowest_doubling": lowest_doubling,
 }
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

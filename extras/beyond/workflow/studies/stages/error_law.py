@@ -1,7 +1,5 @@
 """Stage: errors of the restitution and of the corrected model, and what the error law leaves."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -17,10 +15,8 @@ from bouncing_ball_beyond.errors.error_law import (
     law_errors,
     law_thresholds,
 )
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 from studies.orbits import last_zero, random_orbits
-from studies.variables import described
 
 # What stands in place of a contact. Without a name of a class it is the restitution coefficient.
 MODELS = {"restitution": None, "corrected": Corrected}
@@ -180,7 +176,3 @@ def ext_orders(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"ext_orders": ext_orders}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

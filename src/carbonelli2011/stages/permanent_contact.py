@@ -1,15 +1,12 @@
 """Stage: the threshold of permanent contact along the frequency ratio (Figs. 11 and 16)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
-from bouncing_ball.continuation import NoOrbit
 from bouncing_ball.errors import permanent_contact_error, threshold
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from bouncing_ball.orbits import NoOrbit
+from paper_replication.datasets import grid
 
 
 def damping(r: float, release: str) -> float:
@@ -56,7 +53,3 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig11": fig11, "fig16": fig16}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,13 +1,9 @@
 """Stage: the restitution model alone (Figs. 2 and 3, and three balls)."""
 
-import sys
-
 import numpy as np
 import xarray as xr
 
 from bouncing_ball import restitution
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import save_stage
 
 # Impacts of each ball that are stored.
 FIRST = 12
@@ -62,6 +58,17 @@ def fig03(parameters: dict) -> xr.Dataset:
     )
 
 
+OF_A_BALL = (
+    "impacts",
+    "periods",
+    "stickings",
+    "lyapunov_exponent",
+    "lyapunov_error",
+    "direct_exponent",
+    "direct_error",
+)
+
+
 def three_balls(parameters: dict) -> xr.Dataset:
     """After how many impacts the motion of each ball repeats, or how fast its neighbours separate,
     and its first impacts, before rounding errors have grown.
@@ -84,17 +91,10 @@ def three_balls(parameters: dict) -> xr.Dataset:
             exponent = restitution.lyapunov_exponent(path)
         direct = restitution.direct_exponent(r, amplitude, phase, velocity, path.time.size)
         rows.append((impacts, periods, path.stickings, *exponent, *direct))
-    columns = zip(*rows, strict=True)
-    impacts, periods, stickings, exponents, errors, direct_exponents, direct_errors = columns
+    columns = [("amplitude", list(column)) for column in zip(*rows, strict=True)]
     return xr.Dataset(
         {
-            "impacts": ("amplitude", list(impacts)),
-            "periods": ("amplitude", list(periods)),
-            "stickings": ("amplitude", list(stickings)),
-            "lyapunov_exponent": ("amplitude", list(exponents)),
-            "lyapunov_error": ("amplitude", list(errors)),
-            "direct_exponent": ("amplitude", list(direct_exponents)),
-            "direct_error": ("amplitude", list(direct_errors)),
+            **dict(zip(OF_A_BALL, columns, strict=True)),
             "impact_time": (("amplitude", "impact"), [path.time[:FIRST] for path in paths]),
             "impact_bounce": (("amplitude", "impact"), [path.velocity[:FIRST] for path in paths]),
         },
@@ -103,7 +103,3 @@ def three_balls(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"fig02": fig02, "fig03": fig03, "three_balls": three_balls}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

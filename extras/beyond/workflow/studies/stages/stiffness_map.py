@@ -5,8 +5,6 @@ the restitution model. Positions of Λ from saddle-node (0) to period doubling (
 equally spaced angles, so that they are dense at both ends.
 """
 
-import sys
-
 import numpy as np
 import xarray as xr
 
@@ -14,12 +12,10 @@ from bouncing_ball.continuation import bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, orbits_along
 from bouncing_ball.orbits import Family
 from bouncing_ball.restitution import period_doubling, saddle_node
-from bouncing_ball.spring_damper import Contact, damping_ratio
+from bouncing_ball.spring_damper import Contact
 from bouncing_ball_beyond.contacts.balls import SpringDamper
 from bouncing_ball_beyond.errors.error_law import free_impact, law_errors, law_thresholds
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
-from studies.variables import described
+from paper_replication.datasets import grid
 
 LEVELS = (10.0, 20.0, 50.0, 100.0, 200.0, 1000.0)
 """The ϖ of the lines of the figure; that of the paper is added."""
@@ -41,7 +37,7 @@ def ext_map(parameters: dict) -> xr.Dataset:
     n_all, r_all, amplitude_all = (
         each.reshape(-1, 1) for each in np.broadcast_arrays(n, r[:, np.newaxis], amplitude)
     )
-    contact = Contact(grid(parameters["frequency_ratio"]), damping_ratio(r_all), "displacement")
+    contact = Contact.of_restitution(grid(parameters["frequency_ratio"]), r_all)
     family = Family(n_all, contact)
     orbits = orbits_along(family, amplitude_all)
     enough = enough_from(family, orbits, r_all, amplitude_all, tolerance)
@@ -68,7 +64,7 @@ def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
     """Relative errors of saddle-node and period doubling by ϖ, exactly and by the law."""
     levels = np.unique([*LEVELS, parameters["paper"]])
     n_all, r_all = (each.reshape(-1, 1) for each in np.meshgrid(parameters["n"], r, indexing="ij"))
-    contact = Contact(levels, damping_ratio(r_all), "displacement")
+    contact = Contact.of_restitution(levels, r_all)
     impact = free_impact(SpringDamper(levels, restitution=r_all), n_all)
     law = law_errors(impact, amplitude=period_doubling(n_all, r_all))
     shape = (len(parameters["n"]), r.size, levels.size)
@@ -84,7 +80,3 @@ def of_bifurcations(parameters: dict, r: np.ndarray) -> xr.Dataset:
 
 
 STAGE = {"ext_map": ext_map}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -4,7 +4,6 @@ On the orbits of one branch w′(φ + θ) = C - s with θ = s + t_c: the level C
 restitution coefficient, and the angle θ the duration of the contact.
 """
 
-import sys
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -22,9 +21,6 @@ from bouncing_ball_beyond.errors.error_law import (
 )
 from bouncing_ball_beyond.motions.bounces import Balls, step
 from bouncing_ball_beyond.tables.table import Table
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import save_stage
-from studies.variables import described
 from studies.waveforms import WAVEFORMS, contact_orbits
 
 HERTZIAN = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -43,7 +39,7 @@ ABOVE = np.linspace(0.08, 0.2, 9).round(3)
 """Relative heights of Λ above the saddle-node at which balls with a random r are followed."""
 
 
-def linear(r: float, duration: NDArray) -> SpringDamper:
+def linear(r: float | NDArray, duration: float | NDArray) -> SpringDamper:
     """Contacts with a spring and a damper by r and the duration of a free impact."""
     zeta = damping_of(r)
     return SpringDamper(np.pi / (duration * np.sqrt(1 - zeta**2)), restitution=r)
@@ -127,7 +123,7 @@ def in_the_plane(parameters: dict) -> dict[str, tuple]:
     phase = np.linspace(0.02, 1.0, parameters["samples"])
     found = [
         contact_orbits(WAVEFORMS["sine"], phase, ball.at(frequency_ratio=ratio), 1).amplitude
-        for ratio in ball.frequency_ratio
+        for ratio in np.ravel(ball.frequency_ratio)
     ]
     impact = free_impact(ball, 1)
     shape = ("shown_share", "point")
@@ -136,7 +132,7 @@ def in_the_plane(parameters: dict) -> dict[str, tuple]:
         "touch_y": (shape, np.array(found) * np.sin(phase)),
         "line_level": ("shown_share", impact.line - impact.shift),
         "line_angle": ("shown_share", impact.shift + impact.centroid),
-        "restitution_line": float(np.ravel(impact.line)[0]),
+        "restitution_line": ((), float(np.ravel(impact.line)[0])),
     }
 
 
@@ -343,7 +339,3 @@ def ext_phase(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_phase": ext_phase}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -11,9 +11,9 @@ contact, or v₀ = 2nπ/(1 + r), that of the restitution model's orbit. They dif
 1/ϖ. If r depends on the speed, this changes the error of the restitution model in its first order.
 """
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -21,6 +21,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import Ball, Corrected, Rigid, Signature, SpringDamper
+from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.errors.error_law import (
     contact_values,
@@ -29,12 +30,11 @@ from bouncing_ball_beyond.errors.error_law import (
     restitution_values,
 )
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.paths import Path
 from bouncing_ball_beyond.periodic.search import guess_of_instants
-from bouncing_ball_beyond.tables.table import SINE
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
+from bouncing_ball_beyond.tables.table import SINE, Table
+from paper_replication.datasets import grid
 from studies.orbits import flight_height, last_zero, solved
-from studies.variables import described
 
 LINEAR = {"linear": "displacement", "linear, force release": "force"}
 OF_HERTZ = {"hunt-crossley": hunt_crossley, "tsuji": tsuji, "kuwabara-kono": kuwabara_kono}
@@ -59,31 +59,36 @@ STIFF = 100.0
 
 
 @dataclass(frozen=True)
-class Ratio:
+class Ratio(Path):
     """π/(D + κ) as what changes along contacts, from unit contacts on."""
 
     name: str = "ratio"
 
-    def apply(self, value, ball: Ball, amplitude=None, table=SINE):
+    def apply(
+        self, value: Any, ball: Ball, amplitude: Any = None, table: Table = SINE
+    ) -> tuple[Ball, Any, Table]:
         """The contacts with other D + κ at the same speed."""
-        if isinstance(ball, SpringDamper):
-            return ball.at(frequency_ratio=ball.frequency_ratio * value / np.pi), amplitude, table
-        powers = {name: length + time for name, (_, length, time) in ball.units.items()}
-        return scaled(ball, np.pi / value, powers), amplitude, table
+        if isinstance(ball, ForceLaw):
+            powers = {name: length + time for name, (_, length, time) in ball.units.items()}
+            return scaled(ball, np.pi / value, powers), amplitude, table
+        ratio = ball.parameters["frequency_ratio"] * value / np.pi
+        return ball.at(frequency_ratio=ratio), amplitude, table
 
 
 @dataclass(frozen=True)
-class Speed:
+class Speed(Path):
     """The speed at which contacts have their r and D + κ, as what changes, from the speed 1 on."""
 
     name: str = "speed"
 
-    def apply(self, value, ball: Ball, amplitude=None, table=SINE):
+    def apply(
+        self, value: Any, ball: Ball, amplitude: Any = None, table: Table = SINE
+    ) -> tuple[Ball, Any, Table]:
         """The contacts at other speeds; linear contacts are the same at every speed."""
-        if isinstance(ball, SpringDamper):
-            return ball, amplitude, table
-        powers = {name: length for name, (_, length, _) in ball.units.items()}
-        return scaled(ball, value, powers), amplitude, table
+        if isinstance(ball, ForceLaw):
+            powers = {name: length for name, (_, length, _) in ball.units.items()}
+            return scaled(ball, value, powers), amplitude, table
+        return ball, amplitude, table
 
 
 def scaled(ball: Ball, factor, powers: dict) -> Ball:
@@ -96,7 +101,7 @@ def scaled(ball: Ball, factor, powers: dict) -> Ball:
 def unit_contact(law: str, r: float) -> Ball:
     """The contact of a law with r and D + κ = 1 at the speed 1."""
     if law in LINEAR:
-        ball = SpringDamper(1.0, restitution=r, release=LINEAR[law])
+        ball: Ball = SpringDamper(1.0, restitution=r, release=LINEAR[law])
     else:
         ball = OF_HERTZ[law](restitution=r, duration=1.0, speed=1.0)
     impact = ball.signature(1.0)
@@ -157,7 +162,7 @@ def errors(law: str, case: dict, ratios: NDArray, quantities=QUANTITIES) -> NDAr
         "bounce_velocity": (ends.speed + case["amplitude"] * np.cos(ends.leaves))[:, 0],
         "phase": z[:, 0],
         "apparent_restitution": ends.speed[:, 0] / z[:, 1],
-        **contact_values(ball, quantities=BIFURCATIONS & {*quantities}, **given),
+        **contact_values(ball, quantities=[*BIFURCATIONS & {*quantities}], **given),
     }
     known = Known(by_polynomials(unit), z[:, -1], np.pi / ratios)
     corrected = contact_values(Corrected(known), quantities=quantities, **given)
@@ -269,7 +274,3 @@ def ext_laws(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_laws": ext_laws}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,6 +1,6 @@
 """Stage: random orbits and balls with which the explorer's page compares what it computes."""
 
-import sys
+from typing import cast
 
 import numpy as np
 import xarray as xr
@@ -13,10 +13,8 @@ from bouncing_ball_beyond.errors.error_law import contact_values, rows_of_orbits
 from bouncing_ball_beyond.motions.simulation import simulate
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
 from bouncing_ball_beyond.periodic.orbits import OrbitNotFound, orbit
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
+from paper_replication.datasets import grid
 from studies.orbits import follow_compliant, random_orbits
-from studies.variables import described
 
 # The part of the stable range of the restitution model in which Λ is drawn, from near its
 # saddle-node (0) to beyond its period doubling (1).
@@ -106,7 +104,7 @@ def observables(equations: OrbitEquations, z: NDArray) -> dict[str, NDArray]:
     ends = equations.ends(z)
     duration = ends.leaves[:, 0] - touch
     bounce = ends.speed[:, 0]
-    ball = equations.ball
+    ball = cast(SpringDamper, equations.ball)
     middle = ball.contact(touch, speed, scaled_duration / 2, amplitude)
     ratio = ball.frequency_ratio
     return {
@@ -128,7 +126,13 @@ def followed(ball: Ball, amplitude: float) -> dict[str, float]:
     The motion is given by the numbers of impacts and of periods of the table until it repeats; a
     ball at rest has no impacts. The time is that of the impact, or of the rest that follows it.
     """
-    found = simulate(ball, amplitude=amplitude, impacts=SETTLED, **START)
+    found = simulate(
+        ball,
+        amplitude=amplitude,
+        phase=START["phase"],
+        velocity=START["velocity"],
+        impacts=SETTLED,
+    )
     times = found.time.values
     phases = found.impact_phase.values
     speeds = -found.relative_impact_velocity.values
@@ -168,7 +172,7 @@ def balls() -> xr.Dataset:
     """How balls start and end, over (model, motion)."""
     models = {
         "restitution": Rigid(BALL["restitution"]),
-        "spring-damper": SpringDamper(**BALL),
+        "spring-damper": SpringDamper(BALL["frequency_ratio"], restitution=BALL["restitution"]),
     }
     ends = [[followed(ball, each) for each in AMPLITUDES] for ball in models.values()]
     size = len(AMPLITUDES)
@@ -204,7 +208,3 @@ def explorer(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"explorer": explorer}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

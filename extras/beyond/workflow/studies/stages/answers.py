@@ -5,8 +5,6 @@ ratios from which on the contact has this window; and the shift of the period do
 several waveforms.
 """
 
-import sys
-
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
@@ -19,9 +17,7 @@ from bouncing_ball_beyond.errors.error_law import free_impact, law_coefficients,
 from bouncing_ball_beyond.periodic.continuation import limits
 from bouncing_ball_beyond.periodic.orbits import orbit
 from bouncing_ball_beyond.tables.table import Table
-from carbonelli2011.variables import REFERENCE
-from paper_replication.datasets import grid, save_stage
-from studies.variables import described
+from paper_replication.datasets import grid
 
 # Points of the drawn branches on each side of the saddle-node.
 POINTS = 101
@@ -127,7 +123,7 @@ def lowest_windows(parameters: dict) -> xr.Dataset:
     )
 
 
-def shift(table: Table, r: NDArray, n: int) -> NDArray:
+def shift(table: Table, r: float | NDArray, n: int) -> NDArray:
     """ϖ times the relative shift of the period doubling by the law, Eq. R6."""
     unit = SpringDamper(1.0, restitution=r)
     # The period doubling does not depend on Λ, which the law needs for other quantities.
@@ -200,7 +196,3 @@ def ext_answers(parameters: dict) -> xr.Dataset:
 
 
 STAGE = {"ext_answers": ext_answers}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

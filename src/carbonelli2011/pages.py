@@ -12,10 +12,11 @@ from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
+from carbonelli2011.article import TEMPLATES
 from paper_replication import origins
 from paper_replication.datasets import Datasets
 from paper_replication.judgements import claims_of, counted
-from paper_replication.templates import TEMPLATES, environment
+from paper_replication.templates import environment
 
 
 @dataclass(frozen=True)

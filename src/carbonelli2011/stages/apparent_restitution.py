@@ -2,7 +2,6 @@
 13).
 """
 
-import sys
 from collections.abc import Iterable
 
 import numpy as np
@@ -11,9 +10,8 @@ import xarray as xr
 from bouncing_ball import restitution
 from bouncing_ball.continuation import stable_orbits
 from bouncing_ball.orbits import Family
-from bouncing_ball.spring_damper import Contact, damping_ratio
-from carbonelli2011.variables import REFERENCE, described
-from paper_replication.datasets import grid, save_stage
+from bouncing_ball.spring_damper import Contact
+from paper_replication.datasets import grid
 
 QUANTITIES = (
     "phase",
@@ -38,8 +36,7 @@ def along_frequency_ratio(
     names: Iterable[str] = QUANTITIES,
 ) -> xr.Dataset:
     """The named quantities of the orbits, shape (case, ϖ), NaN where there is none."""
-    zeta = damping_ratio(r, release)[:, np.newaxis]
-    family = Family(n, Contact(ratios, zeta, release))
+    family = Family(n, Contact.of_restitution(ratios, r[:, np.newaxis], release))
     quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), names)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]
@@ -99,7 +96,3 @@ def fig13(parameters: dict, release: str) -> xr.Dataset:
 
 
 STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
-
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    save_stage(STAGE, snakemake, described, REFERENCE)

@@ -1,0 +1,7 @@
+from pathlib import Path
+
+from pendulum import PROJECT
+
+from paper_replication.compare import accept
+
+print(accept(PROJECT, Path("results")))

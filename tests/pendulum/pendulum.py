@@ -1,0 +1,62 @@
+"""Another paper, replicated with `paper_replication`: how long a swing of a pendulum takes.
+
+The paper, which is invented, prints 2.15 s for 1 m and 60°, and says that the formula of small
+swings is right within 1 % up to 20°. The period is T = 2π √(l/g) / agm(1, cos(θ/2)).
+"""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.special import agm
+
+from paper_replication import drawing
+from paper_replication.datasets import Project, Variable
+from paper_replication.judgements import NOTHING
+from paper_replication.verdicts import Claim, within
+
+VARIABLES = {
+    "angle": Variable("angle of the release", "θ", units="deg"),
+    "period": Variable("period", "T", "Eq. 1", "s"),
+    **{name: Variable(name) for name in NOTHING},
+}
+SENTENCE = "At 60° a swing takes {{ fig1.period.sel(angle=60).item() | fixed(2) }} s."
+
+
+def period(given, gravity):
+    """The stage."""
+    angle = xr.DataArray(np.arange(91.0), dims="angle")
+    small = 2 * np.pi * np.sqrt(given["length"] / gravity)
+    return xr.Dataset({"period": small / agm(1, np.cos(np.radians(angle) / 2)), "angle": angle})
+
+
+def draw(name, data, folder):
+    """The figure, if a dataset has one."""
+    if name == "fig1":
+        figure, axes = drawing.panels(2.0)
+        axes.plot(data.angle, data.period, color=drawing.COLOURS[1])
+        axes.set(xlabel="angle θ in degrees", ylabel="period T in s")
+        drawing.save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "pendulum")
+
+
+def small_swings(fig1):
+    error = fig1.period.sel(angle=slice(20)) / fig1.period[0] - 1
+    return [within("the relative error up to 20°", error, 0.01)]
+
+
+CLAIMS = [
+    Claim("sixty", "Table 1", "60°", {"fig1": {}}, lambda fig1: fig1.period[60].item(), "2.15"),
+    Claim("small", "Conclusion", "small swings", {"fig1": {"length": 1.0}}, small_swings),
+]
+
+TOP = Path(__file__).parent
+PROJECT = Project(
+    top=TOP,
+    checkout=TOP,
+    code=("Snakefile", "config", "pendulum.py"),
+    texts=("paper.md",),
+    references="An invented paper",
+    describe=lambda name: VARIABLES,
+    described_in=("pendulum.py",),
+    make=draw,
+)

@@ -1,0 +1,38 @@
+"""Where this replication lies, and what its records and comparisons need."""
+
+from pathlib import Path
+
+import xarray as xr
+
+from carbonelli2011.variables import REFERENCE, described
+from paper_replication.datasets import Project
+
+
+def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
+    """Write the pictures and the tables of a dataset into a folder, for a comparison."""
+    # A stage depends on neither figures nor tables.
+    from carbonelli2011.curves import SALT
+    from carbonelli2011.figures import FIGURES, draw
+    from carbonelli2011.tables import TABLES
+    from paper_replication.drawing import save_picture
+    from paper_replication.texts import save_table
+
+    if name in FIGURES:
+        figure = draw(name) if data is None else draw(name, data)
+        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", SALT)
+    if name in TABLES:
+        save_table(TABLES[name](data), folder / f"{name}.md", folder / f"{name}.csv")
+
+
+TOP = Path(__file__).resolve().parents[2]
+
+PROJECT = Project(
+    top=TOP,
+    checkout=TOP,
+    code=("Snakefile", "config", "src", "workflow"),
+    texts=("paper.md", "supplement.md"),
+    references=REFERENCE,
+    describe=described,
+    described_in=("src/carbonelli2011/variables.py",),
+    make=make,
+)

@@ -1,0 +1,12 @@
+"""Compute the datasets of a stage."""
+
+import sys
+from importlib import import_module
+
+from project import PROJECT
+
+from paper_replication.datasets import save_stage
+
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+stage = import_module(f"carbonelli2011.stages.{snakemake.params.stage}")
+save_stage(stage.STAGE, snakemake, PROJECT)

@@ -15,6 +15,8 @@ from unittest import mock
 import pytest
 from snakemake import cli
 
+ROOT = Path(__file__).resolve().parents[1]
+
 STUB = """from pathlib import Path
 for file in snakemake.output:
     about = [getattr(snakemake.params, name, "") for name in ("stage", "settings")]

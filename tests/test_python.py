@@ -6,7 +6,7 @@ import tomllib
 
 import pytest
 import yaml
-from tests.reference import ROOT
+from tests.checkout import ROOT
 
 PYTHON = """#!/bin/sh
 case "$*" in

@@ -11,8 +11,8 @@ from modulefinder import ModuleFinder
 from pathlib import Path
 
 import pytest
-from tests.checkout import Checkout
-from tests.reference import CONFIG, ROOT, stage
+from tests.checkout import ROOT, Checkout
+from tests.reference import CONFIG, stage
 
 from paper_replication.configuration import entries, stages
 

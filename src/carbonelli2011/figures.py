@@ -714,18 +714,18 @@ def compressed(height: NDArray) -> NDArray:
 
 
 def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
-    """Draw the failing orbits of one quantity and one n, and their share as a number."""
-    if (data.doubled_share > 0).any():
-        first = 1 - data.doubled_share
-        axes.fill_between(data.restitution, first, 1, **DOUBLED)
-        # Over a dark region its border remains visible.
-        axes.plot(data.restitution, first, color=DOUBLED["edgecolor"], linewidth=0.8)
+    """Draw the failing orbits of one quantity and one n, and their share as a number.
+
+    The orbits that are unstable on the contact cover them.
+    """
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
     if (excess > 0).any():
         axes.contourf(*over, levels=[0, float(excess.max()) + 1], colors=CONTACT)
         # The border keeps thin regions visible.
         axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
+    if (data.doubled_share > 0).any():
+        axes.fill_between(data.restitution, 1 - data.doubled_share, 1, zorder=2, **DOUBLED)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
     axes.text(0.5, 1.04, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)

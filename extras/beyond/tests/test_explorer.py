@@ -135,6 +135,12 @@ def test_what_a_switch_fills_in_is_rounded(seen):
     assert found == [f"{float(f'{value:.4g}'):.15g}" for value in wanted]
 
 
+@pytest.mark.parametrize("address", ["", STIFF])
+def test_the_balls_with_other_starts_are_counted_once(seen, address):
+    of, *ends = map(int, re.findall(r"(?:^Of|,) (\d+) ", seen[f"desk {address}"]["starts"]))
+    assert sum(ends) == of
+
+
 def test_a_wrong_number_is_reported_at_the_top(seen):
     assert seen["wrong"]["badge"] == "bad"
     assert seen["wrong"]["warned"]

@@ -147,7 +147,7 @@ def fig03(data: xr.Dataset) -> Figure:
     amplitude_max = parameters(data)["amplitude_max"]
     names = []
     absent = []
-    enlarged = []
+    enlarged: list[tuple[xr.Dataset, xr.Dataset, str]] = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
         family = data.sel(n=n)
         branch = restitution_branch(family, family.sel(impact_map="exact"))
@@ -162,8 +162,8 @@ def fig03(data: xr.Dataset) -> Figure:
             absent.append(label(n=n))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
     axes.set_xlim(0, amplitude_max)
-    for family in enlarged:
-        enlarge_doublings(axes, *family)
+    for chosen in enlarged:
+        enlarge_doublings(axes, *chosen)
     axes.set_title(title(data, "restitution") + no_branch(absent))
     branch_legend(figure, both_phases=False)
     figure.draw_without_rendering()

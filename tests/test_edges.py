@@ -257,6 +257,10 @@ def assert_numbers_are_true(name: str, data) -> None:
     for each in ("failing_share", "failing_mean", "doubled_share", "doubled_mean"):
         if each in data:
             assert ((data[each] >= 0) & (data[each] <= 1) | data[each].isnull()).all(), each
+    if "failing_share" in data:
+        # No orbit is counted twice.
+        both = data.failing_share + data.doubled_share
+        assert ((both <= 1 + 1e-9) | both.isnull()).all()
     for each in ("computed", "restitution_range", "printed"):
         if each in data:
             assert not (data[each].isel(bound=0) > data[each].isel(bound=1)).any(), each

@@ -197,13 +197,6 @@ def test_a_dense_scan_has_the_same_errors_and_threshold(release):
     assert scan[sum(outside) - 1] < threshold < scan[sum(outside)]
 
 
-def test_where_there_is_no_orbit_the_error_is_infinite():
-    ratios = np.array([1.0, 3.0, 100.0])
-    found = errors.errors(["max_height"], 5, 0.65, 3.4, ratios, "displacement")["max_height"]
-    assert np.isinf(found.values[0])
-    assert np.isfinite(found.values[1:]).all()
-
-
 @pytest.mark.parametrize(
     ("n", "r", "amplitude", "ratio", "release", "message"),
     [
@@ -221,6 +214,38 @@ def test_without_a_stable_orbit_the_error_is_one_line(n, r, amplitude, ratio, re
     with pytest.raises(NoOrbit, match=message) as found:
         errors.errors(["max_height"], n, r, amplitude, np.array([ratio]), release)
     assert "\n" not in str(found.value)
+
+
+def test_an_error_is_infinite_where_the_contact_has_no_stable_orbit():
+    """At ϖ = 100 the period has doubled at Λ = 1.2375, on the stiffer contact at 1.2394."""
+    ratios = np.array([100.0, 1e4])
+    found = errors.errors(
+        ["max_height", "phase_in_periods"], 1, 0.65, 1.239, ratios, "displacement"
+    )
+    for error in found.values():
+        assert np.isinf(error.values[0]) and error.values[1] < 1e-4
+        assert error.admissible.tolist() == [False, True]
+    with pytest.raises(NoOrbit):
+        errors.errors(["max_height"], 1, 0.65, restitution.saddle_node(1, 0.65), 100, "force")
+
+
+@pytest.mark.parametrize("release", RELEASES)
+@pytest.mark.parametrize("ratio", [3.0, 4.0, 10.0, 100.0, 1000.0])
+def test_the_error_by_hand_is_that_of_the_stable_orbits_of_its_domain(release, ratio):
+    """docs/your-ball.md: r ≥ 0.5, n ≤ 6, ϖ ≥ 3, positions from 0.1 to 1 - 1.1 n/ϖ."""
+    sizes, parts = [1, 2, 3, 4, 5, 6], np.linspace(0, 1, 7)
+    n, r, part = (each.reshape(-1, 1) for each in np.meshgrid(sizes, 0.5 + 0.499 * parts, parts))
+    last = 1 - 1.1 * n / ratio
+    n, r, part, last = (each[last > 0.1].reshape(-1, 1) for each in (n, r, part, last))
+    x = restitution.saddle_node(n, r)
+    position = 0.1 + part * (last - 0.1)
+    amplitude = x + position * (restitution.period_doubling(n, r) - x)
+    family = Family(n, Contact.of_restitution([ratio], r, release))
+    y = errors.orbits_along(family, amplitude)
+    assert restitution.is_stable(*family.trace_and_determinant(y)).all()
+    assert (family.clearance(y) > 0).all()
+    size = (family.max_height(y) / restitution.max_height(n, r, amplitude) - 1) * n * ratio
+    assert y.size and -1 <= size.min() and size.max() <= -0.58
 
 
 def test_a_ball_whose_contact_ends_with_its_force():

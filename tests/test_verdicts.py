@@ -47,8 +47,8 @@ def test_readings_that_agree_decide_and_others_are_named():
     assert mixed["own_sense"] == "does not hold"
     assert verdicts.of_readings(claim, [low, high])["own_sense"] == "holds"
     assert mixed["condition"] == [
+        "literally, no: the higher (2.1, at most 2)",
         "yes: the lower (2, at most 2)",
-        "no: the higher (2.1, at most 2)",
     ]
 
 
@@ -70,6 +70,10 @@ def test_what_follows_by_algebra_holds_and_gives_its_reason():
     found = verdicts.answer(claim, {})
     assert found["verdict"] == "reproduced"
     assert found["condition"] == ["yes: the limit (by algebra)"]
+    assert found["own_sense"] == ""
+    certain = verdicts.by_definition("the duration", "it is positive")
+    assert verdicts.of_readings(claim, [certain])["own_sense"] == "cannot fail"
+    assert verdicts.of_readings(claim, [certain, *claim.decide()])["own_sense"] == ""
 
 
 def test_conditions_take_the_worst_number_and_a_missing_one_is_not_judged():

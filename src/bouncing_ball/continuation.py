@@ -316,7 +316,14 @@ def bifurcations(n: Numbers, kind: str, contact: Contact) -> NDArray:
     ndarray, shape (4, families, ratios)
         Orbits y at the bifurcations. NaN if the walk from stiff contacts does not reach the
         bifurcation.
+
+    Raises
+    ------
+    ValueError
+        If the kind is another one.
     """
+    if kind not in SPECIAL[:2]:
+        raise ValueError(f"the kind is {kind!r}: give {' or '.join(SPECIAL[:2])}")
     n = np.atleast_1d(n)[:, np.newaxis]
     x = restitution.saddle_node(n, contact.restitution)
     impact_height = np.zeros_like(x)

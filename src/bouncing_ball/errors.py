@@ -224,6 +224,18 @@ def _along(
     return Error(np.where(np.isnan(values), np.inf, values), between, family.clearance(orbits) > 0)
 
 
+QUANTITIES = (
+    "max_height",
+    "bounce_velocity",
+    "phase_in_periods",
+    "apparent_restitution",
+    "saddle_node",
+    "period_doubling",
+    "permanent_contact",
+)
+"""Quantities that both models have, by the names that `errors` takes."""
+
+
 def errors(
     quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
 ) -> dict[str, Error]:
@@ -232,17 +244,22 @@ def errors(
     Parameters
     ----------
     quantities : sequence of str
-        Any of ``max_height``, ``bounce_velocity``, ``phase_in_periods``, ``apparent_restitution``,
-        ``saddle_node``, ``period_doubling`` and ``permanent_contact``. Errors are relative, except
-        for the phase: its error is a fraction of the period of the table.
+        Any of QUANTITIES. Errors are relative, except for the phase: its error is a fraction of the
+        period of the table.
     n : int
         Number of table periods in one cycle.
     r, amplitude : float
         Restitution coefficient and amplitude Λ.
-    ratios : ndarray, shape (ratios,)
+    ratios : array_like, shape (ratios,) or ()
         Frequency ratios ϖ, in ascending order.
     release : str
         Release condition, ``displacement`` or ``force``.
+
+    Returns
+    -------
+    dict
+        Errors by the name of the quantity, over the ratios. The error of a quantity of orbits is
+        infinite where the contact has no stable orbit.
 
     Raises
     ------
@@ -251,25 +268,29 @@ def errors(
         named, and the restitution model or the contacts of all ϖ have no stable orbit at the
         amplitude: there is nothing to compare. The message says where the contact of the largest ϖ
         has stable orbits.
-    KeyError
-        If a name is unknown.
+    ValueError
+        If a name, the release, n, r or ϖ is not one of those that are allowed.
 
     >>> scan = np.array([10.0, 100.0])
     >>> found = errors(["bounce_velocity"], 1, 0.65, 1.0, scan, "displacement")
     >>> found["bounce_velocity"].values.round(3).tolist()
     [0.061, 0.006]
     """
+    ratios = np.atleast_1d(ratios)
     contact = Contact.of_restitution(ratios, r, release)
     if np.isnan(contact.damping_ratio):
         raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
+    if unknown := [name for name in quantities if name not in QUANTITIES]:
+        raise ValueError(f"the quantity is {unknown[0]!r}: give any of {', '.join(QUANTITIES)}")
     known: dict[str, Error] = {}
     if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
         family = Family(n, contact)
         ends = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
-        orbits = np.full((4, len(ratios)), np.nan)
-        if ends[0] <= amplitude < ends[1]:
+        orbits = np.full((4, ratios.size), np.nan)
+        if ends[0] < amplitude < ends[1]:
             orbits = stable_orbits(n, r, amplitude, ratios, release)[:, 0]
-        if not is_stable(*family.trace_and_determinant(orbits)).any():
+        stable = is_stable(*family.trace_and_determinant(orbits))
+        if not stable.any():
             stiffest = replace(contact, frequency_ratio=np.max(ratios))
             low, high = (bifurcations(n, kind, stiffest)[0].item() for kind in SPECIAL[:2])
             of_contact = f"; those with ϖ = {np.max(ratios):g} need {low:.6g} to {high:.6g}"
@@ -277,7 +298,7 @@ def errors(
                 f"Λ = {amplitude:.6g}: stable {n}-T orbits of the restitution model need Λ from "
                 f"{ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1){of_contact * (low < high)}"
             )
-        known |= orbit_errors(family, orbits, r, amplitude)
+        known |= orbit_errors(family, np.where(stable, orbits, np.nan), r, amplitude)
     if {"saddle_node", "period_doubling"} & set(quantities):
         known |= bifurcation_errors(n, r, ratios, release)
     known["permanent_contact"] = permanent_contact_error(ratios, contact.damping_ratio, release)

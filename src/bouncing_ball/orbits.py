@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball.restitution import is_stable
+from bouncing_ball.restitution import is_stable, periods
 from bouncing_ball.spring_damper import Contact
 
 
@@ -71,10 +71,18 @@ class Family:
         Number of table periods in one cycle.
     contact
         Contact of ball and table.
+
+    Raises
+    ------
+    ValueError
+        If n is not a whole number of periods.
     """
 
     n: int | NDArray
     contact: Contact
+
+    def __post_init__(self):
+        periods(self.n)
 
     @property
     def period(self) -> float | NDArray:

@@ -25,13 +25,34 @@ STICKING = 1e-9
 ball would bounce infinitely often in a finite time, with geometrically decreasing velocities."""
 
 
+def required(name: str, values: Numbers, wrong: NDArray, allowed: str) -> NDArray:
+    """Return the values of an argument as an array; ValueError if some are wrong."""
+    values = np.asarray(values)
+    if np.any(wrong):
+        raise ValueError(f"{name} is {values[wrong].flat[0]:g}: give {allowed}")
+    return values
+
+
+def periods(n: Numbers) -> NDArray:
+    """Return numbers n of table periods; ValueError if they are not whole, or below 1."""
+    return required("n", n, ~(np.greater_equal(n, 1) & (np.mod(n, 1) == 0)), "whole numbers n >= 1")
+
+
+def coefficient(r: Numbers) -> NDArray:
+    """Return restitution coefficients r; ValueError if they are outside 0 < r <= 1.
+
+    NaN passes, because it marks elements of an array for which no contact exists.
+    """
+    return required("r", r, np.less_equal(r, 0) | np.greater(r, 1), "0 < r <= 1")
+
+
 def bounce_velocity(n: Numbers) -> NDArray:
     """Velocity nπ of the ball after the impact of an n-T orbit (Eq. 6).
 
     >>> round(float(bounce_velocity(1)), 6)
     3.141593
     """
-    return np.pi * np.asarray(n)
+    return np.pi * periods(n)
 
 
 def saddle_node(n: Numbers, r: Numbers) -> NDArray:
@@ -42,7 +63,7 @@ def saddle_node(n: Numbers, r: Numbers) -> NDArray:
     >>> round(float(saddle_node(1, 0.85)), 4)
     0.2547
     """
-    r = np.asarray(r)
+    r = coefficient(r)
     return bounce_velocity(n) * (1 - r) / (1 + r)
 
 
@@ -63,7 +84,7 @@ def trace(r: Numbers, impact_height: Numbers) -> NDArray:
 
     The determinant of the linearised map is r².
     """
-    r = np.asarray(r)
+    r = coefficient(r)
     return 1 + r**2 - (1 + r) ** 2 * np.asarray(impact_height)
 
 
@@ -72,7 +93,7 @@ def period_doubling_height(r: Numbers) -> NDArray:
 
     It solves 1 + trace + determinant = 0.
     """
-    r = np.asarray(r)
+    r = coefficient(r)
     return 2 * (1 + r**2) / (1 + r) ** 2
 
 
@@ -131,7 +152,7 @@ def max_height(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
 
 def height(n: int, impact_height: Numbers, time: Numbers) -> NDArray:
     """Height of the ball on an n-T orbit (Eq. 4), at times since an impact at the height Y."""
-    since = np.mod(time, 2 * np.pi * n)
+    since = np.mod(time, 2 * bounce_velocity(n))
     return impact_height + bounce_velocity(n) * since - since**2 / 2
 
 
@@ -234,7 +255,7 @@ def impact_map(
     following = time + duration
     table_before = amplitude * np.cos(time)
     table_after = amplitude * np.cos(following)
-    bounce = -r * (velocity - duration) + (1 + r) * table_after
+    bounce = -coefficient(r) * (velocity - duration) + (1 + r) * table_after
     landing = velocity - duration - table_after
     by_time = 1 - (table_before - table_after) / landing
     by_velocity = -duration / landing
@@ -352,43 +373,6 @@ def repetition(path: Impacts) -> tuple[int, int]:
         if same_phase and np.abs(velocity[count:] - velocity[:-count]).max() < 1e-9:
             return count, int(np.rint(periods[0]))
     return 0, 0
-
-
-def direct_exponent(
-    r: float, amplitude: float, time: float, velocity: float, impacts: int, block: int = 32
-) -> tuple[float, float]:
-    """Largest Lyapunov exponent of the direct map, per impact, and its standard error.
-
-    In the direct map every flight ends at the height at which it begins:
-
-        τ₁ = τ₀ + 2 v₀,    v₁ = r v₀ + (1 + r) Λ cos τ₁.
-
-    Its period doubling is that of Eq. 8. The map also takes negative velocities, which no ball has.
-    The first quarter of the impacts is discarded. The standard error is that of a mean over blocks
-    of `block` impacts.
-
-    Parameters
-    ----------
-    r, amplitude : float
-        Restitution coefficient and amplitude Λ.
-    time, velocity : float
-        Time τ of the first impact, and velocity of the ball after it.
-    impacts : int
-        Number of impacts, including the first.
-    """
-    deviation = np.array([1.0, 0.0])
-    growth = np.empty(impacts - 1)
-    for k in range(impacts - 1):
-        time = time + 2 * velocity
-        velocity = r * velocity + (1 + r) * amplitude * np.cos(time)
-        turn = (1 + r) * amplitude * np.sin(time)
-        deviation = np.array([[1, 2], [-turn, r - 2 * turn]]) @ deviation
-        size = np.hypot(*deviation)
-        deviation = deviation / size
-        growth[k] = np.log(size)
-    blocks = 3 * growth.size // (4 * block)
-    means = growth[-blocks * block :].reshape(blocks, block).mean(axis=1)
-    return means.mean(), means.std(ddof=1) / np.sqrt(blocks)
 
 
 def lyapunov_exponent(path: Impacts, block: int = 32) -> tuple[float, float]:

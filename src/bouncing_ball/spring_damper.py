@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize.elementwise import find_root
 
-from bouncing_ball.restitution import Numbers
+from bouncing_ball.restitution import Numbers, coefficient, required
 
 RELEASES = ("displacement", "force")
 
@@ -23,6 +23,16 @@ RELEASES = ("displacement", "force")
 def unknown(release: str) -> ValueError:
     """The error of a function for a release that it does not know."""
     return ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
+
+
+def check_ratios(frequency_ratio: Numbers, damping_ratio: Numbers) -> None:
+    """Raise ValueError unless ϖ > 0 and 0 <= ζ < 1.
+
+    NaN passes, because it marks elements of an array for which no contact exists.
+    """
+    required("ϖ", frequency_ratio, np.less_equal(frequency_ratio, 0), "ϖ > 0")
+    wrong = np.less(damping_ratio, 0) | np.greater_equal(damping_ratio, 1)
+    required("ζ", damping_ratio, wrong, "0 <= ζ < 1")
 
 
 def free_angle(zeta: Numbers, release: str) -> NDArray | float:
@@ -34,6 +44,7 @@ def free_angle(zeta: Numbers, release: str) -> NDArray | float:
     - Force release: 2 arccos ζ = π - 2 arcsin ζ. The contact ends earlier by the angle by which its
       force leads its displacement (Schwager and Pöschel, 2007).
     """
+    check_ratios(1, zeta)
     if release == "force":
         return 2 * np.arccos(zeta)
     if release != "displacement":
@@ -72,7 +83,7 @@ def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
     >>> round(float(damping_ratio(0.85)), 5), round(float(damping_ratio(0.85, "force")), 5)
     (0.05166, 0.05348)
     """
-    logarithm = np.log(r)
+    logarithm = np.log(coefficient(r))
     if release == "force":
         found = find_root(
             lambda zeta, logarithm: zeta * free_duration(zeta, release) + logarithm,
@@ -134,7 +145,7 @@ class Contact:
     Raises
     ------
     ValueError
-        If the release is unknown, or a damping ratio is outside its range.
+        If the release is unknown, or a ratio is outside its range.
     """
 
     frequency_ratio: float | NDArray
@@ -156,9 +167,9 @@ class Contact:
     def __post_init__(self):
         if self.release not in RELEASES:
             raise unknown(self.release)
-        # NaN must pass, because it marks elements of an array for which no contact exists.
-        if np.any(np.less(self.damping_ratio, 0) | np.greater_equal(self.damping_ratio, 1)):
-            raise ValueError(f"the damping ratio ζ is {self.damping_ratio}: give 0 <= ζ < 1")
+        for name in ("frequency_ratio", "damping_ratio", "weight"):
+            object.__setattr__(self, name, np.asarray(getattr(self, name))[()])
+        check_ratios(self.frequency_ratio, self.damping_ratio)
 
     @property
     def lag(self) -> NDArray:
@@ -289,6 +300,7 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
     >>> float(permanent_contact(1.0, 0.1))
     0.2
     """
+    check_ratios(ratio, zeta)
     ratio = np.asarray(ratio, dtype=float)
     resistance = np.hypot(ratio**2 - 1, 2 * zeta * ratio)
     if release == "displacement":
@@ -310,6 +322,7 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
     >>> [round(each, 4) for each in lowest_permanent_contact(0.1)]
     [1.0102, 0.199]
     """
+    check_ratios(1, zeta)
     if release == "force":
         ratio = np.sqrt((1 + np.sqrt(1 + 8 * zeta**2)) / 2)
         return float(ratio), float(permanent_contact(ratio, zeta, release))
@@ -329,6 +342,7 @@ def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, floa
     >>> [round(each, 4) for each in permanent_contact_ratios(0.99, 0.1359)]
     [0.7225, 9.8116]
     """
+    check_ratios(1, zeta)
     middle = 1 - 2 * zeta**2
     with np.errstate(invalid="ignore"):
         root = np.sqrt(middle**2 + amplitude**2 - 1)

@@ -84,6 +84,7 @@ def written(name: str, datasets: Datasets) -> str:
         error_of_eq_8=measures.error_of_eq_8,
         departure=measures.departure,
         spread=measures.spread,
+        restitution_at_rest=measures.restitution_at_rest,
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,

@@ -680,19 +680,17 @@ def compressed(height: NDArray) -> NDArray:
 def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     """Draw the failing orbits of one quantity and one n, and their share as a number.
 
-    A cross marks an orbit for which no sufficient ϖ is known.
+    The orbits that are unstable on the contact cover them. A cross marks an orbit for which no
+    sufficient ϖ is known.
     """
-    if (data.doubled_share > 0).any():
-        first = 1 - data.doubled_share
-        axes.fill_between(data.restitution, first, 1, **DOUBLED)
-        # Over a dark region its border remains visible.
-        axes.plot(data.restitution, first, color=DOUBLED["edgecolor"], linewidth=0.8)
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
     if (excess > 0).any():
         axes.contourf(*over, levels=[0, float(excess.max()) + 1], colors=CONTACT)
         # The border keeps thin regions visible.
         axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
+    if (data.doubled_share > 0).any():
+        axes.fill_between(data.restitution, 1 - data.doubled_share, 1, zorder=2, **DOUBLED)
     row, column = np.nonzero(data.enough_from.isnull().values)
     axes.plot(data.restitution[row], data.place[column], **CROSS)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}

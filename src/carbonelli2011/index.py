@@ -5,6 +5,7 @@ shown next to it.
 """
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -74,6 +75,7 @@ def filled_in(
         counts=judgements.counts(claims),
         unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),
+        failing=partial(article.failing, datasets["validity_map"]),
         formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
         checked_by=formulas[0]["condition"],
         parts=found,
@@ -126,7 +128,7 @@ def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
     heads = ["quantity", f"at ϖ ≥ {advised}", f"for some Λ: above {limit}, or it happens"]
     rows = [[*heads, f"share: {families[0]}", *families[1:]]]
     for quantity in validity_map["quantity"].values:
-        error = validity_map.stiff_error.sel(quantity=quantity).max(skipna=False).item()
+        error = validity_map.largest_error.sel(quantity=quantity).max(skipna=False).item()
         of = " of a period" if quantity == "phase_in_periods" else ""
         largest = "unknown" if np.isnan(error) else f"error up to {texts.percent(error, 2)}{of}"
         where = article.failing(validity_map, quantity)

@@ -137,41 +137,6 @@ def error_of_eq_8(thresholds: xr.Dataset) -> float:
     return abs(limit / printed - 1)
 
 
-def residual(figure: xr.Dataset) -> NDArray:
-    """Return the residuals of Eqs. 23 to 26 on the orbits of a figure, shape (4, ϖ, points).
-
-    The residual of Eq. 23 is multiplied by ϖ; the others are in the units of the model.
-    """
-    n = parameters(figure)["n"]
-    ratio = figure["frequency_ratio"].values[:, np.newaxis]
-    amplitude, phase, end, duration, before, after = (
-        figure[name].values
-        for name in (
-            "amplitude",
-            "phase",
-            "release_phase",
-            "contact_duration",
-            "impact_velocity",
-            "bounce_velocity",
-        )
-    )
-    x = amplitude * np.cos(phase)
-    impact_height = amplitude * np.sin(phase)
-    contact = Contact(ratio, figure["damping_ratio"].item())
-    with np.errstate(invalid="ignore"):  # orbits that are missing
-        motion = contact.motion(duration, before - x, x, impact_height)
-    flight = 2 * np.pi * n - duration
-    landing = motion.displacement + amplitude * np.sin(end) + after * flight - flight**2 / 2
-    return np.stack(
-        [
-            ratio * motion.displacement,
-            motion.velocity + amplitude * np.cos(end) - after,
-            landing - impact_height,
-            after - flight - before,
-        ]
-    )
-
-
 def restitution_at_rest(r: float, ratio: float, weight: float = 1.0) -> float:
     """Return the restitution of a ball that hits a table at rest with the velocity π.
 

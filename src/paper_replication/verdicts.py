@@ -105,6 +105,8 @@ class Reading(NamedTuple):
         The bound of this number, as text; without a number, the reason.
     is_share
         Whether the number is printed in per cent.
+    cannot_fail
+        Whether no result could have made it fail.
     """
 
     name: str
@@ -112,6 +114,7 @@ class Reading(NamedTuple):
     found: float | None
     required: str
     is_share: bool = False
+    cannot_fail: bool = False
 
 
 def at_most(name: str, values: ArrayLike, bound: float) -> Reading:
@@ -149,6 +152,11 @@ def above(name: str, values: ArrayLike) -> Reading:
 def argued(name: str, holds: bool, reason: str) -> Reading:
     """State a sense that no number decides, with the reason."""
     return Reading(name, holds, None, reason)
+
+
+def by_definition(name: str, reason: str) -> Reading:
+    """State a sense that no result could have made fail, with the reason."""
+    return Reading(name, True, None, reason, cannot_fail=True)
 
 
 # Claims
@@ -240,8 +248,8 @@ def of_number(claim: Claim, computed: ArrayLike) -> dict:
 def of_readings(claim: Claim, readings: list[Reading]) -> dict:
     """The verdict on a statement; the number found is that of the literal reading.
 
-    If the readings differ, `own_sense` says whether the literal one holds. If no number decides,
-    algebra does.
+    If the readings differ, `own_sense` says whether the literal one holds; if none of them could
+    have failed, it is "cannot fail". If no number decides, algebra does.
     """
     numbers = [reading.found for reading in readings if reading.found is not None]
     if np.isnan(numbers).any():
@@ -258,7 +266,8 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
         reason = f"the text does not say {claim.missing}"
         return found | {"verdict": "not testable", "reason": reason}
     if all(right):
-        return found | {"verdict": "reproduced"}
+        certain = all(reading.cannot_fail for reading in readings)
+        return found | {"verdict": "reproduced", "own_sense": "cannot fail" if certain else ""}
     if not any(right):
         return found | {"verdict": "not reproduced"}
     sense = "holds" if readings[0].holds else "does not hold"
@@ -266,19 +275,20 @@ def of_readings(claim: Claim, readings: list[Reading]) -> dict:
 
 
 def listed(readings: list[Reading]) -> list[str]:
-    """Print readings, those that hold first, each with its number and the bound.
+    """Print readings, each with its number and the bound; of several, the first is the literal one.
 
     >>> listed([within("Eq. 8", 0.0297, 0.01), within("Eq. 5", 0.000132, 0.01)])
-    ['yes: Eq. 5 (0.0132 %, at most 1 %)', 'no: Eq. 8 (2.97 %, at most 1 %)']
+    ['literally, no: Eq. 8 (2.97 %, at most 1 %)', 'yes: Eq. 5 (0.0132 %, at most 1 %)']
     """
     texts = []
-    for reading in sorted(readings, key=lambda reading: not reading.holds):
+    for k, reading in enumerate(readings):
         found = reading.found
         number = ""
         if found is not None and np.isfinite(found):
             number = f"{rounded(found, reading.is_share)}, "
         word = "yes" if reading.holds else "no"
-        texts.append(f"{word}: {reading.name} ({number}{reading.required})")
+        mark = "literally, " if k == 0 and len(readings) > 1 else ""
+        texts.append(f"{mark}{word}: {reading.name} ({number}{reading.required})")
     return texts
 
 

@@ -2,20 +2,16 @@
 
 A hypothesis is another damping ratio, another release, no gravity in contact, another
 stability, digits that were cut off, or the formulas of the restitution model. Each is judged by all
-23 printed numbers, in units of their last digits. Most of Table 1 fits none of them, so that two
-questions are asked about its compliant rows: whether the distances have a pattern, and whether a
-row would fit some other contact; both beside the same distances in other orders.
+23 printed numbers, in units of their last digits.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import combinations, permutations, product
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize.elementwise import find_root
-from scipy.stats import permutation_test
 
 from bouncing_ball import restitution
 from bouncing_ball.continuation import at_amplitude, at_bifurcation, bifurcations, correct, walk
@@ -238,74 +234,9 @@ def hypotheses(parameters: dict) -> xr.Dataset:
     nodes = (plain - printed.values.astype(float))[..., 0] / DIGIT
     data["below_orbits"] = int((nodes > 0.5 + ROUNDING).sum())
     rows = (plain[1:] - printed.values[1:].astype(float)) / DIGIT
-    return data.sortby([-data.reproduced, data.rms_difference]).merge(chances(n, ratios[1:], rows))
-
-
-# Whether a pattern or another contact behind the compliant rows beats chance
-
-
-def chances(n: NDArray, ratios: NDArray, units: NDArray) -> xr.Dataset:
-    """The mean distance of the ends of each n, how many ends of each row any contact reproduces,
-    and how often the same distances in other orders do as well.
-
-    `units` are the distances of the computed ends from the printed ones, shape (ϖ, n, 2).
-    """
-    by_n = units.swapaxes(0, 1).reshape(n.size, -1)
-
-    def spread(*groups, axis):
-        return np.var([group.mean(axis=axis) for group in groups], axis=0)
-
-    dealt = permutation_test(
-        tuple(by_n), spread, n_resamples=np.inf, alternative="greater", vectorized=True
-    )
-    most = []
-    for row, slope in zip(units, slopes(n, ratios), strict=True):
-        orders = np.array(list(permutations(row.ravel())))
-        most.append(most_reproduced(orders, slope))
-    # The first order is the row itself.
-    return xr.Dataset(
-        {
-            "mean_difference": ("n", by_n.mean(axis=1)),
-            "mean_chance": float(dealt.pvalue),
-            "free_reproduced": ("frequency_ratio", [counts[0] for counts in most]),
-            "free_chance": ("frequency_ratio", [np.mean(counts >= counts[0]) for counts in most]),
-        },
-        {"n": n, "frequency_ratio": ratios},
-    )
-
-
-def slopes(n: NDArray, ratios: NDArray) -> NDArray:
-    """Derivatives of the ends of rows by ln ϖ and by ζ in printed units, shape (ϖ, ends, 2)."""
-    zeta = float(damping_ratio(R_OF_TABLE_1))
-    step = 1e-4
-    damping = np.repeat([zeta, zeta + step], n.size)[:, np.newaxis]
-    contact = Contact(np.outer(np.exp([0, step]), ratios).ravel(), damping)
-    families = np.tile(n, 2)
-    kinds = [bifurcations(families, kind, contact)[0] for kind in BOUNDS]
-    # By ζ, n, the step of ln ϖ, ϖ and end.
-    found = np.stack(kinds, axis=-1).reshape(2, n.size, 2, ratios.size, 2)
-    here = found[0, :, 0]
-    changes = np.stack([found[0, :, 1] - here, found[1, :, 0] - here], axis=-1)
-    return changes.swapaxes(0, 1).reshape(ratios.size, -1, 2) / step / DIGIT
-
-
-def most_reproduced(units: NDArray, slope: NDArray) -> NDArray:
-    """How many ends any ϖ and ζ reproduce at most, shape (rows,), for rows with distances `units`,
-    shape (rows, ends), from the printed ends.
-
-    The ends are taken as linear in ln ϖ and ζ, with ϖ within a fifth and ζ within 0.003 of the
-    given ones. If several ends can be reproduced at all, they also are where two of them are off by
-    just half a unit.
-    """
-    pairs = np.array(list(combinations(range(len(slope)), 2)))
-    edges = np.array(list(product([-0.5, 0.5], repeat=2)))
-    wanted = edges - units[:, pairs][:, :, np.newaxis]
-    # The shifts of ln ϖ and ζ, shape (rows, pairs, edges, 2).
-    shifts = np.linalg.solve(slope[pairs][:, np.newaxis], wanted[..., np.newaxis])[..., 0]
-    near = (abs(shifts) <= [np.log(1.2), 0.003]).all(axis=-1)
-    moved = shifts @ slope.T + units[:, np.newaxis, np.newaxis]
-    counts = reproduced(moved).sum(axis=-1)
-    return np.where(near, counts, 0).max(axis=(1, 2))
+    data["mean_difference"] = "n", rows.mean(axis=(0, 2))
+    data["n"] = n
+    return data.sortby([-data.reproduced, data.rms_difference])
 
 
 STAGE = {"hypotheses": hypotheses}

@@ -64,8 +64,6 @@ OF_A_BALL = (
     "stickings",
     "lyapunov_exponent",
     "lyapunov_error",
-    "direct_exponent",
-    "direct_error",
 )
 
 
@@ -73,8 +71,7 @@ def three_balls(parameters: dict) -> xr.Dataset:
     """After how many impacts the motion of each ball repeats, or how fast its neighbours separate,
     and its first impacts, before rounding errors have grown.
 
-    All balls have the same phase and relative speed at their first impact. The direct map starts
-    there, too.
+    All balls have the same phase and relative speed at their first impact.
     """
     r = parameters["restitution"]
     amplitudes = np.array(parameters["amplitude"])
@@ -89,8 +86,7 @@ def three_balls(parameters: dict) -> xr.Dataset:
         exponent = (np.nan, np.nan)
         if not impacts and not path.stickings:
             exponent = restitution.lyapunov_exponent(path)
-        direct = restitution.direct_exponent(r, amplitude, phase, velocity, path.time.size)
-        rows.append((impacts, periods, path.stickings, *exponent, *direct))
+        rows.append((impacts, periods, path.stickings, *exponent))
     columns = [("amplitude", list(column)) for column in zip(*rows, strict=True)]
     return xr.Dataset(
         {

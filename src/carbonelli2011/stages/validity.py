@@ -2,6 +2,8 @@
 
 An orbit has a place between saddle-node (0) and period doubling (1) of the restitution model, which
 is linear in Λ. The places are denser at the saddle-node, beside which the errors change fastest.
+Shares and largest errors are those of the orbits that are stable in both models: between the
+saddle-node and the period doubling of either model. Largest errors include the limits at both ends.
 """
 
 from itertools import pairwise
@@ -27,8 +29,8 @@ shares of the paper's ϖ change by at most 1e-5.
 
 def validity_map(parameters: dict, release: str) -> xr.Dataset:
     """The ϖ from which on errors stay within the tolerance, the largest errors from the advised ϖ
-    on, and what the contact of the advised ϖ has at both ends of the range of stable orbits: next
-    to its upper end the period has doubled, and below its lower end the contact has stable orbits.
+    on, and the parts of the range of stable orbits of either model that the other lacks: next to
+    the upper end the contact has doubled its period, and below the lower end it has stable orbits.
 
     Of the grid of r, the dataset has those that a contact can have.
     """
@@ -64,6 +66,9 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     node, doubling = (bifurcations(n_all[ends, 0], kind, contact)[0] for kind in SPECIAL[:2])
     width = last[ends] - first[ends]
     doubled = ((last[ends] - doubling) / width).reshape(shape[:2])
+    # The period doubling of a compliant contact may be at a larger Λ than that of the simple model.
+    end_place = np.clip(1 - doubled, 0, 1)
+    inside = (place > 0) & (place < end_place[..., np.newaxis])
     doubled_mean = [mean_share(r, each) for each in doubled]
     # The contact may double its period below the saddle-node of the restitution model.
     below = ((np.minimum(first[ends], doubling) - node) / width).reshape(shape[:2])
@@ -74,12 +79,14 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     end = restitution.period_doubling(n_curve, r_curve)
 
     over = ("quantity", "n", "restitution", "place")
-    share, mean, up_to = failures(errors, r, place, tolerance)
+    share, mean, up_to, largest = failures(errors, r, place, end_place, tolerance)
     return xr.Dataset(
         {
             # Single precision is more than a picture shows, in half the space.
             "enough_from": (over, enough.astype("float32")),
             "stiff_error": (over, np.abs(errors).max(axis=-1).astype("float32")),
+            "stable": (over[1:], inside),
+            "largest_error": (over[:2], largest),
             "not_reached": (over[:2], np.isnan(enough).sum(axis=(2, 3))),
             "failing_share": (over[:3], share),
             "failing_mean": (over[:2], mean),
@@ -111,29 +118,37 @@ def scan(
 
 
 def failures(
-    errors: NDArray, r: NDArray, place: NDArray, tolerance: float
-) -> tuple[NDArray, NDArray, NDArray]:
-    """Where the errors at some ϖ exceed the tolerance.
+    errors: NDArray, r: NDArray, place: NDArray, end_place: NDArray, tolerance: float
+) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+    """Where the errors at some ϖ exceed the tolerance, up to the place where stability ends.
 
-    Returns the share of the places for each r, the mean of this share over r, and the largest r.
-    Errors have the shape (quantities, n, r, places, ratios). They are smooth functions of ln r,
-    which gives the damping, and of the square root of the place, which gives the phase. Cubic
-    splines interpolate them. The results of a quantity and an n are NaN if one of its errors is.
+    Returns the share of the places for each r, the mean of this share over r, the largest r, and
+    the largest error. Errors have the shape (quantities, n, r, places, ratios), and the ends
+    (n, r). Errors are smooth functions of ln r, which gives the damping, and of the square root of
+    the place, which gives the phase. Cubic splines interpolate them. The results of a quantity and
+    an n are NaN if one of its errors or ends is.
     """
     fine_r = finer(r, FINER[0])
-    fine_place = finer(place ** (1 / 2), FINER[1]) ** 2
+    part = finer(place ** (1 / 2), FINER[1]) ** 2
     share = np.full(errors.shape[:3], np.nan)
-    mean = np.full(errors.shape[:2], np.nan)
-    up_to = np.full(errors.shape[:2], np.nan)
-    for each in np.argwhere(np.isfinite(errors).all(axis=(2, 3, 4))):
+    mean, up_to, largest = np.full((3, *errors.shape[:2]), np.nan)
+    known = np.isfinite(errors).all(axis=(2, 3, 4)) & np.isfinite(end_place).all(axis=1)
+    for each in np.argwhere(known):
         k = tuple(each)
-        along = CubicSpline(place ** (1 / 2), errors[k], axis=1)(fine_place ** (1 / 2))
-        surface = CubicSpline(np.log(r), along)(np.log(fine_r))
-        excess = np.abs(surface).max(axis=-1) - tolerance
-        share[k] = positive_share(excess[:: FINER[0]], fine_place)
-        mean[k] = positive_area(excess, fine_r, fine_place)
-        up_to[k] = last_positive(excess.max(axis=-1), fine_r)
-    return share, mean, up_to
+        end = np.clip(CubicSpline(r, end_place[k[1]])(fine_r), 0, 1)
+        along = CubicSpline(np.log(r), errors[k])(np.log(fine_r))
+        surface = np.stack(
+            [
+                CubicSpline(place ** (1 / 2), line)((part * upper) ** (1 / 2))
+                for line, upper in zip(along, end, strict=True)
+            ]
+        )
+        highest = np.abs(surface).max(axis=-1)
+        share[k] = (end * positive_share(highest - tolerance, part))[:: FINER[0]]
+        mean[k] = positive_area(highest - tolerance, fine_r, part, end)
+        up_to[k] = last_positive(highest.max(axis=-1) - tolerance, fine_r)
+        largest[k] = highest.max()
+    return share, mean, up_to, largest
 
 
 def mean_share(r: NDArray, values: NDArray, most: float = 1.0) -> float:
@@ -170,18 +185,19 @@ def positive_share(values: NDArray, place: NDArray) -> NDArray:
     return (parts * np.diff(place)).sum(axis=-1)
 
 
-def positive_area(values: NDArray, r: NDArray, place: NDArray) -> float:
-    """The share of the area over r and place, the axes of values, on which values are positive.
+def positive_area(values: NDArray, r: NDArray, part: NDArray, end: NDArray) -> float:
+    """The mean over r of the share of the places on which values are positive.
 
-    A diagonal divides each cell of the grid into two triangles, on which values are linear.
+    The places are `part` of an `end`, which depends on r. A diagonal divides each cell of the grid
+    over r and part, the axes of values, into two triangles, on which values are linear.
     """
     diagonal = values[1:, :-1], values[:-1, 1:]
     parts = sum(
         positive_part(np.sort([corner, *diagonal], axis=0))
         for corner in (values[:-1, :-1], values[1:, 1:])
     )
-    cells = np.diff(r)[:, np.newaxis] * np.diff(place)
-    return float((parts * cells).sum() / 2 / cells.sum())
+    widths = (end[1:] + end[:-1]) / 2 * np.diff(r)
+    return float(widths @ parts @ np.diff(part) / 2 / np.ptp(r))
 
 
 def positive_part(corners: NDArray) -> NDArray:

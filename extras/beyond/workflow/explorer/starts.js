@@ -1,5 +1,5 @@
-// On which motions balls end that start from an even grid of impacts on the contact, and with which
-// shares. They stand below the verdict.
+// On which motions balls end that start from an even grid of impacts on the contact, and how many of
+// them. They stand below the verdict.
 "use strict";
 
 // Starts along each axis, and impacts for which a ball is followed. A ball this near to a stable orbit
@@ -20,7 +20,7 @@ function endInWords({kind, periods, impacts}) {
   return impacts === 1 ? `on the ${periods}-T orbit` : `on a motion of ${counted(periods, impacts)}`;
 }
 
-// The shares of the starts by the words for their ends, the greatest first. `orbit` is the contact's
+// The numbers of starts by the words for their ends, the greatest first. `orbit` is the contact's
 // n-T orbit; balls are only said to end on it if it is stable and admissible.
 function endsOfStarts(contact, amplitude, orbit) {
   const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
@@ -34,11 +34,10 @@ function endsOfStarts(contact, amplitude, orbit) {
       counts.set(words, (counts.get(words) ?? 0) + 1);
     }
   const all = STARTS * STARTS, own = `on the ${orbit.n}-T orbit`, on = stays ? counts.get(own) ?? 0 : 0;
-  const shares = [...counts].filter(([words]) => !stays || words !== own)
-    .map(([words, count]) => [words, count / all]).sort((a, b) => b[1] - a[1]);
-  const named = shares.slice(0, 3).map(([words, share], k) => `${percent(share)}${k ? "" : " end"} ${words}`);
-  const left = shares.slice(3).reduce((sum, [, share]) => sum + share, 0);
-  if (left) named.push(`${percent(left)} on others`);
+  const others = [...counts].filter(([words]) => !stays || words !== own).sort((a, b) => b[1] - a[1]);
+  const named = others.slice(0, 3).map(([words, count], k) => `${count}${k ? "" : count > 1 ? " end" : " ends"} ${words}`);
+  const left = others.slice(3).reduce((sum, [, count]) => sum + count, 0);
+  if (left) named.push(`${left} on others`);
   if (stays) named.unshift(`${on || "none"} ${on > 1 ? "end" : "ends"} ${own}`);
   return {share: on / all, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
 }

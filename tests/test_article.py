@@ -407,10 +407,8 @@ def test_what_the_article_says_of_the_map(data):
     assert lower[0] > 2 and lower[1:].values.tolist() == [1, 0]
     assert not apparent.sel(place=0.2, method="nearest").isel(restitution=slice(3, None)).any()
     # Largest errors are limits: at the saddle-node, of the apparent restitution at the other end.
-    near = found.stiff_error.where(found.stable).max("place")
     at_node = found.stiff_error.isel(place=0).max(["n", "restitution"])
     largest = found.largest_error.max("n")
-    assert (largest >= near.max(["n", "restitution"])).all()
     assert largest.values[[0, 3]] == pytest.approx(at_node.values[[0, 3]], rel=1e-5)
     # Openings: most orbits are right, and both ends of the range of the contact are lower.
     assert found.failing_mean.sel(quantity="summit").max() < 0.1

@@ -4,7 +4,6 @@ The orbits of `tests.independent` come from the closed form by the duration of t
 motions from an integration. `make replication` compares whole datasets with the reference.
 """
 
-import json
 
 import numpy as np
 import pytest
@@ -18,7 +17,7 @@ from tests.reference import CONFIG, reference, table_with_another_row
 from bouncing_ball import errors, orbits
 from bouncing_ball.orbits import NoOrbit
 from bouncing_ball.spring_damper import RELEASES
-from carbonelli2011 import claims, index
+from carbonelli2011 import claims
 from carbonelli2011.paper import QUANTITIES
 from carbonelli2011.stages import (
     apparent_restitution,
@@ -30,7 +29,6 @@ from carbonelli2011.stages import (
     time_histories,
     validity,
 )
-from paper_replication import texts
 from paper_replication.verdicts import against_print
 
 ORBITS = 1e-9

@@ -20,7 +20,7 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels clean
+.PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
@@ -96,6 +96,28 @@ lock:
 # Whether each Python of pyproject.toml is served by each line of the lock files of all packages, with uv.
 wheels:
 	.ci/wheels
+
+# What a release consists of, in dist/: the packages, the results, the site, and their hashes.
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)
+BUILD := import sys; from importlib import import_module; \
+	backend = import_module(sys.argv[1]); backend.build_wheel(sys.argv[2]); backend.build_sdist(sys.argv[2])
+release: replication
+	$(MAKE) -C extras/beyond diff docs
+	rm -rf dist && mkdir dist
+	$(VENV)/bin/python -c '$(BUILD)' setuptools.build_meta dist
+	for package in beyond contacts; do \
+	  (cd extras/$$package && ../beyond/.venv/bin/python -c '$(BUILD)' flit_core.buildapi ../../dist) || exit 1; done
+	$(RUN) zipfile --create dist/bouncing-ball-$(VERSION)-results.zip results
+	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
+	  $(CURDIR)/dist/bouncing-ball-beyond-$(VERSION)-results.zip figures records *.md
+	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
+	  $(CURDIR)/dist/bouncing-ball-$(VERSION)-site.zip site
+	cd dist && sha256sum * > SHA256SUMS
+
+# The packages of the lock files, for a machine without an index: docs/on-a-cluster.md.
+wheelhouse: setup
+	$(RUN) pip download --quiet --disable-pip-version-check --require-hashes $(BUILT) --dest wheelhouse \
+	  --requirement requirements-build.lock --requirement requirements.lock
 
 clean:
 	rm -rf results .snakemake

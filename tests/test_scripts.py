@@ -4,7 +4,6 @@ The orbits of `tests.independent` come from the closed form by the duration of t
 motions from an integration. `make replication` compares whole datasets with the reference.
 """
 
-
 import numpy as np
 import pytest
 import xarray as xr

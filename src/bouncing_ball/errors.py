@@ -237,7 +237,7 @@ QUANTITIES = (
 
 
 def errors(
-    quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: NDArray, release: str
+    quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: Numbers, release: str
 ) -> dict[str, Error]:
     """Errors of the named quantities, along ϖ, on contacts whose free impact has the restitution r.
 

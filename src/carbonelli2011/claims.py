@@ -505,8 +505,8 @@ def compliant_end(fig06):
     "after Fig. 6",
     "the difference of the apparent restitution coefficient from r is negligible above ϖ = 100",
     "fig05 fig06",
-    remark="negligible is taken as 1 %, the limit that the paper sets for errors; the paper does "
-    "not say that a smaller ϖ is not enough, so any larger number than 100 would do as well",
+    remark="negligible is taken as 1 %, the limit that the paper sets for errors; any ϖ above 100 "
+    "would do, too",
 )
 def negligible_above_100(*sweeps):
     stiff = [sweep.sel(frequency_ratio=STIFF_CONTACTS) for sweep in sweeps]
@@ -688,9 +688,8 @@ def no_longer_nπ(fig10):
     "after Fig. 10",
     "the bouncing-off velocity starts to depart from nπ below ϖ = 100",
     "fig10",
-    remark="1 % is the limit that the paper sets for errors, and the width of a line is 1 % of the "
-    "axis; 100 is read as a number of one digit; the departure falls as the inverse of the "
-    "frequency ratio, without a step",
+    remark="1 % is the paper's limit for errors; the width of a line is 1 % of the axis; the "
+    "departure falls as the inverse of the frequency ratio, without a step",
 )
 def departs_below_100(fig10):
     error = departure(fig10)
@@ -703,7 +702,7 @@ def departs_below_100(fig10):
         begins("the ϖ at which a departure of 1 % begins", LIMIT),
         begins("the ϖ at which a departure by the width of a line begins", LINE * largest(error)),
         within_limit(
-            "no departure of 1 % above ϖ = 100, nor above any larger ϖ",
+            "no departure of 1 % above ϖ = 100, as above any larger ϖ",
             error.sel(frequency_ratio=STIFF_CONTACTS),
         ),
     ]

@@ -161,11 +161,6 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
             "r",
             tolerance=1e-6,
         ),
-        "halved_enough_from": Variable(
-            "smallest frequency ratio above which all orbits keep half the tolerance",
-            "ϖ",
-            tolerance=1e-6,
-        ),
         "doubled_share": Variable(
             "fraction of the stable range of Λ on which the period has doubled at the advised "
             "frequency ratio",

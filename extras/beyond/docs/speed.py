@@ -1,6 +1,6 @@
 """What a user waits for: measures the calls of docs/speed.md and writes its table.
 
-`make speed` renews the page, in a few minutes.
+`make -C extras/beyond speed` renews the page, in a few minutes.
 """
 
 import os
@@ -83,11 +83,11 @@ def main() -> None:
     PAGE.write_text(
         f"""# How long a call takes
 
-`make speed` measures the times and writes this page. The table lists processor times with one
-thread and with numba; each is the median of {ROUNDS} rounds of all calls. If the table names no
-ball, the ball is `SpringDamper(20.0, restitution=0.65)`. The ball with Tsuji's law has the same
-restitution coefficient and nearly the same duration of contact. Its contacts have no closed form,
-so they are integrated numerically.
+`make -C extras/beyond speed` measures the times and writes this page. The table lists processor
+times with one thread and with numba; each is the median of {ROUNDS} rounds of all calls. If the
+table names no ball, the ball is `SpringDamper(20.0, restitution=0.65)`. The ball with Tsuji's law
+has the same restitution coefficient and nearly the same duration of contact. Its contacts have no
+closed form, so they are integrated numerically.
 
 Machine: {os.cpu_count()} processors, {processor()}, {platform.machine()}, at a load of
 {os.getloadavg()[0]:.0f}; Python {platform.python_version()}, numpy {np.__version__}.

@@ -58,6 +58,7 @@ function look(frame) {
     call: page.getElementById("call").textContent,
     verdict: page.getElementById("verdict").textContent,
     position: page.getElementById("position").textContent,
+    starts: page.getElementById("starts").textContent,
     refused: page.getElementById("refused").textContent,
     others: [...page.querySelectorAll("#others button")].map(button => button.textContent),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
@@ -66,6 +67,7 @@ function look(frame) {
 }
 addEventListener("load", () => {
   const seen = {};
+  for (const frame of document.querySelectorAll("iframe")) frame.contentWindow.explorer.count();
   for (const frame of document.querySelectorAll("iframe")) seen[frame.id] = look(frame);
   document.getElementById("seen").textContent = JSON.stringify(seen);
 });

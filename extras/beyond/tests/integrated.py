@@ -44,7 +44,10 @@ def touching(ball, amplitude, tau, u, harmonics=SINE, gravity=1.0):
     def release(t, y):
         if t < tau + 1e-6:
             return -1.0
-        return y[0] if ball.release == "displacement" else -acceleration(ball, *y)
+        if ball.release == "displacement":
+            return y[0]
+        # A contact ends where its force ends, at the surface at the latest.
+        return -1.0 if y[0] < 0 < acceleration(ball, *y) else 1.0
 
     release.terminal, release.direction = True, 1
     start = 2 * float(ball.zeta) / ball.frequency_ratio * u if u < 0 else 0.0
@@ -111,7 +114,10 @@ def weakest_grip(ball, amplitude, harmonics=SINE):
 
     def grip(t):
         gap, rate = motion(t)
-        return -gap / deep if ball.release == "displacement" else acceleration(ball, gap, rate)
+        if ball.release == "displacement":
+            return -gap / deep
+        # A power of the depth is flat at the surface, where the depth itself is not.
+        return min(-gap / deep, acceleration(ball, gap, rate))
 
     times = np.linspace(0.1, 2 * np.pi + 0.1, 2001) % (2 * np.pi)
     near = times[np.argmin([grip(t) for t in times])]

@@ -3,6 +3,7 @@
 import ast
 import doctest
 import re
+import runpy
 import sys
 import tomllib
 from pathlib import Path
@@ -24,6 +25,20 @@ def test_examples(page, monkeypatch, tmp_path):
     failed, _ = doctest.testfile(str(page), module_relative=False)
     plt.close("all")
     assert failed == 0
+
+
+@pytest.mark.parametrize(
+    "script", sorted((BEYOND / "docs/gallery").glob("*.py")), ids=lambda script: script.stem
+)
+def test_a_script_of_the_gallery_draws_its_picture(script, monkeypatch, tmp_path):
+    plt.switch_backend("agg")
+    monkeypatch.chdir(tmp_path)
+    runpy.run_path(str(script))
+    plt.close("all")
+    drawn, shown = (
+        plt.imread(each.with_suffix(".png")) for each in (tmp_path / script.name, script)
+    )
+    assert drawn.shape == shown.shape
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -108,6 +108,12 @@ def test_the_call_computes_what_the_page_shows(seen):
         assert f"with {impacts} impacts" in seen[f"desk {LOOSE}"]["verdict"]
 
 
+@pytest.mark.parametrize("address", ["", STIFF])
+def test_the_balls_with_other_starts_are_counted_once(seen, address):
+    of, *ends = map(int, re.findall(r"(?:^Of|,) (\d+) ", seen[f"desk {address}"]["starts"]))
+    assert sum(ends) == of
+
+
 def test_a_wrong_number_is_reported_at_the_top(seen):
     assert seen["wrong"]["badge"] == "bad"
     assert seen["wrong"]["warned"]

@@ -41,7 +41,7 @@ PERIOD = 2 * np.pi
 
 
 def bumper(p, v, stiffness, hardening, damping):
-    return stiffness * p * (1 + hardening * p) * (1 + damping * v)
+    return stiffness * p * p * (1 + hardening * p) * (1 + damping * v)
 
 
 def pulling(p, v, stiffness, damping):
@@ -59,8 +59,9 @@ class Kind:
 SPRING = bb.SpringDamper(20.0, 0.6)
 OWN = bb.ForceLaw(
     bumper,
-    {"stiffness": 400.0, "hardening": 0.2, "damping": 0.25},
-    units={"stiffness": (0, 0, -2), "hardening": (0, -1, 0), "damping": (0, -1, 1)},
+    {"stiffness": 3000.0, "hardening": 0.2, "damping": 0.25},
+    release="force",
+    units={"stiffness": (0, -1, -2), "hardening": (0, -1, 0), "damping": (0, -1, 1)},
 )
 PULLING = bb.ForceLaw(
     pulling,
@@ -85,13 +86,13 @@ KINDS = {
         {"stiffness": -2.5},
         {"stiffness": -3, "damping": -1},
     ),
-    "own law": Kind(
+    "own law whose force pushes at the surface": Kind(
         OWN,
         "damping",
-        {"stiffness": -2, "hardening": -1},
-        {"stiffness": -2, "hardening": -2, "damping": -1},
+        {"stiffness": -3, "hardening": -1},
+        {"stiffness": -4, "hardening": -2, "damping": -1},
     ),
-    'own law with release="force"': Kind(
+    "own law whose force pulls at the surface": Kind(
         PULLING, "damping", {"stiffness": -2, "damping": -1}, {"stiffness": -2, "damping": -1}
     ),
 }

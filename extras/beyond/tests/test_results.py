@@ -90,6 +90,14 @@ def test_a_title_has_the_constants_that_are_not_the_default_ones():
     assert title == "1 impact in 1 T, r = 0.5, a₃ = 0.05, p₃ = 0.7"
 
 
+def test_a_branch_that_returns_to_its_first_amplitude_has_no_constant_amplitude():
+    balls = SpringDamper(frequency_ratio=[2.0, 10.0], restitution=0.85)
+    branches = follow(orbit(balls, amplitude=0.9), to=(0.1, 1.3))
+    assert branches[1].values[0] == branches[1].values[-1]
+    texts = {text.get_text() for _, text in legend_of(plot(*branches))}
+    assert {"ϖ = 2", "ϖ = 10"} <= texts
+
+
 def test_an_orbit_alone_before_a_special_one_has_its_own_line():
     """The branch starts at a stable orbit, and doubles in its first step."""
     branch = follow(orbit(Rigid(0.5), amplitude=1.52), to=1.8)

@@ -305,7 +305,7 @@ async function matter() {
     const circle = (x, y, r, of) => Bodies.rectangle(x, y, 2 * r, 2 * r, of);
     const made = shape === "box" ? { circle } : Bodies;
     const names = { Matter, Bodies: made, x: 0, y: 0, radius: radius * pixels };
-    const ball = value(`const body = ${sets}\nreturn body;`, names);
+    const ball = value(`${sets}\nreturn body;`, names);
     Matter.Body.setMass(ball, mass);
     Matter.Body.rotate(ball, turn ?? 0);
     // Its lowest corner is at this height.

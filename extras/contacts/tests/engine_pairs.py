@@ -273,7 +273,7 @@ def cells(case, rub):
         # The mean is over 16 instants here, and over neighbouring steps in a diagnosis.
         agrees &= abs(np.mean(measured) - mean) < 0.01 + (high - low) / 16
     # Without a threshold the ball never comes to rest, and a depth may be too small.
-    has_rest = found.outcome.rest > 0
+    has_rest = bool(found.outcome.rest)
     lies = not has_rest or np.isclose(rest, found.outcome.rest, rtol=0.02)
     agrees &= not is_still or bool(lies)
     table = "the same" if other is one else in_words(other)

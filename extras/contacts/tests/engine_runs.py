@@ -319,9 +319,12 @@ def newton(trial):
     import newton
 
     names = {"newton": newton}
+    text = trial.design.snippet
+    if trial.table == "slab":
+        text = text.replace("ground = ", "# ")
     builder = newton.ModelBuilder(gravity=tuple(trial.weight))
     names["builder"] = builder
-    exec(trial.design.snippet, names)
+    exec(text, names)
     r = trial.size
     material = names["material"]
     material.density = trial.mass / trial.volume
@@ -339,12 +342,13 @@ def newton(trial):
         builder.add_shape_capsule(body, radius=r, half_height=2 * r, cfg=material, **more)
     else:
         builder.add_shape_sphere(body, radius=r, cfg=material, **more)
+    # The text of the MuJoCo solver has the plane itself.
     if trial.table == "slab":
         below = warp.transform(warp.vec3(0.0, 0.0, -0.01), warp.quat_identity())
         sides = dict(hx=9.0, hy=9.0, hz=0.01)
         builder.add_shape_box(-1, xform=below, cfg=material, **sides, **more)
-    else:
-        builder.add_shape_plane(width=0.0, length=0.0, cfg=material, **more)
+    elif "ground" not in names:
+        builder.add_ground_plane(cfg=material)
     model = builder.finalize(device="cpu")
     model.joint_qd.assign([trial.slide, 0, -trial.speed, 0, trial.spin, 0])
     kinds = {
@@ -781,7 +785,7 @@ def measure(design, shape, slide=0.0, instants=13):
     speed = bounce.impact_speed
     g = bounce.gravity
     rubs = bounce.friction
-    deepest = outcome.depth[1] if outcome.depth[1] > 0 else speed * step
+    deepest = max(outcome.depth, default=0.0) or speed * step
     found = []
     for share in np.linspace(0.01, 0.99, instants):
         # It comes out with about r times its speed.
@@ -817,7 +821,7 @@ def measure(design, shape, slide=0.0, instants=13):
         found.append((r, depth, peak))
     r, depth, force = np.array(found).T
     rest = math.nan
-    if outcome.rest > 0:
+    if outcome.rest:
         # Laid where it should rest, it stays there, or swings about where it rests.
         period = 2 * math.pi * math.sqrt(outcome.rest / g)
         steps = max(20, int(4 * period / step))

@@ -140,7 +140,7 @@ def run(engine, scene):
     found = _designed(engine, bounce, scene.step, scene.friction)
     wanted = found.bounce
     h, speed = found.time_step, wanted.impact_speed
-    deepest_said = found.outcome.depth[1] if found.outcome.depth[1] > 0 else speed * h
+    deepest_said = max(found.outcome.depth, default=0.0) or speed * h
     g = wanted.gravity
     on = engine_runs.RUNS[engine]
     if "slope" in scene.how:
@@ -201,8 +201,8 @@ def cells(engine, scene):
     kept = bool(low - 5e-4 <= least and most <= high + 5e-4) if is_promised else None
     said = f"{low:.3f} to {high:.3f}" if is_promised else f"({low:.3f} to {high:.3f})"
     does = "lost" if math.isnan(least) else f"{least:.3f} to {most:.3f}"
-    depth = f"{found.outcome.depth[1] / found.bounce.size:.2f}, {deepest:.2f}"
-    return [*texts, said, does, depth], kept
+    computed = max(found.outcome.depth, default=math.nan) / found.bounce.size
+    return [*texts, said, does, f"{computed:.2f}, {deepest:.2f}"], kept
 
 
 HEAD = [

@@ -109,7 +109,7 @@ def measured(run, found, kind):
     bounce = found.bounce
     step, speed = found.time_step, bounce.impact_speed
     # Next to the flights, the contact lasts for the way of some depths.
-    deepest = np.nan_to_num(found.outcome.depth[1])
+    deepest = max(found.outcome.depth, default=0.0)
     steps = math.ceil((2.6 * speed / bounce.gravity + 8 * deepest / speed) / step) + 6
     instants = np.arange(INSTANTS) / INSTANTS - 0.5
     drops = speed**2 / (2 * bounce.gravity) + speed * step * instants

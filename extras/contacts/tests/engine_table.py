@@ -165,11 +165,11 @@ def cells(name, shape, wanted, time_step, more, friction):
         f"{outcome.restitution[0]:.4f} to {outcome.restitution[2]:.4f}",
         f"{low:.4f} to {high:.4f}",
         f"{at_least:.4f} to {at_most:.4f}",
-        f"{here.depth[1] * 1e3:.4g}",
+        f"{max(here.depth, default=math.nan) * 1e3:.4g}",
         f"{measured.depth * 1e3:.4g}",
-        f"{here.force[1]:.4g}",
+        f"{max(here.force, default=math.nan):.4g}",
         f"{measured.force:.4g}",
-        f"{outcome.rest * 1e3:.4g}" if outcome.rest > 0 else "–",
+        f"{outcome.rest * 1e3:.4g}" if outcome.rest else "–",
         "–" if math.isnan(measured.rest) else f"{measured.rest * 1e3:.4g}",
     ]
     # Thirteen instants do not meet the extremes of 401, which differ by less than a thirteenth of

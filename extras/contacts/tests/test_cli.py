@@ -77,7 +77,11 @@ def test_a_full_device_is_one_line():
     code = "from bouncing_ball_contacts.cli import run; run()"
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(
-            [sys.executable, "-c", code, "engines"], stdout=full, stderr=subprocess.PIPE, text=True
+            [sys.executable, "-c", code, "engines"],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env={"PYTHONUNBUFFERED": ""},
         )
     assert done.returncode == 2
     assert done.stderr.startswith("bounce: ") and done.stderr.count("\n") == 1

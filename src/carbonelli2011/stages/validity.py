@@ -51,14 +51,12 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     first = restitution.saddle_node(n_all, r_all)
     last = restitution.period_doubling(n_all, r_all)
     amplitude = first + place_all * (last - first)
-    enough, errors = scan(n_all, r_all, amplitude, ratios, tolerance, release)
+    family = Family(n_all, Contact.of_restitution(ratios, r_all, release))
+    orbits = orbits_along(family, amplitude)
+    enough = enough_from(family, orbits, r_all, amplitude, tolerance)
+    errors = errors_of_orbits(family, orbits, r_all, amplitude)
     enough = enough.reshape(-1, *shape)
     errors = errors[..., ratios >= advised].reshape(-1, *shape, (ratios >= advised).sum())
-
-    # The orbit that needs the stiffest contact for each quantity, with half the tolerance.
-    most = np.argmax(enough.reshape(len(COMPARED), -1), axis=1)
-    wider = np.geomspace(ratios[0], 10 * ratios[-1], 2 * ratios.size)
-    halved, _ = scan(n_all[most], r_all[most], amplitude[most], wider, tolerance / 2, release)
 
     # The range of stable orbits of the contact, in the range of the restitution model.
     ends = place_all[:, 0] == 1
@@ -91,7 +89,6 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
             "failing_share": (over[:3], share),
             "failing_mean": (over[:2], mean),
             "failing_up_to": (over[:2], up_to),
-            "halved_enough_from": (over[:1], np.diagonal(halved)),
             "doubled_share": (over[1:3], np.clip(doubled, 0, 1)),
             "doubled_mean": (over[1:2], doubled_mean),
             "below_share": (over[1:3], np.maximum(below, 0)),
@@ -103,18 +100,6 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
         },
         {"quantity": list(COMPARED), "n": parameters["n"], "restitution": r, "place": place},
     )
-
-
-def scan(
-    n: NDArray, r: NDArray, amplitude: NDArray, ratios: NDArray, tolerance: float, release: str
-) -> tuple[NDArray, NDArray]:
-    """`enough_from` of orbits, shape (quantities, orbits), and their errors at the ratios, with one
-    more axis. n, r and Λ have the shape (orbits, 1).
-    """
-    family = Family(n, Contact.of_restitution(ratios, r, release))
-    orbits = orbits_along(family, amplitude)
-    enough = enough_from(family, orbits, r, amplitude, tolerance)
-    return enough, errors_of_orbits(family, orbits, r, amplitude)
 
 
 def failures(

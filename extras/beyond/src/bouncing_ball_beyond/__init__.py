@@ -36,6 +36,7 @@ _MODULES = {
     "lyapunov": "motions.long_term",
     "motion_of": "motions.long_term",
     "orbit_diagram": "motions.long_term",
+    "SearchEnded": "motions.effort",
     "permanent_contact": "motions.permanent",
     "drop": "motions.simulation",
     "history": "motions.simulation",

@@ -79,9 +79,7 @@ function show(hash, kept = DEFAULTS) {
   }));
   $("starts").textContent = "Following balls with other starts …";
   count = () => {
-    const {share, sentence} = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
-    $("starts").textContent = sentence;
-    $("starts").dataset.share = share;
+    $("starts").textContent = endsOfStarts(found.contact, question.amplitude, found.orbits[0]);
     count = () => {};
   };
   // A slider that is dragged waits for no balls.

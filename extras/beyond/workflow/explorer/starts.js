@@ -1,5 +1,5 @@
-// On which motions balls end that start from an even grid of impacts on the contact, and how many of
-// them. They stand below the verdict.
+// On which motions balls end that start from an even grid of impacts on the contact, and how many on
+// each. The sentence stands below the verdict.
 "use strict";
 
 // Starts along each axis, and impacts for which a ball is followed. A ball this near to a stable orbit
@@ -20,12 +20,13 @@ function endInWords({kind, periods, impacts}) {
   return impacts === 1 ? `on the ${periods}-T orbit` : `on a motion of ${counted(periods, impacts)}`;
 }
 
-// The numbers of starts by the words for their ends, the greatest first. `orbit` is the contact's
-// n-T orbit; balls are only said to end on it if it is stable and admissible.
+// How many of the starts end how, in one sentence: first on the contact's n-T orbit, `orbit`, if it is
+// stable and admissible, then on the other ends, the most frequent first.
 function endsOfStarts(contact, amplitude, orbit) {
   const stays = orbit.exists && orbit.is_stable && sampledAdmissible(orbit);
   const known = stays ? {at: orbit.phase, u: orbit.relative_impact_velocity, periods: orbit.n} : null;
-  const fast = fastest(contact, amplitude), counts = new Map();
+  const own = `on the ${orbit.n}-T orbit`, counts = new Map(stays ? [[own, 0]] : []);
+  const fast = fastest(contact, amplitude);
   for (let row = 0; row < STARTS; row++)
     for (let column = 0; column < STARTS; column++) {
       const phase = TURN * (column + 0.5) / STARTS - Math.PI, speed = fast * (row + 0.5) / STARTS;
@@ -33,11 +34,12 @@ function endsOfStarts(contact, amplitude, orbit) {
       const words = endInWords(followed({contact}, amplitude, phase, velocity, 0, IMPACTS_OF_START, known));
       counts.set(words, (counts.get(words) ?? 0) + 1);
     }
-  const all = STARTS * STARTS, own = `on the ${orbit.n}-T orbit`, on = stays ? counts.get(own) ?? 0 : 0;
   const others = [...counts].filter(([words]) => !stays || words !== own).sort((a, b) => b[1] - a[1]);
-  const named = others.slice(0, 3).map(([words, count], k) => `${count}${k ? "" : count > 1 ? " end" : " ends"} ${words}`);
+  const named = [...(stays ? [[own, counts.get(own)]] : []), ...others.slice(0, 3)];
   const left = others.slice(3).reduce((sum, [, count]) => sum + count, 0);
-  if (left) named.push(`${left} on others`);
-  if (stays) named.unshift(`${on || "none"} ${on > 1 ? "end" : "ends"} ${own}`);
-  return {share: on / all, sentence: `Of ${all} balls with other starts, ${named.join(", ")}.`};
+  if (left) named.push(["on others", left]);
+  const [[first, count], ...rest] = named;
+  const begins = `${count || "none"} ${count > 1 ? "end" : "ends"} ${first}`;
+  const sentence = [begins, ...rest.map(([words, number]) => `${number} ${words}`)].join(", ");
+  return `Of ${STARTS * STARTS} balls with other starts, ${sentence}.`;
 }

@@ -1,6 +1,5 @@
 """Answers: the bounce that parameters give, what to paste, and what to know."""
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -43,18 +42,18 @@ class Outcome:
     ----------
     restitution : Range
     depth : tuple of float
-        Smallest and largest penetration in m; NaN if it is not computed.
-    rest : float
-        Depth at rest in m; NaN if the body never lies still, or lies less deep than the engine
+        Smallest and largest penetration in m; empty if it is not computed.
+    rest : float, optional
+        Depth at rest in m; None if the body never lies still, or lies less deep than the engine
         resolves.
     force : tuple of float
-        Smallest and largest force in N; NaN if it is not computed.
+        Smallest and largest force in N; empty if it is not computed.
     """
 
     restitution: Range
-    depth: tuple[float, float] = (math.nan, math.nan)
-    rest: float = math.nan
-    force: tuple[float, float] = (math.nan, math.nan)
+    depth: tuple[float, ...] = ()
+    rest: float | None = None
+    force: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -90,8 +89,8 @@ class Answer:
         Why the engine loses the body; empty if it does not.
     numbers : mapping
         Further numbers: of a contact of springs ``stiffness`` in N/m and ``damping_ratio`` of all
-        points together, and of a diagnosis ``limit``, r in short steps, and ``free``, the same
-        without gravity.
+        points together, if its spring is linear, and of a diagnosis ``limit``, r in short steps,
+        and ``free``, the same without gravity.
     """
 
     engine: str
@@ -123,14 +122,14 @@ class Answer:
         bounce = self.bounce
         is_other = self.asked_step is not None and self.time_step != self.asked_step
         step = show(self.time_step, "s") + is_other * f" (not {show(self.asked_step or 0, 's')})"
-        depth = self.outcome.depth[1]
+        depth = self.outcome.depth
         said = [
             (self.lost, f"lost, because {self.lost}"),
             (not self.lost, f"r = {self.outcome.restitution}"),
             (not self.is_kept, f"{bounce.restitution or 0:.4g} is wanted"),
             (
-                not math.isnan(depth) and not self.lost,
-                f"sinks {show(depth, 'm')} of {show(bounce.size, 'm')}",
+                depth and not self.lost,
+                f"sinks {show(max(depth, default=0.0), 'm')} of {show(bounce.size, 'm')}",
             ),
         ]
         return f"{self.engine}, {step}: {', '.join(holding(said))}"
@@ -142,7 +141,7 @@ class Answer:
         paste = [change.snippet if change else self.snippet]
         also = []
         for each in self.also:
-            depth = show(each.outcome.depth[1], "m")
+            depth = show(max(each.outcome.depth, default=0.0), "m")
             does = f"gives r = {each.outcome.restitution}" if each.gives else f"sinks {depth}"
             step = show(each.time_step, "s").replace(" ", "")
             also.append(f"Also good: --time-step {step} {does}.")

@@ -1,7 +1,9 @@
 """The command ``bounce``: design, diagnose, fit and engines."""
 
 import dataclasses
+import io
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -103,6 +105,13 @@ def _print(
         click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
     answers = list(found.items()) if isinstance(found, dict) else [("", found)]
+    said: set[str] = set()
+    for i, (name, one) in enumerate(answers if isinstance(found, dict) else []):
+        # What is known of each ball is printed for the first one.
+        named = {re.sub(r"[\d.]+", "", note): note for note in one.notes}
+        fresh = tuple(note for key, note in named.items() if key not in said)
+        answers[i] = (name, dataclasses.replace(one, notes=fresh))
+        said |= named.keys()
     if written is not None:
         answers.append(("", written))
     texts = [f"{name}\n{each.explained if explain else each}" for name, each in answers]
@@ -295,20 +304,25 @@ def fit_command(
     _print(found, as_json, explain, design(bounce, engine, time_step), heard)
 
 
-@main.command("engines")
-def engines_command() -> None:
-    """List the engines, their parameters and the versions in which they were run."""
-    click.echo("With a stiffness; the parameters are of both bodies alike:")
-    for row in ENGINES.values():
+@main.command("engines", params=[click.Argument(["name"], required=False)])
+def engines_command(name: str | None) -> None:
+    """List the engines, or one, their parameters and the versions in which they were run."""
+    named = rows_of(name) if name else ()
+    of_springs = [row for row in ENGINES.values() if not name or row in named]
+    of_number = [row for row in BY_NUMBER.values() if not name or row in named]
+    if of_springs:
+        click.echo("With a stiffness; the parameters are of both bodies alike:")
+    for row in of_springs:
         both: dict[str, list[str]] = {}
-        for name in dict.fromkeys((*row.names, *row.beside)):
-            both.setdefault(row.rules[name].text, []).append(name)
+        for parameter in dict.fromkeys((*row.names, *row.beside)):
+            both.setdefault(row.rules[parameter].text, []).append(parameter)
         rules = [f"{', '.join(names)} {rule}" for rule, names in both.items() if rule != PAIR.text]
         click.echo(f"{row.name}: {row.meaning}")
         click.echo(f"    {ran_in(row)}")
         click.echo(f"    two bodies: {'; '.join(rules) or PAIR.text}")
-    click.echo("\nWith a restitution by number, which counts above the threshold:")
-    for each in BY_NUMBER.values():
+    if of_number:
+        click.echo("\nWith a restitution by number, which counts above the threshold:")
+    for each in of_number:
         click.echo(f"{each.name}: {each.parameter}, threshold {each.limit(each.threshold)}")
         click.echo(f"    {ran_in(each)}")
         click.echo(f"    two bodies: {each.pair.text}")
@@ -323,6 +337,9 @@ def run() -> None:
         is_far = isinstance(mistake, ArithmeticError)
         said = "a quantity is too large or too small to be computed: " if is_far else ""
         click.echo(f"bounce: {said}{' '.join(str(text).split())}", err=True)
+        if isinstance(mistake, OSError):
+            # At its end Python would write what a full disk left in the buffer, and fail again.
+            sys.stdout = io.StringIO()
         sys.exit(2)
     except click.Abort:
         sys.exit(130)

@@ -151,7 +151,7 @@ class Problem:
         return Outcome(
             # A body that creeps is not followed until it is at rest.
             depth=(float(found.depth.min()), max(float(found.depth.max()), rest)),
-            rest=rest if is_resolved else math.nan,
+            rest=rest if is_resolved else None,
             force=(float(force.min()), float(force.max())),
             restitution=Range.of(found.restitution),
         )
@@ -163,16 +163,16 @@ class Problem:
         a speed, so the body leaves with up to g h/(1 - r). In MuJoCo 4.0.0 bodies lie still if they
         lie deeper than 8 g h², and some also above.
         """
-        lies = f"at rest it lies {show(found.rest, 'm')} deep"
+        lies = "" if found.rest is None else f"at rest it lies {show(found.rest, 'm')} deep"
         fall = self.bounce.gravity * step
         if not fall:
             return "", False
-        if not isinstance(law, Impedance) or found.rest >= 8 * fall * step:
-            return ("" if math.isnan(found.rest) else lies), False
+        if not isinstance(law, Impedance) or (found.rest or 0.0) >= 8 * fall * step:
+            return lies, False
         speed = fall / max(1 - found.restitution.mean, LEAST_RESTITUTION)
         height = speed**2 / (2 * self.bounce.gravity)
         hops = f"hops by up to about {show(height, 'm', 2)}: less at a shorter step"
-        said = f"at rest it {hops}" if math.isnan(found.rest) else f"{lies}, or {hops}"
+        said = f"{lies}, or {hops}" if lies else f"at rest it {hops}"
         return said, height > self.bounce.size / 100
 
     def slides(self, law: Law, step: float) -> str:
@@ -358,7 +358,7 @@ class Problem:
         def is_held(halvings: int) -> bool:
             found = contact(halvings).outcome
             # A ball that sinks by more than its radius may leave a table on its other side.
-            return self.keeps(found, self.bounce.size) and not found.rest >= self.bounce.size
+            return self.keeps(found, self.bounce.size) and (found.rest or 0.0) < self.bounce.size
 
         longer = max(math.ceil(math.log2(step / short.step)), 1)
         place = bisect_left(range(longer), True, key=is_held)

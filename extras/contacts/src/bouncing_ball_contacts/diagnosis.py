@@ -235,10 +235,14 @@ def diagnose_spring(
         change=change,
         lost=lost,
         numbers={
-            "stiffness": found.stiffness,
-            "damping_ratio": found.damping_ratio,
-            "limit": found.limit,
-            "free": found.free,
+            name: value
+            for name, value in {
+                "stiffness": found.stiffness,
+                "damping_ratio": found.damping_ratio,
+                "limit": found.limit,
+                "free": found.free,
+            }.items()
+            if not math.isnan(value)
         },
     )
 

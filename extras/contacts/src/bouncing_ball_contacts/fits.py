@@ -1,6 +1,5 @@
 """The answer to a recording: r at a speed with its interval, and what else is known of it."""
 
-import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -37,7 +36,7 @@ _WITH_DRAG = ("flights", "heights", "drops", "track")
 _TABLE_TENNIS_BALL = (0.0027, 0.040)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fit:
     """Restitution coefficient of a recording at a speed.
 
@@ -46,7 +45,7 @@ class Fit:
     recording, impacts
         What was measured, and the impacts of it.
     speed
-        Speed in m/s of the restitution coefficient.
+        Speed in m/s of the restitution coefficient; NaN if no speed is known.
     restitution, interval
         Restitution coefficient, and both ends of its 95 % interval.
     scatter
@@ -81,7 +80,8 @@ class Fit:
         ends = span(*self.interval, 4)
         # r has the digits of its interval, in which it would not lie with fewer.
         r = f"{self.restitution:.{len(ends.split()[0]) - 2}f}"
-        return f"{title}: r = {r} ({ends}) at {self.speed:.3g} m/s"
+        at = "" if math.isnan(self.speed) else f" at {self.speed:.3g} m/s"
+        return f"{title}: r = {r} ({ends}){at}"
 
     @property
     def _groups(self) -> int:
@@ -105,10 +105,11 @@ class Fit:
             (not math.isnan(slope), f"r goes as v^{slope:+.3f}"),
             (len(v) > 1, f"{deviate} deviate by {self.scatter:.4f}"),
         ]
+        speeds = span(v.min(), v.max(), form="g") if v.max() > v.min() else f"{v[0]:.3g}"
         more = "; ".join([f"from {self.recording.kind}", *filter(None, [", ".join(holding(said))])])
         return [
             self.result,
-            f"{count} at {span(v.min(), v.max(), form='g')} m/s, {more}",
+            f"{count}{'' if self.recording.no_speed else f' at {speeds} m/s'}, {more}",
             *(f"! {note}" for note in self.notes[:most]),
         ]
 
@@ -130,6 +131,7 @@ class Fit:
 
         The contact time of a bounce is the one of a linear contact without damping.
         """
+        refuse([(self.recording.no_speed, f"no speed is known: {self.recording.no_speed}")])
         body = {"restitution": self.restitution, "speed": self.speed, "mass": self.mass, **given}
         if self.diameter is not None and not given.keys() & {"radius", "density"}:
             body["radius"] = self.diameter / 2
@@ -171,7 +173,7 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     ``known`` and ``rounding`` are those of `curves_of`.
     """
     recording = found.recording
-    if recording.kind not in _WITH_DRAG:
+    if recording.kind not in _WITH_DRAG or recording.no_speed:
         return ""
     is_known = bool(found.mass and found.diameter)
     mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
@@ -183,8 +185,8 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     note = (
         f"the drag of the air is removed, which raises r by {by_drag:.2g}"
         if is_known
-        else "the drag of the air is not removed: r of a table tennis ball is too low by "
-        f"{by_drag:.2g}, that of heavier balls by less; give --mass and --diameter"
+        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a table "
+        "tennis ball, and by less for a heavier ball; give --mass and --diameter"
     )
     low, high = found.interval
     return note * (by_drag > (high - low) / 2)
@@ -236,23 +238,19 @@ def _gravity_note(found: Fit) -> str:
     """
     if found.recording.kind != "track":
         return ""
-    chains = found.recording.chains
-    gravity, misfit = np.array([impact_of(each)[2:] for each in chains]).T
-    flights = [[each[each[:, 2] == after, 0] for after in (0, 1)] for each in chains]
-    weights = [sum(len(t) * np.ptp(t) ** 4 for t in both) for both in flights]
-    # Three standard errors, and the drag of a table tennis ball that falls from 2 m.
-    doubt = 3 * misfit * np.sqrt(720 / np.array(weights)) + 0.005 * gravity
-    films = np.cumsum(
-        [each[0, 0] < last[0, 0] for last, each in itertools.pairwise([chains[0], *chains])]
-    )
-    ratios = [
-        np.max((gravity - doubt)[films == film]) / np.min((gravity + doubt)[films == film])
-        for film in range(films[-1] + 1)
-    ]
-    changes = found.restitution * math.log(max(*ratios, 1.0)) / len(gravity)
+    films = found.recording.films
+    ratios = [1.0]
+    for film in films:
+        gravity, misfit = np.array([impact_of(each)[2:4] for each in film]).T
+        flights = [[each[each[:, 2] == after, 0] for after in (0, 1)] for each in film]
+        weights = [sum(len(t) * np.ptp(t) ** 4 for t in both) for both in flights]
+        # Three standard errors, and the drag of a table tennis ball that falls from 2 m.
+        doubt = 3 * misfit * np.sqrt(720 / np.array(weights)) + 0.005 * gravity
+        ratios.append(np.max(gravity - doubt) / np.min(gravity + doubt))
+    changes = found.restitution * math.log(max(ratios)) / sum(map(len, films))
     return (
-        f"gravity is not one number: {gravity.min():.4g} to {gravity.max():.4g} units/s² from "
-        f"flight to flight, which makes r wrong by up to {changes:.2g}: is the camera oblique?"
+        f"gravity is not one number: it changes by {max(ratios) - 1:.0%} from flight to flight, "
+        f"which makes r wrong by up to {changes:.2g}: is the camera oblique, or does it zoom?"
     ) * (changes > (found.interval[1] - found.interval[0]) / 2)
 
 
@@ -262,7 +260,7 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
     v = impacts.speed
     at = found.speed
     unit = KINDS[found.recording.kind][0]
-    wrong = [f"r = {impacts.restitution[i]:.3g} at {v[i]:.3g} m/s" for i in misread(impacts)]
+    wrong = [f"r = {impacts.restitution[i]:.3g} of impact {i + 1}" for i in misread(impacts)]
     drag = _drag_note(found, known, rounding)
     size = _size_note(found)
     contact = _contact_note(found)
@@ -280,7 +278,7 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
                 (value > 1, f"r = {value:.4f} is above 1 within its error: 1 is taken"),
                 # A speed that is typed is rounded.
                 (
-                    not 0.99 * v.min() <= at <= 1.01 * v.max(),
+                    not (math.isnan(at) or 0.99 * v.min() <= at <= 1.01 * v.max()),
                     f"{show(at, 'm/s')} is outside of the measured speeds",
                 ),
                 *((True, note) for note in found.recording.notes),
@@ -354,12 +352,22 @@ def fit(
     known = given("resolution", resolution, unit) or recording.uncertainty
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
+    drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
+    asked = "drag" if drag else "speed"
+    refuse(
+        [
+            (
+                recording.no_speed and (drag or speed is not None),
+                f"{recording.name}: no {asked} is known: {recording.no_speed}",
+            )
+        ]
+    )
     # A contact that is not known is taken to have no duration.
     lasts = given("contact time", contact_time, "s") or recording.contact_time
     rounding = rounding_of(recording) if known is None else 0.0
     if recording.kind == "flights" and not recording.is_free:
         recording = without_contacts(recording, lasts)
-    impacts = impacts_of(recording, drag_of(kilograms, metres) if kilograms and metres else 0.0)
+    impacts = impacts_of(recording, drag)
     v = impacts.speed
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
@@ -389,7 +397,7 @@ def fit(
     found = Fit(
         recording=recording,
         impacts=impacts,
-        speed=at,
+        speed=math.nan if recording.no_speed else at,
         restitution=min(value, 1.0),
         interval=(low, high),
         scatter=curves.scatter,

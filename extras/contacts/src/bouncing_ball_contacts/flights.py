@@ -12,6 +12,7 @@ which they agree for a drag of 1e-30/m.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -68,18 +69,40 @@ def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
     return depth, (np.tan(rise) + np.tanh(fall)) / a
 
 
-def impact_of(track: Array, drag: float = 0.0) -> tuple[float, float, float, float]:
-    """Return the speeds before and after an impact, gravity, and the misfit of the track.
+class Meeting(NamedTuple):
+    """Where the flight before an impact meets the flight after it, in units of the track.
 
-    ``track`` has the columns time in s, position upwards, and 1 after the impact or else 0. Both
-    flights have one gravity, which is in the unit of the position, and the speeds are those where
-    they meet. The misfit is the root mean square of what the flights miss of the positions.
+    Attributes
+    ----------
+    before, after
+        Speeds downwards before and upwards after the impact.
+    gravity
+        Of both flights.
+    misfit
+        Root mean square of the distances of the positions from the flights.
+    time, floor
+        Time and position of the impact.
+    """
+
+    before: float
+    after: float
+    gravity: float
+    misfit: float
+    time: float
+    floor: float
+
+
+def impact_of(track: Array, drag: float = 0.0) -> Meeting:
+    """Fit two flights with one gravity, and return where they meet.
+
+    ``track`` has the columns time in s, position upwards, and 1 after the impact or else 0.
 
     A flight is a parabola but for what the drag changes, which depends on its top and on gravity:
     parabolas are fitted again to the positions without that until nothing changes any more.
     """
     t, y, after = track.T
-    since = t - t[after > 0].min()
+    begin = t[after > 0].min()
+    since = t - begin
     columns = np.column_stack(
         [-(since**2) / 2, 1 - after, after, (1 - after) * since, after * since]
     )
@@ -98,6 +121,8 @@ def impact_of(track: Array, drag: float = 0.0) -> tuple[float, float, float, flo
         depths, speeds = _fall(meet - tops, drag)
         apart = np.diff(heights - gravity * depths)[0]
         meet += apart / (gravity * np.diff(speeds)[0])
-    down, up = gravity * _fall(meet - tops, drag)[1] * [1, -1]
+    depths, speeds = _fall(meet - tops, drag)
+    down, up = gravity * speeds * [1, -1]
     misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
-    return float(down), float(up), float(gravity), misfit
+    floor = float(np.mean(heights - gravity * depths))
+    return Meeting(float(down), float(up), float(gravity), misfit, float(begin + meet), floor)

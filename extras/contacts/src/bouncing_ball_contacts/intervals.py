@@ -59,10 +59,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, special
 
-from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
+from bouncing_ball_contacts.flights import heights_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.tables import Lines
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, Refused, refuse, show
+from bouncing_ball_contacts.tracks import speeds_of_film
+from bouncing_ball_contacts.units import Array, Refused, refuse, show
 
 # Of each kind of recording: the unit of a reading, its usual standard deviation, and the powers of
 # the readings with which the speeds before and after an impact go. Those of series are alike; of a
@@ -98,7 +99,7 @@ _EXPONENTS = np.array([-0.5, 1e-6, 0.25, 0.5, 0.75, 1.0, 1.25])
 # Readings to impacts.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Impacts:
     """Impacts of a recording.
 
@@ -117,6 +118,8 @@ class Impacts:
         Middle of the prior of scatter, and the width of its logarithm above the middle.
     is_set
         Whether speeds were set, and do not follow from the impact before.
+    by_floor
+        Standard deviation of ln r that all impacts share, by the speed of the floor in a film.
     """
 
     speed: Array
@@ -128,6 +131,7 @@ class Impacts:
     scatter: float = _SCATTER
     width: float = _WIDTH_OF_SCATTER
     is_set: bool = True
+    by_floor: float = 0.0
 
     @property
     def restitution(self) -> Array:
@@ -194,9 +198,23 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     """
     kind = recording.kind
     chains = recording.chains
+    by_floor = 0.0
     if kind == "track":
-        found = np.array([impact_of(each, drag) for each in chains])
-        chains = (found[:, :2] * STANDARD_GRAVITY / found[:, 2:3],)
+        speeds, errors = zip(
+            *(speeds_of_film(film, drag, recording.has_clock) for film in recording.films),
+            strict=True,
+        )
+        chains = (np.concatenate(speeds),)
+        by_floor = float(np.mean(np.concatenate(errors))) / math.sqrt(len(errors))
+        refuse(
+            [
+                (
+                    not np.all(chains[0] > 0),
+                    f"{recording.name}: with this drag no flight is as fast as those of the film: "
+                    "are mass, diameter and times right?",
+                )
+            ]
+        )
     pairs = np.concatenate(
         [
             values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
@@ -235,7 +253,9 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     is_set = kind in ("drops", "coefficients")
     log_r = np.log(after / before)
     usual = KINDS[kind][1]
-    return Impacts(before, log_r, readings, of_speed, usual, groups, is_set=is_set)
+    return Impacts(
+        before, log_r, readings, of_speed, usual, groups, is_set=is_set, by_floor=by_floor
+    )
 
 
 def group_means(
@@ -317,7 +337,7 @@ def without_contacts(recording: Recording, lasts: float) -> Recording:
 # Impacts to r at one speed.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Curves:
     """Smooth curves about a speed, by the ratio ρ of scatter to errors, the size τ of these, and q.
 
@@ -539,7 +559,9 @@ def curves_of(
         confidence=confidence,
         value=middle + value,
         slope=slope,
-        spread=np.sqrt((1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends),
+        spread=np.sqrt(
+            (1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends + impacts.by_floor**2
+        ),
         # A curve has two parameters, and a constant r has one.
         scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 1 - has_slope, 1)),
         has_slope=has_slope,

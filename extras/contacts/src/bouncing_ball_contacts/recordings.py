@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from bouncing_ball_contacts.tables import (
     HEADINGS,
     LAYOUTS,
+    NAMES,
     TEXTS,
     Column,
     Lines,
@@ -32,7 +33,9 @@ from bouncing_ball_contacts.units import (
     Array,
     Refused,
     holding,
+    in_si,
     positive,
+    show,
     units_of,
 )
 
@@ -54,9 +57,11 @@ _KEYS = ("mass", "diameter", "contact time", "resolution", "frame rate")
 _QUANTITY = r"[-+]?\d+(?:[.,]\d+)?\s*[^\W\d][^\s,;(]*"
 # An error of a reading may let a flight or a height be that of the one before times this.
 _GROWTH = 1.02
+# Relative difference of times from those of free fall: slow motion is slower than 1.1 times.
+_SAME_CLOCK = 0.1
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Recording:
     """What was measured.
 
@@ -87,6 +92,11 @@ class Recording:
     groups : array
         What each impact shares an error with: the height of its drop, its film, or the name in a
         column ``group``; None without any.
+    has_clock : bool
+        Whether times of a film are true. Otherwise positions are in m, and the times follow from
+        the free fall.
+    no_speed : str
+        Why the speeds of a film are not known, and what to do; empty if they are known.
     notes : tuple of str
         What a user has to know.
     """
@@ -101,7 +111,19 @@ class Recording:
     digit: float = 0.0
     head: dict[str, str] = field(default_factory=dict)
     groups: NDArray[Any] | None = None
+    has_clock: bool = True
+    no_speed: str = ""
     notes: tuple[str, ...] = ()
+
+    @property
+    def films(self) -> list[list[Array]]:
+        """Tracks of the impacts of each film, which begins with an earlier time."""
+        films: list[list[Array]] = []
+        for track in self.chains:
+            if not films or track[0, 0] < films[-1][-1][0, 0]:
+                films.append([])
+            films[-1].append(track)
+        return films
 
 
 def rounding_of(recording: Recording) -> float:
@@ -360,12 +382,12 @@ class _Film(NamedTuple):
         return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
 
 
-def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
+def _film(columns: list[Column], t: Array, y: Array, lines: Lines, slow: float) -> _Film:
     """Return a film of positions; its rounded times are replaced by those of even frames."""
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
     is_even = np.abs(t - even).max() <= columns[0].scale * columns[0].digit
-    t = np.where(is_even, even, t)
+    t = np.where(is_even, even, t) / slow
     digit = columns[1].digit
     is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
     is_out = np.zeros(len(t), bool)
@@ -378,6 +400,9 @@ def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
 def _films(table: Table, columns: list[Column]) -> list[_Film]:
     """Return the films; an empty line or a name divides films."""
     films = []
+    rate = table.head.get("frame rate")
+    # Those of frames follow from the rate, also if some are missing.
+    has_times = rate is not None and columns[0].name.lower() not in NAMES["frame"].split(", ")
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
@@ -394,7 +419,9 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
             found = frames[~np.isnan(both[frames, 1])]
             if len(found) > 2 * FEWEST:
                 t, y = both[found].T
-                films.append(_film(columns, t - t[0], y, part.lines[found]))
+                usual = float(np.median(np.diff(t)))
+                slow = usual * positive("frame rate", rate, "Hz") if has_times and usual else 1.0
+                films.append(_film(columns, t - t[0], y, part.lines[found], slow))
     if not films:
         raise Refused(f"{table.name}: too few lines of a track; tops are one column, height")
     return films
@@ -424,6 +451,27 @@ def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> li
     ]
 
 
+def _clock(table: Table, unit: str, gravity: float) -> tuple[float, str, str]:
+    """Return m per unit of the positions, why no speed is known, and how times are corrected.
+
+    Gravity, in units of the positions per s², tells true times if the unit is one of lengths. For
+    pixels the frame rate of the camera does, if it is stated.
+    """
+    is_stated = "frame rate" in table.head
+    metres = in_si("unit", f"1 {unit}", "m") if unit in ("", *units_of("m")) else math.nan
+    measured = metres * gravity
+    slow = math.sqrt(STANDARD_GRAVITY / measured)
+    is_length = bool(unit) and not math.isnan(metres)
+    if abs(slow - 1) < _SAME_CLOCK or (is_stated and not is_length):
+        return 1.0, "", ""
+    by = f"gravity is {measured:.3g} m/s² by the heights in {unit} and the times"
+    if is_length and slow > 1 and not is_stated:
+        return metres, "", f"{by}: times are {slow:.3g} times the true ones, which are used"
+    wrong = f"{by}{is_stated * ' of the frame rate'}: correct what is wrong"
+    scale = "it needs positions in metres, y (m), or a line # frame rate: 240 of the camera"
+    return 1.0, wrong if is_length else scale, ""
+
+
 def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
     films = _films(table, columns)
@@ -434,29 +482,16 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     if not impacts:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
     tracks, *speeds, gravities = zip(*impacts, strict=True)
-    pairs = np.transpose(speeds) * STANDARD_GRAVITY / np.array(gravities)[:, None]
-    lasts = 2 * pairs[:, 1] / STANDARD_GRAVITY
-    table.refuse(
-        lasts > 9,
-        "a flight of {} s is too long: is it in ms, or of slow motion?",
-        lasts,
-        lines=np.array(numbers),
-    )
-    mean = float(np.mean(gravities))
-    unit = columns[1].unit
-    # Without a scale, as of pixels, nothing contradicts gravity.
-    measured = mean * {"m": 1.0, "cm": 1e-2, "mm": 1e-3}.get(unit, math.nan)
-    slow = math.sqrt(STANDARD_GRAVITY / measured)
+    metres, no_speed, corrected = _clock(table, columns[1].unit, float(np.mean(gravities)))
+    tracks = tuple(each * [1, metres, 1] for each in tracks)
+    drop = float(np.max((np.array(speeds[0]) / gravities) ** 2)) * STANDARD_GRAVITY / 2
     notes = [
+        (corrected, corrected),
+        (no_speed, f"no speed is known: {no_speed}"),
         (
-            abs(math.log2(slow)) > 0.5,
-            f"gravity is {measured:.3g} m/s² by the heights and times: the times are {slow:.3g} "
-            "times the true ones, as in slow motion, or the heights have another unit",
-        ),
-        (
-            True,
-            f"{len(tracks)} impacts were found between flights that can be fitted; gravity, "
-            f"{mean:.4g} {unit or 'units'}/s² in this track, is the scale",
+            "frame rate" in table.head and not no_speed,
+            f"by the frame rate the ball falls from {show(drop, 'm')}: another height is that of "
+            "another frame rate",
         ),
         *((True, note) for note in _left_out(films, of_films)),
         (
@@ -466,7 +501,15 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     ]
     film_of = np.repeat(np.arange(len(films)), [len(each) for each in of_films])
     groups = _groups(table, numbers, film_of if len(set(film_of)) > 1 else None)
-    return Recording(table.name, "track", tracks, groups=groups, notes=tuple(holding(notes)))
+    return Recording(
+        table.name,
+        "track",
+        tracks,
+        groups=groups,
+        has_clock=not corrected,
+        no_speed=no_speed,
+        notes=tuple(holding(notes)),
+    )
 
 
 # What was measured.
@@ -497,15 +540,16 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
-        is_counted = each.role == counted and (
-            counted == "touch" or re.search(r"\d$", each.name + other.name)
+        counted = {"heights": ["height"], "times": ["touch"]}.get(kind, ["trial", "height"])
+        is_counted = each.role in counted and (
+            "touch" in counted or re.search(r"\d$", each.name + other.name)
         )
         if each.role == other.role and not is_counted:
             raise Refused(
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
                 f"{other.name!r}: write trial 1,trial 2 over repeated drops, h0,h1,h2 over "
-                "successive tops, and the same heading over runs side by side"
+                "successive tops, the same heading over runs side by side of one ball, and 'height "
+                "(cm) (golf)' over those of several balls"
             )
     return kind, columns
 

@@ -5,6 +5,7 @@ are known; a number at its end counts columns, as in ``trial 2``. Lines that beg
 the head, in which ``# mass: 46 g`` is a quantity of the ball.
 """
 
+import codecs
 import csv
 import io
 import itertools
@@ -19,7 +20,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_contacts.units import LARGEST, Array, Refused, in_si, positive, refuse, units_of
+from bouncing_ball_contacts.units import (
+    LARGEST,
+    SPELLED,
+    Array,
+    Refused,
+    in_si,
+    positive,
+    refuse,
+    units_of,
+)
 
 Lines = NDArray[np.intp]
 
@@ -32,8 +42,9 @@ NAMES = {
     "height before, height of drop",
     "rebound height": "rebound height, rebound, final height, height after, h', "
     "height of rebound, height of bounce",
-    "trial": "trial",
-    "average": "average, mean",
+    "trial": "trial, test, attempt",
+    "average": "average, mean, average height, mean height, average bounce height, "
+    "average rebound height, average bounce, average rebound",
     "height": "height, h, top, bounce height",
     "speed before": "speed before, velocity before, v before, v in, v0, initial speed",
     "speed after": "speed after, velocity after, v after, v out, final speed, rebound speed",
@@ -81,24 +92,12 @@ _ROLES = {
 _INHERITED = ("m", "m/s")
 TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
-_SPELLED = {
-    "inches": "in",
-    "feet": "ft",
-    "metres": "m",
-    "meters": "m",
-    "centimetres": "cm",
-    "centimeters": "cm",
-    "millimetres": "mm",
-    "millimeters": "mm",
-    "seconds": "s",
-    "sec": "s",
-    "milliseconds": "ms",
-}
-"""Units in words."""
-_KNOWN_UNITS = {*_SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
+_KNOWN_UNITS = {*SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
 _CLOCKS = {"millis": "time (ms)", "micros": "time (µs)"}
 # Programs write the name of a series before a heading or behind it.
 _SERIES = r"(?:latest|remote data|data set \d+|run \d+): ?| run #\d+"
+# The name of a ball may stand behind the unit.
+_OF_BALL = r"(.*\(\w+\)) *\(([^()]+)\)"
 # The monitor of a board writes its clock before each line.
 _STAMP = r"\d+:\d+:\d+\.\d{3} -> "
 # Labels of a sound track have a begin, an end and a text, and no heading. Programs write six
@@ -183,7 +182,7 @@ class Column:
         return 10.0 ** min(powers, default=0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Table:
     """Columns, the numbers of their lines, and the quantities of the head."""
 
@@ -270,17 +269,19 @@ def _text_of(source: Any) -> tuple[str, str]:
     data = path.read_bytes()
     if data.startswith(b"RIFF"):
         return path.name, _heard(data)
+    # Spreadsheets write what they call Unicode text.
+    is_wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     refuse(
         [
             (data[:4] in _SHEETS, f"{path.name} is a spreadsheet: save its sheet as csv"),
             (
-                b"\0" in data,
+                b"\0" in data and not is_wide,
                 f"{path.name} is no text: save it as csv in UTF-8, or a sound as WAV, as by ffmpeg "
                 f"-i {path.name} {path.stem}.wav",
             ),
         ]
     )
-    text = data.decode("utf-8-sig", errors="replace")
+    text = data.decode("utf-16" if is_wide else "utf-8-sig", errors="replace")
     # A single line of numbers is read as the arguments of the command.
     is_typed = re.fullmatch(r"[-+−.\d][^\n:;#\t]*\s*", text)
     return path.name, _columns_as_text(typed_readings(text.split())) if is_typed else text
@@ -312,7 +313,7 @@ def typed_readings(words: Sequence[str]) -> dict[str, Any]:
     text = re.sub(r",(?=\d*\.)", " ", text)
     found = [re.fullmatch(r"([-+−]?[\d.,]*\d[\d.,]*)?([^\d.,]*)", word) for word in text.split()]
     numbers = [each[1] for each in found if each and each[1]]
-    units = {each[2] for each in found if each and each[2]}
+    units = {SPELLED.get(each[2].lower(), each[2]) for each in found if each and each[2]}
     unit = units.pop() if len(units) == 1 and None not in found else ""
     if unit not in units_of("s") + units_of("m"):
         raise Refused(
@@ -339,10 +340,11 @@ def _heading(text: str) -> tuple[str, str, str]:
     plain = re.sub(_SERIES, "", plain, flags=re.IGNORECASE)
     plain = _CLOCKS.get(plain.lower(), plain)
     parts = re.fullmatch(r"(.+?) ?[(\[](.*)[)\]]", plain) or re.fullmatch(
-        r"(.+?)(?: in |[ /]+)(n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%)", plain
+        r"(.+?)(?: in |[ /]+)((?i:n?s|[mµu]s|[cmµ]?m|[ck]?m/s|km/h|inch|ft|px|%))", plain
     )
     name, unit = parts.groups() if parts else (plain, "")
-    unit = _SPELLED.get(unit.lower(), unit)
+    # People write CM, and M for m.
+    unit = SPELLED.get(unit.lower(), unit if unit in _KNOWN_UNITS else unit.lower())
     key = re.sub(r"[ .]", "", name.lower())
     # h0, h1, h2 are counted, and v0 is a name of its own.
     role = _ROLES.get(key) or _ROLES.get(key.rstrip("0123456789"), "")
@@ -436,7 +438,8 @@ def _name_in(heading: str) -> tuple[str, str]:
     track = re.fullmatch(r"(x|y|flag)(\d+)", heading, re.IGNORECASE)
     if track:
         return track[2], track[1]
-    return "", heading
+    ball = re.fullmatch(_OF_BALL, heading)
+    return (ball[2], ball[1]) if ball else ("", heading)
 
 
 def _series_in(headings: list[str]) -> list[tuple[str, str]]:
@@ -481,7 +484,8 @@ def _below_each_other(
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
-    return ["recording", *kinds.pop()], numbers, stacked
+    is_of_balls = any(re.fullmatch(_OF_BALL, each) for each in headings)
+    return ["ball" if is_of_balls else "recording", *kinds.pop()], numbers, stacked
 
 
 def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
@@ -531,6 +535,8 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     columns = []
     for heading, *cells in zip(headings, *cells_of, strict=True):
         title, unit, role = _heading(heading)
+        if not unit:
+            cells, unit = _with_one_unit(cells)
         numbers = [_number(cell, is_decimal_comma) for cell in cells]
         if role and role not in TEXTS and None in numbers:
             i = numbers.index(None)
@@ -546,6 +552,16 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         raise Refused(f"{name}, line {begin}: a table begins with headings: {HEADINGS}")
     columns = _with_units(columns)
     return Table(name, head, _with_times(head, columns), np.array(lines))
+
+
+def _with_one_unit(cells: list[str]) -> tuple[list[str], str]:
+    """Return the numbers of cells such as 1 meter, and their unit, if all have one unit."""
+    found = [re.fullmatch(r"([-+−]?[\d.,]*\d)\s*([^\W\d]+)", cell) for cell in cells if cell]
+    units = {SPELLED.get(each[2].lower(), each[2]) for each in found if each}
+    if None in found or len(units) != 1 or not units <= _KNOWN_UNITS:
+        return cells, ""
+    numbers = [re.sub(r"\s*[^\W\d]+$", "", cell) for cell in cells]
+    return numbers, units.pop()
 
 
 def _with_units(columns: list[Column]) -> list[Column]:

@@ -6,6 +6,7 @@ outliers, and frames that are missing. An impact lies between two flights.
 
 import itertools
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
-from bouncing_ball_contacts.units import Array
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array
 
 FEWEST = 4
 """Positions that a flight has at least, without positions next to impacts."""
@@ -39,6 +40,51 @@ class Impact(NamedTuple):
     before: float
     after: float
     gravity: float
+
+
+def speeds_of_film(
+    tracks: Sequence[Array], drag: float, has_clock: bool = True
+) -> tuple[Array, Array]:
+    """Return speeds before and after the impacts of a film, and the error of ln r by its floor.
+
+    Gravity is the scale of each impact. Without a clock positions are in m, and times are scaled
+    until gravity is the standard one.
+
+    A camera that moves, or that is tilted while the ball moves sideways, adds one speed to all
+    positions. It is the speed at which the floor moves from impact to impact, and is subtracted.
+
+    Parameters
+    ----------
+    tracks : sequence of arrays
+        Those of `Impact`.
+    drag : float
+        ρ C A/(2 m) in 1/m.
+    has_clock : bool
+        Whether times are true.
+
+    Returns
+    -------
+    speeds : array
+        In m/s, shape (n, 2).
+    errors : array
+        Standard deviations of ln r that the impacts of a film share, shape (n,).
+    """
+    for _ in range(1 if has_clock else 5):
+        found = [impact_of(each, drag) for each in tracks]
+        before, after, gravity, misfit, time, floor = np.array(found).T
+        slow = 1.0 if has_clock else math.sqrt(max(gravity.mean() / STANDARD_GRAVITY, 1e-9))
+        tracks = [each * [slow, 1, 1] for each in tracks]
+    n = len(tracks)
+    since = time - time.mean()
+    moves = since @ floor / max(since @ since, 1e-9)
+    # A straight line through few heights hides their errors, which are at least those of the ends
+    # of parabolas through the positions.
+    ends = 3 * np.mean(misfit / np.sqrt([len(each) for each in tracks]))
+    misses = floor - floor.mean() - moves * since
+    error = math.sqrt((misses @ misses + 2 * ends**2) / n)
+    error *= (n > 1) / math.sqrt(max(since @ since, 1e-9))
+    speeds = np.column_stack([before + moves, after - moves])
+    return speeds * (STANDARD_GRAVITY / gravity)[:, None], error * np.sum(1 / speeds, axis=1)
 
 
 def _third_differences(t: Array, y: Array) -> Array:
@@ -119,7 +165,7 @@ def impacts_of_track(t: Array, up: Array) -> dict[int, Impact]:
             continue
         both = np.concatenate([before, after])
         track = np.column_stack([t[both], up[both], np.isin(both, after)])
-        v_before, v_after, gravity, misfit = impact_of(track)
+        v_before, v_after, gravity, misfit, *_ = impact_of(track)
         # What misses the positions by more than a twentieth of the height is no flight, and what
         # leaves faster than it came is hit.
         slowest = min(v_before, v_after)

@@ -32,6 +32,25 @@ DENSITIES = {
 }
 """Of solid materials, in kg/m³."""
 
+SPELLED = {
+    "inches": "in",
+    "foot": "ft",
+    "feet": "ft",
+    "metre": "m",
+    "metres": "m",
+    "meter": "m",
+    "meters": "m",
+    "centimetres": "cm",
+    "centimeters": "cm",
+    "millimetres": "mm",
+    "millimeters": "mm",
+    "second": "s",
+    "seconds": "s",
+    "sec": "s",
+    "milliseconds": "ms",
+    "grams": "g",
+}
+"""Units in words."""
 _UNITS = {
     "kg": {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "µg": 1e-9, "ug": 1e-9, "t": 1e3}
     | {"lb": 0.45359237, "oz": 0.45359237 / 16},
@@ -128,6 +147,7 @@ def _typed(name: str, text: str, unit: str, wanted: str) -> float:
     is_double = re.search(r"(?<![\d.,])\d{1,3},\d{3}(?![\d,])", plain)
     found = re.fullmatch(rf"({_NUMBER})(?:\s*/\s*({_NUMBER}))?\s*(.*)", both[1])
     first, second, typed = found.groups() if found else ("0", None, "")
+    typed = SPELLED.get(typed.lower(), typed)
     divisor = float(second or 1)
     known = {"": 1.0, **_UNITS.get(unit, {unit: 1.0})}
     units = ", ".join(filter(None, known)) or "none"

@@ -40,6 +40,10 @@ At half: no effect. At twice: motions 30 % faster; 24 of 960 transients end else
 """
 
 
+ENDLESS = "its free impacts do not end, so it has no restitution coefficient"
+"""What every question that needs a restitution coefficient answers for such a ball."""
+
+
 class Impact(NamedTuple):
     """State at the end of an impact, as arrays of the same shape.
 
@@ -266,6 +270,12 @@ def brief(value: Values) -> str:
     """Text of a wrong argument in an error message: its repr, or its type if the repr is long."""
     text = repr(value)
     return f"{type(value).__name__}(…)" if "\n" in text or len(text) > 60 else text
+
+
+def check_ends(name: str, ball: Ball, u: Values) -> None:
+    """Raise ValueError if no free impact of a ball with the closing speeds u ends."""
+    if not np.isfinite(ball.signature(u).restitution).any():
+        raise ValueError(f"{name} = {brief(ball)}: {ENDLESS}")
 
 
 def check_ball(ball: Any) -> None:
@@ -808,8 +818,8 @@ class Corrected(Ball):
     def __post_init__(self) -> None:
         if not isinstance(self.of, Ball):
             raise ValueError(f"of = {self.of!r}: must be a ball")
-        if not all(np.isfinite(each).all() for each in self.of.signature(1.0)):
-            raise ValueError(f"of = {self.of!r}: its contacts must end even without gravity")
+        if not np.isfinite(self.of.signature(1.0).restitution).all():
+            raise ValueError(f"of = {brief(self.of)}: {ENDLESS}")
 
     @property
     def parameters(self) -> dict[str, Values]:

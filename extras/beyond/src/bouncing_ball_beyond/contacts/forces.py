@@ -34,6 +34,11 @@ The energies belong to speeds of 1e-13 and 1e6.
 effect.
 """
 
+SURFACE, SLOW = 1e-60, 1e-9
+"""Depth and rate at which a force tells whether it pulls at the surface when a ball leaves slowly.
+
+The depth is so small that powers up to the fifth are above the smallest floating-point number."""
+
 NEAREST = 1e-9
 """Smallest relative distance from a pole of the force. Half of the digits of the force are lost
 there: a ball that comes nearer is not computed. At half and at twice: no effect."""
@@ -251,6 +256,28 @@ class Force(Ball):
         """Force f under the load a. ``given`` has the parameters and the closing speed u."""
         more = {"load": a, "start_speed": given["u"]}
         return self.force(p, v, **self.own(given), **{name: more[name] for name in self.needs})
+
+    @cached_property
+    def pulls(self) -> bool:
+        """Whether the force pulls at the surface, however slowly a ball leaves.
+
+        It then vanishes below the surface, as kp + cp′ does. Other forces, as kp or kp(1 + cp′),
+        vanish at the surface, where contacts end at the latest.
+        """
+        given = {**self.values, "u": 1.0}
+        force = self.force_at(np.array(SURFACE), np.array(-SLOW), 1.0, given)
+        return bool(np.all(np.real(force) < 0))
+
+    def grip(self, p: Values, v: Values, a: Values, given: Mapping) -> Values:
+        """Grip of a contact that ends where its force ends.
+
+        It is positive in the contact and has a simple zero at its end: f, or p f(p, p′)/f(p, 0).
+        """
+        near = np.where(np.real(p) > SURFACE, p, SURFACE)
+        force = self.force_at(near, v, a, given)
+        if self.pulls or self.lag:
+            return force
+        return p * (force / self.force_at(near, 0 * v, a, given))
 
     def own(self, given: Mapping) -> dict[str, Values]:
         return {name: given[name] for name in self.values}

@@ -24,7 +24,7 @@ from bouncing_ball_beyond.contacts.balls import (
     Signature,
     broadcast_named,
 )
-from bouncing_ball_beyond.contacts.forces import Force
+from bouncing_ball_beyond.contacts.forces import SURFACE, Force
 from bouncing_ball_beyond.contacts.judge import FIRST_LOAD, FIRST_SPEED, check_force, judge
 from bouncing_ball_beyond.contacts.one_ball import SLOWEST
 from bouncing_ball_beyond.contacts.root_time import (
@@ -394,14 +394,26 @@ class ForceLaw(Force):
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
+    @np.errstate(invalid="ignore")
     def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
-        """Release function: -q, or (-κp′)^{1/m} - q, or -f."""
+        """Release function: -q, or (-κp′)^{1/m} - q, or -f, or -q f(p, p′)/f(p, 0).
+
+        It has a simple zero where a contact ends, and is positive beyond the surface, q < 0.
+        """
         if self.release == "displacement":
             return -q
         if self.lag:
             # This is -q plus the q at which p + κp′ = 0. The zero is simple even for κ = 0.
             return (self.lag(**self.own(given)) * np.maximum(-v, 0.0)) ** (1 / self.root) - q
-        return -self.force_at(q**self.root, v, load_of(t, given), given)
+        inside = np.real(q) > 0
+        p = np.where(inside, q, -q) ** self.root
+        load = load_of(t, given)
+        force = self.force_at(np.where(inside, p, SURFACE), v, load, given)
+        static = self.force_at(p, 0 * v, load, given)
+        if self.pulls:
+            return np.where(inside, 0.0, static) - force
+        # A power p^a has no simple zero at the surface, but its quotient with the static force has.
+        return -q * np.where(inside, force / static, 1.0)
 
     @np.errstate(all="ignore")
     def release_slopes(

@@ -62,7 +62,7 @@ class Motion(NamedTuple):
 
 def resonates(ratio: Values, zeta: Values, orders: tuple[int, ...] = (1,)) -> Values:
     """Whether a contact is near a resonance with a harmonic of the table; see `DELICATE`."""
-    near = False
+    near: Values = np.False_
     for k in orders:
         detuning = ratio * ratio - k * k
         loss = 2 * zeta * ratio * k

@@ -18,6 +18,7 @@ from bouncing_ball_beyond.contacts.balls import (
     SpringDamper,
     brief,
     check_ball,
+    check_ends,
     check_whole_numbers,
     checked,
     one_number,
@@ -138,6 +139,7 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
     check_whole_numbers("n", n)
     half = np.pi * np.asarray(n)
     speed = 1.5 * half
+    check_ends("ball", ball, speed)
     step = speed
     # After a step of Newton's method the error is of the order of the square of the step.
     while np.any(np.abs(step) > 1e-8 * speed):
@@ -147,11 +149,6 @@ def free_impact(ball: Ball, n: ArrayLike = 1) -> FreeImpact:
         step = (speed + bounced.real - 2 * half) / (1 + bounced.imag / H)
         # nπ ≤ v ≤ 2nπ, because 0 ≤ r ≤ 1. The duration broadcasts to the shape of all parameters.
         speed = np.clip(speed - step, half, 2 * half) + 0 * np.real(signature.duration)
-    if not np.isfinite(speed).any():
-        raise ValueError(
-            f"ball = {brief(ball)}: its free impacts do not end, so that it has no restitution"
-            " coefficient"
-        )
     aside = 1e-4 * speed
     at = np.stack([speed - aside, speed, speed + aside]) + 1j * H
     values = np.array(np.broadcast_arrays(*ball.signature(at), at))
@@ -444,6 +441,7 @@ def contact_values(
     check_table(table)
     check_whole_numbers("n", n)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    check_ends("ball", row, 1.5 * np.pi * periods)
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
         if name in found:
@@ -477,8 +475,6 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
 
 def _bifurcation(row: Ball, periods: NDArray, name: str, table: Table) -> NDArray:
     """Find amplitudes of a bifurcation, shape (rows,). The error law gives the guess."""
-    if not np.isfinite(row.signature(1.5 * np.pi * periods).restitution).any():
-        return np.full(periods.shape, np.nan)
     impact = free_impact(row, periods)
     if name == "saddle_node":
         kind = "saddle-node"

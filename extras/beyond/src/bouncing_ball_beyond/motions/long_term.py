@@ -11,6 +11,7 @@ The motion from s to F(s) is a *lap*. A periodic motion is *locked* if the ball 
 in each period (docs/orbits.md). A *section* is a group of successive impacts.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -29,6 +30,7 @@ from bouncing_ball_beyond.contacts.balls import (
 )
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
+from bouncing_ball_beyond.motions.effort import Effort
 from bouncing_ball_beyond.motions.impact_map import impact_map
 from bouncing_ball_beyond.motions.simulation import (
     DESCRIPTIONS,
@@ -195,13 +197,14 @@ def product(maps: NDArray) -> NDArray:
     return maps[:, :, 0]
 
 
-def ends_of(balls: Balls, impacts: int) -> dict:
+def ends_of(balls: Balls, impacts: int, effort: Effort, step: str) -> dict:
     """Find the motion on which each ball ends.
 
     Each ball is followed until its motion is known, for at most ``impacts`` impacts, rounded up to
     whole sections. Returns arrays over the balls by name; `OF_MOTIONS` describes them.
     """
     impacts = whole_number("impacts", impacts)
+    effort.spend(0, step)
     numbers = ("lyapunov_exponent", "lyapunov_error", "exponent_sum", "end_phase", "end_speed")
     found = {name: np.zeros(balls.phase.size, int) for name in ("impacts", "periods", "followed")}
     found |= {name: np.full(balls.phase.size, "", object) for name in ("kind", "reason")}
@@ -209,7 +212,7 @@ def ends_of(balls: Balls, impacts: int) -> dict:
     found["rested"] = np.zeros(balls.phase.size, bool)
     for first in range(0, balls.phase.size, BALLS_AT_ONCE):
         lane = np.arange(first, min(first + BALLS_AT_ONCE, balls.phase.size))
-        _follow_to_end(found, balls.take(lane), lane, impacts)
+        _follow_to_end(found, balls.take(lane), lane, impacts, effort)
     return found
 
 
@@ -239,7 +242,7 @@ def _take(track: dict, which: Any) -> dict:
 
 
 @np.errstate(all="ignore")
-def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int) -> None:
+def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, effort: Effort) -> None:
     """Follow balls until the motion of each ball is known, and store the motions in ``found``.
 
     Floating-point warnings are off, because deviations overflow in long motions and vanish at a
@@ -267,6 +270,7 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int) -> No
             -(-(impacts - seen) // SECTION),
             max(IMPACTS_AT_ONCE // track["lane"].size // SECTION, 1),
         )
+        effort.spend(track["lane"].size * count * SECTION)
         record, going, after = bounce(balls, count * SECTION)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)
@@ -614,6 +618,7 @@ def motion_of(
     relative_velocity: Values = None,
     impacts: int = 2000,
     table: Table = SINE,
+    progress: Callable | None = None,
 ) -> xr.Dataset:
     """Find the motion on which a ball ends. The first impact is given as in :func:`.simulate`.
 
@@ -624,6 +629,8 @@ def motion_of(
     impacts : int
         Number of impacts after which the search for a repetition ends. It is rounded up to a
         multiple of 25.
+    progress : callable, optional
+        Function that receives a line of text every two seconds, such as ``print``.
 
     Returns
     -------
@@ -657,7 +664,8 @@ def motion_of(
     (['permanent contact', 'periodic', 'periodic'], [0, 1, 2])
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
-    return dataset_of(grid, balls.amplitude, table, ends_of(balls, impacts))
+    effort = Effort("motion_of", np.inf, progress)
+    return dataset_of(grid, balls.amplitude, table, ends_of(balls, impacts, effort, "the balls"))
 
 
 def dataset_of(grid: xr.DataArray, amplitude: Values, table: Table, ends: dict) -> xr.Dataset:
@@ -679,12 +687,13 @@ def lyapunov(
     impacts: int = 2000,
     neighbours: int = NEIGHBOURS,
     table: Table = SINE,
+    progress: Callable | None = None,
 ) -> xr.Dataset:
     """Compute the Lyapunov exponents of the motion on which a ball ends; see :func:`motion_of`.
 
     Parameters
     ----------
-    ball, amplitude, phase, velocity, relative_velocity, impacts, table
+    ball, amplitude, phase, velocity, relative_velocity, impacts, table, progress
         As in :func:`motion_of`.
     neighbours : int
         Number of neighbours of each motion that looks chaotic. They start next to its last state,
@@ -717,12 +726,13 @@ def lyapunov(
     """
     neighbours = whole_number("neighbours", neighbours, 0)
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
-    ends = ends_of(balls, impacts)
+    effort = Effort("lyapunov", np.inf, progress)
+    ends = ends_of(balls, impacts, effort, "the balls")
     (chaotic,) = (ends["kind"] == CHAOTIC).nonzero()
     beside = np.repeat(chaotic, neighbours)
     shift = RETURNED * np.tile(np.arange(1, neighbours + 1), chaotic.size)
     states = {"phase": ends["end_phase"][beside], "speed": ends["end_speed"][beside] + shift}
-    near = ends_of(replace(balls.take(beside), **states), impacts)
+    near = ends_of(replace(balls.take(beside), **states), impacts, effort, "their neighbours")
     repeats = np.isin(near["kind"], [CHAOTIC, UNDECIDED], invert=True)
     # After a rest all motions are the same, and a second rest would repeat it.
     leaves = chaotic[(repeats | near["rested"]).reshape(chaotic.size, neighbours).any(axis=1)]
@@ -763,6 +773,7 @@ def basins(
     relative_velocity_max: float | None = None,
     impacts: int = 2000,
     table: Table = SINE,
+    progress: Callable | None = None,
 ) -> xr.Dataset:
     """Start balls from a grid of first impacts, and find the motions on which they end.
 
@@ -783,6 +794,8 @@ def basins(
     impacts : int
         Maximum number of impacts of a ball, as in :func:`motion_of`. A ball is followed until
         its motion is known.
+    progress : callable, optional
+        As in :func:`motion_of`.
 
     Returns
     -------
@@ -836,7 +849,8 @@ def basins(
         ball, amplitude=amplitude, speed=fast * middle, phase=PERIOD * middle - np.pi
     )
     balls = Balls(ball, amplitude, 0 * tau, tau, u, table)
-    which, motions = told_apart(balls, ends_of(balls, impacts))
+    effort = Effort("basins", np.inf, progress)
+    which, motions = told_apart(balls, ends_of(balls, impacts, effort, "the balls"))
     share = np.bincount(which) / which.size
     values = {name: np.array(column) for name, column in motions.items()} | {
         "share": share,
@@ -894,6 +908,7 @@ def orbit_diagram(
     samples: int = 64,
     impacts: int = 2000,
     table: Table = SINE,
+    progress: Callable | None = None,
 ) -> xr.Dataset:
     """Find the motions on which balls end, for each value of Λ or of a parameter of the ball.
 
@@ -909,7 +924,7 @@ def orbit_diagram(
         both directions.
     samples : int
         Number of recorded impacts of each motion.
-    impacts, table
+    impacts, table, progress
         As in :func:`motion_of`.
 
     Returns
@@ -934,14 +949,16 @@ def orbit_diagram(
     several = ball.rows(value)
     speed = fastest(several, amplitude[value], table) * (LOW_DISCREPANCY[1] * (start + 1) % 1)
     balls = Balls(several, amplitude[value], 0 * phase, phase, speed, table)
-    passes = [ends_of(balls, impacts)]
+    effort = Effort("orbit_diagram", np.inf, progress)
+    passes = [ends_of(balls, impacts, effort, "the first starts")]
     for step in (1, -1):
         beside = np.clip(value + step, 0, grid.size - 1) * starts + start
         phase, speed = (passes[0][name][beside] for name in ("end_phase", "end_speed"))
         moves = np.isfinite(phase)
         phase = np.where(moves, phase, balls.phase)
         speed = np.where(moves, speed, balls.speed)
-        passes.append(ends_of(replace(balls, phase=phase, speed=speed), impacts))
+        beside = replace(balls, phase=phase, speed=speed)
+        passes.append(ends_of(beside, impacts, effort, "starts from the ends at other values"))
     shape = grid.size, starts
     ends = {
         name: np.hstack([each[name].reshape(shape) for each in passes]).ravel()

@@ -1,8 +1,8 @@
 """Find the amplitude up to which a ball that lies on the table stays on it, for any contact.
 
 The steady motion of the ball in contact has the period of the table. Its penetration p obeys
-p″ = 1 + ΛW″ - f(p, p′). The ball is released where its grip falls to zero. The grip is p, or the
-force for the release "force". As Λ rises from 0, the minimum of the grip falls from its value at
+p″ = 1 + ΛW″ - f(p, p′). The ball is released where its grip falls to zero. The grip is p, or
+:meth:`.Force.grip` for the release "force". As Λ rises from 0, the minimum of the grip falls from its value at
 rest. The threshold is the Λ at which it is zero (Eq. 33 for a spring and a damper).
 """
 
@@ -124,15 +124,14 @@ class _Steady:
         # At this depth a ball of the speed 1 is stopped under its weight, so f > 1.
         deep = float(law.depth(1.0, 1.0))
         self.static = float(brentq(lambda p: self.force(p, 0.0, 1.0) - 1, 0.0, deep, xtol=1e-300))
-        # The force on a ball at rest is its weight, 1.
-        self.held = self.static if law.release == "displacement" else 1.0
+        self.held = float(self.grip(self.static, 0.0, 1.0))
 
     def force(self, p: Values, v: Values, load: Values) -> Values:
         """Force f(p, p′). Iterations pass through p < 0, where most forces are not defined."""
         return self.law.force_at(np.maximum(p, 0.0), v, load, self.given)
 
     def grip(self, p: Values, v: Values, load: Values) -> Values:
-        return p if self.law.release == "displacement" else self.force(p, v, load)
+        return p if self.law.release == "displacement" else self.law.grip(p, v, load, self.given)
 
     def load(self, s: Values, unknown: NDArray) -> Values:
         phase, amplitude = unknown

@@ -227,12 +227,13 @@ def _constants(branch: FollowedBranch) -> list[str]:
     Parameters at a default value are left out. The phase of a harmonic is 0 by default, and the
     size of the first harmonic is 1.
     """
-    first, last = (branch.orbits[i].parameters for i in (0, -1))
+    # A branch may end at the value of its parameter at which it began.
+    first, *others = (each.parameters for each in branch.orbits)
     several = "s" if branch.impacts > 1 else ""
     return [f"{branch.impacts} impact{several} in {branch.periods} T"] + [
         f"{_symbol(name)}{EQUAL}{value:.4g}"
         for name, value in first.items()
-        if value == last[name]
+        if all(value == each[name] for each in others)
         and value != (1.0 if name == "harmonic_1" else 0.0 if name.startswith("phase_") else None)
     ]
 

@@ -1,6 +1,6 @@
 """Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from itertools import groupby
 from operator import itemgetter
@@ -14,8 +14,10 @@ from bouncing_ball_beyond.contacts.balls import (
     brief,
     check_whole_numbers,
     checked,
+    one_number,
     whole_number,
 )
+from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
@@ -168,7 +170,13 @@ def _listed(given: Any, name: str, wanted: str) -> list:
 
 
 def _follow_all(
-    orbits: list, along: str | None, to: Any, points: int, until: list, grazings: bool = True
+    orbits: list,
+    along: str | None,
+    to: Any,
+    points: int,
+    until: list,
+    grazings: bool = True,
+    effort: Effort | None = None,
 ) -> list:
     """Follow orbits. For each orbit, return its branch, or the reason why there is none.
 
@@ -191,7 +199,9 @@ def _follow_all(
     parts: list[list] = [[] for _ in orbits]
     for (kind, *_), rows in groupby(ways, key=itemgetter(0)):
         _, numbers, tasks = zip(*rows, strict=True)
-        branches = _from_special(_stacked(tasks), kind, points, grazings)
+        task = _stacked(tasks)
+        task = task._replace(equations=replace(task.equations, effort=effort))
+        branches = _from_special(task, kind, points, grazings)
         for i, branch in zip(numbers, branches, strict=True):
             parts[i].append(branch)
     return [_whole(some) if some else each for some, each in zip(parts, orbits, strict=True)]
@@ -295,7 +305,14 @@ class Limits(NamedTuple):
         return "Limits: {}; {}".format(*places)
 
 
-def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
+def limits(
+    ball: Ball,
+    *,
+    n: ArrayLike = 1,
+    table: Table = SINE,
+    evaluations: int = EVALUATIONS,
+    progress: Callable | None = None,
+) -> Any:
     """Find the saddle-node and the period doubling of the n-T orbits of a ball.
 
     n-T orbits have one impact in n periods of the table. One of them, next to the phase at which
@@ -311,12 +328,19 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
         Number of periods of the table in one period of the orbits.
     table : Table
         The waveform.
+    evaluations, progress
+        As in :func:`.orbit`.
 
     Returns
     -------
     Limits or list of Limits
         A list if n or a parameter of the ball is an array. If a branch ends before a limit, for
         example because an impact grazes, the limit is an OrbitNotFound with this reason.
+
+    Raises
+    ------
+    SearchEnded
+        If the evaluations are used up.
 
     Examples
     --------
@@ -327,11 +351,19 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
     check_table(table)
     check_whole_numbers("n", n)
     row, (periods,), shape = rows_of(ball, n=n)
-    between = _between_limits(OrbitEquations(row, 1, periods, table=table))
+    effort = Effort("limits", one_number("evaluations", evaluations) * periods.size, progress)
+    found = limits_of(OrbitEquations(row, 1, periods, table=table, effort=effort))
+    return found if shape else found[0]
+
+
+def limits_of(equations: OrbitEquations) -> list[Limits]:
+    """Find the limits of each row of orbits with one impact."""
+    between = _between_limits(equations)
+    equations.spend(0, "the branches of these orbits")
     rows = len(between)
     until = ["saddle-node"] * rows + ["period doubling"] * rows
     to = [LOWEST] * rows + [None] * rows
-    branches = _follow_all(between * 2, "amplitude", to, 500, until, grazings=False)
+    branches = _follow_all(between * 2, "amplitude", to, 500, until, False, equations.effort)
     found = []
     for below, above in zip(branches[:rows], branches[rows:], strict=True):
         if isinstance(below, OrbitNotFound):
@@ -340,7 +372,7 @@ def limits(ball: Ball, *, n: ArrayLike = 1, table: Table = SINE) -> Any:
         special = (*below.special[::-1], *above.special)
         fold = _limit(special, "saddle-node", below.end)
         found.append(Limits(fold, _limit(special, "period doubling", above.end)))
-    return found if shape else found[0]
+    return found
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:

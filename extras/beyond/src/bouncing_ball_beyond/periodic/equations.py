@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import Ball, H, Impact
+from bouncing_ball_beyond.motions.effort import Effort
 from bouncing_ball_beyond.periodic.chains import product_of, solve_bordered, solved_or_nan
 from bouncing_ball_beyond.periodic.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables.table import FUNDAMENTAL, SINE, Table
@@ -150,6 +151,8 @@ class OrbitEquations:
         The waveform. Its parameters are numbers, or arrays of the shape (rows,).
     kind : str
         Kind of special orbits, whose test function is one more equation; "" for ordinary orbits.
+    effort : Effort, optional
+        Search to which the contacts of :meth:`linearized` count.
     """
 
     ball: Ball
@@ -159,6 +162,7 @@ class OrbitEquations:
     along: tuple[Path, ...] = (AMPLITUDE,)
     table: Table = SINE
     kind: str = ""
+    effort: Effort | None = None
 
     @cached_property
     def unknowns(self) -> int:
@@ -201,7 +205,8 @@ class OrbitEquations:
 
     def orbit(self, z: NDArray, kind: str = "") -> "PeriodicOrbit":
         """Return the orbit z, shape (N,), as a `PeriodicOrbit`."""
-        return PeriodicOrbit(replace(self, kind="") if self.kind else self, z, kind)
+        found = replace(self, kind="", effort=None) if self.kind or self.effort else self
+        return PeriodicOrbit(found, z, kind)
 
     def split(self, z: NDArray) -> tuple[NDArray, Ball, NDArray, Table]:
         """Return impacts, shape (rows, k, q); then the ball, Λ and the table, as columns."""
@@ -241,12 +246,18 @@ class OrbitEquations:
         steps = 1j * H * np.eye(inner + len(self.along))
         return steps[:, np.newaxis, np.newaxis, :inner], steps[:, np.newaxis, inner:]
 
+    def spend(self, rows: int, step: str = "") -> None:
+        """Count the contacts of a number of orbits; see :meth:`.Effort.spend`."""
+        if self.effort:
+            self.effort.spend(rows * self.impacts, step)
+
     def linearized(self, z: NDArray) -> LinearizedLegs:
         """Residuals of the legs, and their derivatives.
 
         The equations of a leg require that the release function vanishes when the contact ends, and
         that the flight ends with the gap and the speed of the next impact.
         """
+        self.spend(len(z))
         q = self.unknowns
         x = z[:, : self.size].reshape(len(z), self.impacts, q)
         of_legs, of_parameters = self._steps

@@ -4,12 +4,14 @@ Three searches are possible: for the n-T orbit, for all orbits with k impacts in
 the orbit near a guess.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bouncing_ball_beyond.contacts.balls import (
+    ENDLESS,
     Ball,
     check_one_ball,
     check_whole_numbers,
@@ -17,7 +19,8 @@ from bouncing_ball_beyond.contacts.balls import (
     one_number,
     whole_number,
 )
-from bouncing_ball_beyond.periodic.continuation import limits
+from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort
+from bouncing_ball_beyond.periodic.continuation import limits_of
 from bouncing_ball_beyond.periodic.equations import (
     OrbitEquations,
     OrbitNotFound,
@@ -40,6 +43,8 @@ def orbit(
     n: ArrayLike = 1,
     side: str = "stable",
     table: Table = SINE,
+    evaluations: int = EVALUATIONS,
+    progress: Callable | None = None,
 ) -> Any:
     """Find the n-T orbit of a ball, with one impact in n periods of the table.
 
@@ -57,6 +62,11 @@ def orbit(
         period have more orbits: see `orbits`.
     table : Table
         Waveform of the table, by default a sine.
+    evaluations : int
+        Number of contacts after which the search for one ball ends. The search for many balls may
+        compute as many for each.
+    progress : callable, optional
+        Function that receives a line of text every two seconds, such as ``print``.
 
     Returns
     -------
@@ -69,6 +79,8 @@ def orbit(
     ------
     OrbitNotFound
         If all arguments are numbers and the orbit does not exist.
+    SearchEnded
+        If the evaluations are used up.
     ValueError
         If an argument is out of range.
 
@@ -84,7 +96,8 @@ def orbit(
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    equations = OrbitEquations(row, 1, periods, table=table)
+    effort = Effort("orbit", one_number("evaluations", evaluations) * amplitudes.size, progress)
+    equations = OrbitEquations(row, 1, periods, table=table, effort=effort)
     sign = 1 if side == "stable" else -1
     found, admissible = near_instants(equations, amplitudes.astype(float), sign)
     missing = np.flatnonzero(~admissible)
@@ -114,7 +127,7 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
     # Limits are slow to find if free impacts do not end, because the ball creeps off the table.
     ending = missing[ends[missing]]
     rows = equations.rows(ending)
-    lowest = limits(rows.ball, n=rows.periods, table=equations.table) if len(ending) else []
+    lowest = limits_of(rows) if len(ending) else []
     folds = {i: each.saddle_node for i, each in zip(ending, lowest, strict=True)}
     for i in missing:
         fold = folds.get(i)
@@ -124,6 +137,8 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
         elif near[i] or found[i]:
             found[i] = near[i] or found[i]
             continue
+        elif not ends[i]:
+            why = f"none is found; {ENDLESS}"
         ball = equations.ball.rows(i)
         values = ", ".join(f"{name} = {value:.6g}" for name, value in ball.parameters.items())
         found[i] = OrbitNotFound(
@@ -134,7 +149,14 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
 
 
 def orbits(
-    ball: Ball, *, amplitude: float, impacts: int = 1, periods: int = 1, table: Table = SINE
+    ball: Ball,
+    *,
+    amplitude: float,
+    impacts: int = 1,
+    periods: int = 1,
+    table: Table = SINE,
+    evaluations: int = EVALUATIONS,
+    progress: Callable | None = None,
 ) -> list[PeriodicOrbit]:
     """Find the stable and unstable orbits with k impacts in m periods that a ball follows.
 
@@ -152,6 +174,8 @@ def orbits(
         Numbers k and m.
     table : Table
         Waveform of the table, by default a sine.
+    evaluations, progress
+        As in :func:`orbit`.
 
     Returns
     -------
@@ -159,6 +183,8 @@ def orbits(
 
     Raises
     ------
+    SearchEnded
+        If the evaluations are used up.
     ValueError
         If the ball or the amplitude is an array, or if an argument is out of range.
 
@@ -173,7 +199,8 @@ def orbits(
     amplitude = one_number("amplitude", amplitude)
     check_table(table)
     counts = whole_number("impacts", impacts), whole_number("periods", periods)
-    equations = OrbitEquations(ball, *counts, table=table)
+    effort = Effort("orbits", one_number("evaluations", evaluations), progress)
+    equations = OrbitEquations(ball, *counts, table=table, effort=effort)
     z = all_orbits(equations, amplitude)
     if not len(z):
         return []

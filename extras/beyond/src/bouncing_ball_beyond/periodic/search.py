@@ -99,6 +99,7 @@ def near_instants(
     ``sign`` is the side of the saddle-node (:func:`guess_of_instants`). Returns the orbit of each
     row, or None, and whether a ball follows it, shape (rows,).
     """
+    equations.spend(0, "orbits near those of instantaneous impacts")
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
@@ -141,6 +142,7 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
     z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
+    equations.spend(0, f"orbits near {len(z)} of these motions")
     z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
     x = equations.split(z)[0]
     z = z[(x[..., 2:] >= 0).all(axis=(1, 2)) & (x[..., 1] > 0).all(axis=1)]
@@ -166,6 +168,7 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     # The contact of an orbit is shorter than its period.
     within: dict[str, Any] = {"periods": equations.periods, "table": table}
     tau, u = np.meshgrid(phases, speeds, indexing="ij")
+    equations.spend(tau.size, f"motions from {tau.size} first impacts")
     gap, rate = np.empty((2, *tau.shape))
     for rows in np.array_split(np.arange(phases.size), phases.size // 32):
         _, impact = ball.first_impact(tau[rows], u[rows], amplitude, **within)
@@ -202,6 +205,7 @@ def _motions(equations: OrbitEquations, amplitude: float) -> NDArray:
     fastest = 1.1 * np.pi * equations.periods + amplitude * equations.table.bounds[1]
     phases = np.linspace(0, turn, 54, endpoint=False)
     tau, u = np.meshgrid(phases, np.linspace(0.1, fastest, 48))
+    equations.spend(tau.size, f"motions from {tau.size} first impacts")
     none = np.zeros(tau.size)
     first = Balls(equations.ball, none + amplitude, none, tau.ravel(), u.ravel(), equations.table)
     record, going, after = bounce(first, equations.impacts)

@@ -30,6 +30,7 @@ from paper_replication.configuration import (
     shown_as,
     stages,
     stop,
+    unreadable,
     without_function,
 )
 
@@ -41,11 +42,13 @@ os.environ.update(PYTHONPATH=os.pathsep.join(FOLDERS))
 if not os.access(".", os.W_OK):
     sys.exit("This folder cannot be written: give a folder for the results, --directory FOLDER")
 
+# A mistake in the configuration ends the run before any job.
+stop(unreadable(TOP / "config/config.yaml"))
+
 
 configfile: TOP / "config/config.yaml"
 
 
-# A mistake in the configuration ends the run before any job.
 config.update(checked(config, TOP / "config/schema.yaml", workflow.configfiles))
 
 

@@ -8,9 +8,10 @@ import json
 import shutil
 import subprocess
 import sys
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
-from itertools import chain, product
+from itertools import chain, count, product, takewhile
 from types import SimpleNamespace
 
 import matplotlib
@@ -22,7 +23,7 @@ from tests.checkout import ROOT
 from tests.jobs import Named
 
 from carbonelli2011 import variables
-from paper_replication import compare, datasets
+from paper_replication import compare, datasets, provenance
 from paper_replication.drawing import save_picture
 
 pytestmark = pytest.mark.usefixtures("git_of_its_own")
@@ -30,6 +31,11 @@ pytestmark = pytest.mark.usefixtures("git_of_its_own")
 HIGHER = "max_height 2 → 2.5 at frequency_ratio = 2 (tolerance 1e-09)"
 ENTRIES = {"fig14": {"title": "T", "caption": "C", "n": 1}}
 CONFIG = {"release": "force", "stage": ENTRIES}
+MADE = (
+    *("figures/claims.nc", "figures/fig14.nc"),
+    *("figures/fig01.png", "figures/fig01.svg", "figures/fig14.png", "figures/fig14.svg"),
+    *("paper.md", "supplement.md"),
+)
 FILES = (
     "src/model.py",
     "src/variables.py",
@@ -42,20 +48,16 @@ FILES = (
 def note(project, rule, files, code, data=(), **parameters):
     """Write the record of a job."""
     results = project.top / "results"
-    record = results / f"records/{rule}.json"
-    made = {file: str(results / file) for file in files}
-    inputs = {
-        "code": [project.top / code],
-        "data": [results / f"figures/{each}.nc" for each in data],
-    }
-    datasets.save_record(
-        SimpleNamespace(
-            input=SimpleNamespace(**inputs),
-            output=Named(record=str(record), **made),
-            params=SimpleNamespace(**parameters),
-        ),
-        project,
-    )
+    record = str(results / f"records/{rule}.json")
+    output = Named(record=record, **{file: str(results / file) for file in files})
+    paths = [str(results / f"figures/{each}.nc") for each in data]
+    job = SimpleNamespace(output=output, params=SimpleNamespace(**parameters))
+    datasets.save_record(job, read_by(project, code, paths), project)
+
+
+def read_by(project, code, data=()):
+    """What a job reads."""
+    return provenance.sources(SimpleNamespace(code=[str(project.top / code)], data=data))
 
 
 def make(name, data, folder, form="{:.3g}"):
@@ -89,9 +91,9 @@ def accepted(git_of_its_own, tmp_path_factory):
     project = project_in(top)
     run(project)
     git(top, "init", "-qb", "main")
-    (top / ".gitignore").write_text("results\n", "utf-8")
+    shutil.copy(ROOT / ".gitignore", top)
     commit(top)
-    assert len(compare.accept(project, top / "results")) == 8
+    assert len(accept(project)) == 8
     commit(top)
     return top
 
@@ -112,7 +114,7 @@ def git(top, *arguments):
 
 def commit(top):
     git(top, "add", ".")
-    git(top, "commit", "-qm", "a commit")
+    git(top, "commit", "-qm", "a commit", "--allow-empty")
 
 
 def edit(project, *files):
@@ -129,11 +131,11 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
         {"max_height": ("frequency_ratio", list(height))}, {"frequency_ratio": [1.0, 2.0]}
     )
     judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
-    code = [project.top / "src/model.py"]
+    sources = read_by(project, "src/model.py")
     given = {"n": 1, "release": "force"} | given
     title = entries["fig14"]["title"]
-    datasets.save(data, folder / "figures/fig14.nc", title, given, code, project)
-    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, code, project)
+    datasets.save(data, folder / "figures/fig14.nc", title, given, sources, project)
+    datasets.save(judged, folder / "figures/claims.nc", "Claims", {}, sources, project)
     project.make("fig14", data, folder / "figures")
     project.make("fig01", None, folder / "figures")
     # The page is no part of the reference.
@@ -154,10 +156,18 @@ def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENT
     )
 
 
-def report(project, names=(), config=CONFIG):
+def report(project, names=(), config=CONFIG, made=MADE):
     reference = compare.run_in(project.top, "the reference")
     results = compare.run_in(project.top / "results", "the results")
-    return compare.compare(project, reference, results, config, names)
+    main = provenance.main_branch(project.checkout)
+    checkout = compare.Checkout(project, main, config, made)
+    return compare.compare(project, reference, results, checkout, names)
+
+
+def accept(project, made=MADE):
+    """Accept the results; the rules make a page, too, which is no part of the reference."""
+    results = project.top / "results"
+    return compare.accept(project, results, [results / file for file in (*made, "index.html")])
 
 
 def printed(found):
@@ -188,10 +198,6 @@ def test_a_hook_that_runs_these_tests_leaves_the_commit_of_its_user_as_it_is(tmp
     told = ["git", "-C", str(top), "log", "--name-only", "--format=%s", "-2"]
     answer = subprocess.run(told, check=True, capture_output=True, text=True).stdout.split("\n")
     assert answer == ["another commit", "", "first", "a commit", "", "first", "second", ""]
-    told = ["git", "-C", str(top), "ls-files"]
-    assert subprocess.check_output(told, text=True).split() == ["first", "second"]
-    told = ["git", "-C", str(top), "config", "core.bare"]
-    assert subprocess.check_output(told, text=True).strip() == "false"
 
 
 def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
@@ -200,7 +206,7 @@ def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
     assert lines(project) == []
 
 
-def test_a_parameter_is_the_cause_and_names_no_file(project):
+def test_a_changed_parameter_is_named_with_what_follows_from_it(project):
     entries = {"fig14": ENTRIES["fig14"] | {"n": 2}}
     run(project, height=(1.0, 2.5), verdict="contradicted", text="83", entries=entries, n=2)
     config = {"release": "force", "stage": entries}
@@ -234,16 +240,12 @@ STALE = "stale, remove it and run again; changed since:"
 
 
 def test_a_picture_is_older_than_its_dataset(project):
-    results = project.top / "results/figures"
-    before = {path: path.read_bytes() for path in results.glob("fig14.[ps]*")}
-    record = (project.top / "results/records/fig14.json").read_bytes()
+    files = project.top.glob("results/*/fig14.[psj]*")
+    before = {path: path.read_bytes() for path in files}
     run(project, height=(1.0, 2.5))
     for path, content in before.items():
         path.write_bytes(content)
-    (project.top / "results/records/fig14.json").write_bytes(record)
     assert lines(project)[1] == f"fig14: {STALE} figures/fig14.nc"
-    (project.top / "src/drawing.py").unlink()
-    assert f"fig14: {STALE} figures/fig14.nc, src/drawing.py" in lines(project)
 
 
 def test_a_caption_of_the_checkout_makes_texts_stale(project):
@@ -252,7 +254,7 @@ def test_a_caption_of_the_checkout_makes_texts_stale(project):
     assert lines(project, config=config) == [f"paper: {since}", f"supplement: {since}"]
 
 
-NOTHING = "no parameter, code or version that is recorded has changed"
+SAME = "made by: the same parameters, code and versions"
 
 
 def changed(project):
@@ -261,41 +263,39 @@ def changed(project):
     return lines(project)[0].partition("; ")[2]
 
 
-def test_code_that_is_accepted_or_on_the_main_branch_is_no_cause(project):
+def test_code_that_differs_from_the_acceptance_is_listed_and_marked_if_main_has_it(project):
+    assert changed(project) == SAME
     edit(project, "src/model.py")
+    assert changed(project) == "changed code: src/model.py"
     commit(project.top)
-    # The main branch itself is red.
-    assert changed(project) == "changed since the last acceptance: src/model.py"
+    assert changed(project) == "changed code: src/model.py (also on main)"
     git(project.top, "checkout", "-qb", "branch")
-    assert changed(project) == "changed since the last acceptance: src/model.py"
     edit(project, "src/model.py")
     commit(project.top)
-    assert changed(project) == "changed: src/model.py"
+    assert changed(project) == "changed code: src/model.py"
+    # Main goes on, and has this content too.
+    git(project.top, "branch", "-f", "main")
+    assert changed(project) == "changed code: src/model.py (also on main)"
     run(project)
-    written = compare.accept(project, project.top / "results")
-    assert written == []
+    assert accept(project) == []
+    assert changed(project) == SAME
 
 
-@pytest.mark.parametrize("left", ["nothing", "a branch master"])
-def test_without_a_main_branch_the_last_acceptance_is_what_is_known(project, left):
-    if left == "nothing":
-        shutil.rmtree(project.top / ".git")
-    else:
-        git(project.top, "branch", "-m", "master")
-    assert changed(project) == f"cause: {NOTHING}"
+def test_the_main_branch_may_be_that_of_origin_and_code_is_listed_without_it(project):
     edit(project, "src/model.py")
-    assert changed(project) == (
-        "changed since the last acceptance (the main branch is not known here): src/model.py"
-    )
-
-
-def test_the_main_branch_of_another_name_is_that_of_origin(project, tmp_path):
+    commit(project.top)
     git(project.top, "branch", "-m", "master")
-    git(project.top, "clone", "-q", str(project.top), str(tmp_path / "copy"))
+    assert changed(project) == "changed code: src/model.py"
+    git(project.top, "update-ref", "refs/remotes/origin/main", "master")
+    assert changed(project) == "changed code: src/model.py (also on main)"
     shutil.rmtree(project.top / ".git")
-    shutil.move(tmp_path / "copy/.git", project.top / ".git")
-    edit(project, "src/drawing.py", "src/model.py")
-    assert changed(project) == "changed: src/model.py"
+    assert changed(project) == "changed code: src/model.py"
+    # Records have other hashes than this repository.
+    git(project.top, "init", "-qb", "main", "--object-format=sha256")
+    commit(project.top)
+    assert changed(project) == "changed code: src/model.py"
+    accept(project)
+    assert lines(project) == []
 
 
 def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
@@ -313,10 +313,7 @@ def test_a_description_names_the_file_of_descriptions(project, monkeypatch):
     data.to_netcdf(path)
     note(project, "stage", ["figures/fig14.nc"], "src/model.py")
     described = "fig14: max_height.long_name maximum height of the ball over a cycle → highest"
-    assert lines(project)[0] == f"{described}; changed: src/variables.py"
-    # The file of today says nothing about two runs.
-    runs = [compare.run_in(top, "a run") for top in (project.top, project.top / "results")]
-    assert compare.compare(project, *runs).lines()[0] == f"{described}; cause: {NOTHING}"
+    assert lines(project)[0] == f"{described}; changed code: src/variables.py"
 
 
 @pytest.mark.parametrize(
@@ -372,8 +369,8 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
     project, monkeypatch
 ):
-    other = datasets.versions() | {"matplotlib": "9.9"}
-    monkeypatch.setattr(datasets, "versions", lambda: other)
+    other = provenance.versions() | {"matplotlib": "9.9"}
+    monkeypatch.setattr(provenance, "versions", lambda: other)
     drawn = replace(project, make=partial(make, form="height {:.3g}"))
     run(drawn)
     agree = "6 of 8 files agree with the reference."
@@ -381,19 +378,14 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
         f"{agree} 2 pictures of another matplotlib were not compared."
     ]
     assert report(project).status == 0
-    brought("edited", project.top / "results/figures/fig14.png")
-    by_hand = "edited by hand: figures/fig14.png of the results"
-    assert lines(project) == [f"fig14: the picture differs; {by_hand}"]
     edit(project, "src/drawing.py")
     run(drawn)
     cause = f"other versions: matplotlib {matplotlib.__version__} → 9.9"
-    assert lines(project) == [f"fig14: the picture differs; changed: src/drawing.py; {cause}"]
+    assert lines(project) == [f"fig14: the picture differs; changed code: src/drawing.py; {cause}"]
     # The main branch has this code, and was accepted with the other matplotlib.
     commit(project.top)
     assert report(project).status == 0
-    assert compare.accept(project, project.top / "results")[1] == "figures/fig14.svg"
-    record = json.loads((project.top / compare.ACCEPTED).read_text("utf-8"))
-    assert record["versions"] == other
+    assert accept(project) == [f"figures/fig14.{kind}" for kind in ("nc", "png", "svg")]
 
 
 def test_one_figure_is_compared_and_a_missing_one_is_named(project):
@@ -403,18 +395,19 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     missing = "figures/fig14.png in the reference, figures/fig14.png in the results"
     assert lines(project, names=["fig14"]) == [f"fig14: missing: {missing}"]
     assert lines(project)[0].startswith("claims: cannot be compared: figures/claims.nc in the res")
-    # The configuration registers two figures that nobody made.
-    config = {"stage": {"fig14": ENTRIES["fig14"], "fig18": {"title": "T", "caption": "C"}}}
-    found = report(project, names=["fig18"], config=config)
-    assert ([*found.found], found.status) == (["figures/fig18.png", "figures/fig18.svg"], 2)
-    found = report(project, names=["fig19"])
-    assert (printed(found), found.status) == (["There is nothing to compare."], 2)
+    # Rules make two pictures that nobody made.
+    pictures = ("figures/fig18.png", "figures/fig18.svg")
+    found = report(project, names=["fig18"], made=pictures)
+    assert ([*found.found], found.status) == ([*pictures], 2)
 
 
-def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project, capsys):
+def test_the_page_shows_both_pictures(project, capsys):
     run(project, height=(1.0, 2.5))
     results = project.top / "results"
-    assert compare.report_of_run(project, results, CONFIG, []) == 1
+    job = SimpleNamespace(
+        input=[results / file for file in MADE], params=SimpleNamespace(config=CONFIG, names=[])
+    )
+    assert compare.report_of_run(project, results, job) == 1
     page = results / "diff/index.html"
     text = page.read_text("utf-8")
     assert "max_height 2 → 2.5" in text
@@ -426,9 +419,6 @@ def test_the_page_shows_both_pictures_and_replaces_an_earlier_one(project, capsy
     printed = capsys.readouterr().err
     assert (results / "diff/report.txt").read_text("utf-8") == printed
     assert printed.splitlines()[-2:] == ["Differences in fig14.", str(page)]
-    run(project)
-    assert compare.report_of_run(project, results, CONFIG, []) == 0
-    assert "fig14" not in page.read_text("utf-8")
 
 
 def test_the_command_prints_a_mistake_and_its_status(project, capsys, tmp_path):
@@ -502,7 +492,7 @@ def test_a_damaged_record_is_named_and_that_of_the_reference_is_mended(project, 
     record.write_text(before, "utf-8")
     (project.top / compare.ACCEPTED).write_text(left, "utf-8")
     assert "in the reference, figures/accepted.json cannot be" in lines(project)[0]
-    compare.accept(project, results)
+    accept(project)
     assert lines(project) == []
 
 
@@ -542,46 +532,99 @@ def test_a_text_with_another_title_has_no_sentences(project):
     assert found["supplement.md"].sentences == [("is 82", "is 83")]
 
 
-def test_two_runs_of_other_code_and_versions(project, tmp_path, monkeypatch):
-    one = two_runs(project, tmp_path)[0]
-    other = datasets.versions() | {"numpy": "9.9"}
-    monkeypatch.setattr(datasets, "versions", lambda: other)
-    edit(project, "src/model.py")
-    run(project, height=(1.0, 2.5))
-    runs = [compare.run_in(folder, "a run") for folder in (one, project.top / "results")]
-    causes = {"changed": ["src/model.py"], "other versions": [f"numpy {np.__version__} → 9.9"]}
-    (found,) = compare.compare(project, *runs).findings.values()
-    assert found.causes == causes
-
-
 def test_what_differs_is_accepted_and_what_agrees_stays(project):
     before = (project.top / "figures/fig14.nc").read_bytes()
     edit(project, "src/model.py")
     commit(project.top)
     run(project, height=(1.0, 2.0 + 1e-12), text="83")
-    assert compare.accept(project, project.top / "results") == ["paper.md", "supplement.md"]
+    assert accept(project) == ["paper.md", "supplement.md"]
     assert (project.top / "figures/fig14.nc").read_bytes() == before
-    run(project, height=(1.0, 2.5))
-    written = compare.accept(project, project.top / "results")
-    assert written[:3] == ["figures/fig14.nc", "figures/fig14.png", "figures/fig14.svg"]
-    assert lines(project) == []
 
 
 def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
-    """A file of the user stays."""
+    """A file of the user stays. A figure of another branch is to be removed from the results."""
     (project.top / "figures/mine.md").write_text("mine", "utf-8")
-    (project.top / "figures/old").mkdir()
-    results = project.top / "results"
-    for kind in ("png", "svg"):
-        (results / f"figures/fig01.{kind}").unlink()
-    with pytest.raises(ValueError, match=r"missing: figures/fig01\.png in the results"):
-        compare.accept(project, results)
-    (results / "records/fig01.json").unlink()
-    assert compare.accept(project, results) == ["figures/fig01.png", "figures/fig01.svg"]
+    made = [file for file in MADE if "fig01" not in file]
+    left = [project.top / f"results/figures/fig01.{kind}" for kind in ("png", "svg")]
+    assert f"fig01: no rule makes it, remove it: {left[0]}" in lines(project, made=made)
+    with pytest.raises(ValueError, match=f"remove first what no rule makes: {left[0]} {left[1]}"):
+        accept(project, made)
+    for path in left:
+        path.unlink()
+    assert "fig01: missing: figures/fig01.png in the results" in lines(project, made=made)
+    assert accept(project, made) == ["figures/fig01.png", "figures/fig01.svg"]
     assert not (project.top / "figures/fig01.png").exists()
     assert (project.top / "figures/mine.md").exists()
     unnamed = "mine: no record names: figures/mine.md in the reference; missing: figures/mine.md"
-    assert (lines(project)[0], report(project).status) == (f"{unnamed} in the results", 2)
+    assert lines(project, made=made)[0] == f"{unnamed} in the results"
+    assert report(project, made=made).status == 2
+
+
+PROCESSORS = (np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-12]))
+"""The same numbers, rounded differently."""
+CHANGES = {
+    "nothing": {},
+    "a label": {"form": "height {!r}"},
+    "a caption": {"caption": "D", "text": "83"},
+    "a number": {"add": 0.5},
+    "dataset and picture": {"add": 0.5, "form": "height {!r}", "text": "83"},
+}
+
+
+@pytest.mark.parametrize("first, second", [*product((0, 1), repeat=2)])
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_one_processor_accepts_is_green_on_each(project, tmp_path, what, first, second):
+    """One processor made the reference, one accepts a change, and both compare with it."""
+    given = {"form": "{!r}", "add": 0.0, "caption": "C", "text": "82"} | CHANGES[what]
+    before = replace(project, make=partial(make, form="{!r}"))
+    run(before, PROCESSORS[first])
+    accept(before)
+    today = replace(project, make=partial(make, form=given["form"]))
+    entries = {"fig14": ENTRIES["fig14"] | {"caption": given["caption"]}}
+    config = {"release": "force", "stage": entries}
+    (project.top / "config/config.yaml").write_text(json.dumps(config), "utf-8")
+    commit(project.top)
+    run(today, PROCESSORS[second] + given["add"], text=given["text"], entries=entries)
+    accept(today)
+    for numbers in PROCESSORS:
+        run(today, numbers + given["add"], text=given["text"], entries=entries)
+        assert lines(today, config=config) == []
+    today.make("fig14", datasets.read(project.top / "figures/fig14.nc"), tmp_path)
+    for name in ("fig14.png", "fig14.svg"):
+        assert (tmp_path / name).read_bytes() == (project.top / "figures" / name).read_bytes()
+
+
+def reference(project):
+    """The files of the reference; git would commit no others."""
+    listed = provenance.git(project.top, "ls-files", "--cached", "--others", "--exclude-standard")
+    paths = [project.top / file for file in listed.split() if (project.top / file).exists()]
+    return {path.relative_to(project.top): path.read_bytes() for path in paths}
+
+
+def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path, monkeypatch):
+    """Each attempt is killed within its second write, until one has nothing more to write."""
+    run(project, (1.0, 2.5), text="83")
+    whole = project_in(shutil.copytree(project.top, tmp_path / "whole"))
+    accept(whole)
+
+    def killed(attempt):
+        writes = []
+
+        def move(*paths):
+            writes.append(paths)
+            if len(writes) == 2:
+                patch.setattr(compare.Path, "unlink", lambda *_, **__: None)
+                raise KeyboardInterrupt
+            shutil.move(*paths)
+
+        with pytest.MonkeyPatch.context() as patch, suppress(KeyboardInterrupt):
+            patch.setattr(datasets.os, "replace", move)
+            accept(project)
+        return len(writes) == 2
+
+    assert sum(1 for _ in takewhile(killed, count())) == 5
+    assert [*(project.top / "figures").glob(".*")]
+    assert reference(project) == reference(whole)
 
 
 def untracked(project):
@@ -593,13 +636,6 @@ def ignored(project):
     (project.top / ".git/info/exclude").write_text("new.py\n", "utf-8")
     edit(project, "src/new.py")
     note(project, "fig01", ["figures/fig01.png", "figures/fig01.svg"], "src/new.py")
-
-
-def in_a_repository_of_others(project):
-    shutil.rmtree(project.top / ".git")
-    git(project.top.parent, "init", "-qb", "main")
-    git(project.top.parent, "commit", "-qm", "a commit", "--allow-empty")
-    (project.top.parent / ".git/info/exclude").write_text("checkout\n", "utf-8")
 
 
 def mixed(project):
@@ -617,22 +653,13 @@ def mixed(project):
         ),
         (untracked, r"commit first: \?\? src/new.py"),
         (ignored, "git does not know src/new.py"),
-        (in_a_repository_of_others, "git does not know src/drawing.py"),
         (mixed, "run from nothing first: .*9.9"),
     ],
 )
 def test_nothing_is_accepted_that_cannot_be_made_again(project, change, line):
     change(project)
     with pytest.raises(ValueError, match=line):
-        compare.accept(project, project.top / "results")
-
-
-def test_a_repository_with_other_hashes_blames_nobody(project):
-    shutil.rmtree(project.top / ".git")
-    git(project.top, "init", "-qb", "main", "--object-format=sha256")
-    commit(project.top)
-    assert compare.accept(project, project.top / "results") == []
-    assert changed(project) == f"cause: {NOTHING}"
+        accept(project)
 
 
 # All situations
@@ -701,17 +728,20 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
     form = given.pop("form", "{!r}")
     digits = replace(project, make=partial(make, form="{!r}"))
     run(digits)
-    compare.accept(digits, project.top / "results")
+    accept(digits)
     today = replace(project, make=partial(make, form=form))
     run(today, **given)
     kept = shutil.copytree(project.top, tmp_path / "kept")
     results = project.top / "results"
 
-    def compared():
-        runs = (compare.run_in(project.top, "old"), compare.run_in(results, "new"))
-        return compare.Comparison(today, *runs, CONFIG if with_reference else None, {})
+    checkout = compare.Checkout(today, {}, CONFIG, MADE) if with_reference else None
 
-    data = compared().finding("figures/fig14.nc")
+    def sides(file):
+        runs = (compare.run_in(project.top, "old"), compare.run_in(results, "new"))
+        return compare.side(runs[0], file), compare.side(runs[1], file, checkout)
+
+    data = compare.finding(*sides("figures/fig14.nc"), checkout, ()).verdict
+    differing = ["figures/fig14.nc"] if data == "differs" else []
     records = (project.top / compare.ACCEPTED, results / f"records/{rule}.json")
     for old, new, stale in product(STATES, STATES, (False, True)):
         for path in (project.top / file, results / file, *records, project.top / code):
@@ -720,7 +750,8 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
         brought(new, results / file, records[1])
         if stale:
             edit(project, code)
-        found = replace(compared(), found={"figures/fig14.nc": data}).finding(file)
+        pair = sides(file)
+        found = compare.finding(*pair, checkout, differing)
         situation = (old, new, stale, contents, file.endswith(".nc"), with_reference)
         assert found.verdict == wanted(*situation), situation
         assert (
@@ -729,31 +760,39 @@ def test_each_situation_has_its_verdict(project, tmp_path, made, contents, with_
             or compare.EDITED in found.causes
         ), situation
         # Only what is fresh and recorded is accepted.
-        assert (not found.wrong) == (new == "recorded" and not (stale and with_reference))
+        assert (not pair[1].wrong) == (new == "recorded" and not (stale and with_reference))
 
 
-CODE = [*product("ab", ("a", "b", None), (1, 2), "12")]
-
-
-@pytest.mark.parametrize("code, main, n, version", CODE)
-def test_no_innocent_is_a_cause(code, main, n, version):
-    """A file of code was accepted as "a". The results and the main branch may have another one."""
-    before, after = (
-        {
-            "code": {"guilty": name, "innocent": "a"},
-            "parameters": {"n": number},
-            "versions": {"numpy": numpy},
-        }
-        for name, number, numpy in (("a", 1, "1"), (code, n, version))
+@pytest.mark.parametrize("after, main, n, version", [*product("ab", "ab ", (1, 2), "12")])
+def test_all_that_differs_in_what_made_a_file_is_listed(after, main, n, version):
+    """A file of code was accepted as "a". Another one stays as it is."""
+    old, new = (
+        compare.Side(
+            ROOT,
+            {},
+            record={
+                "code": {"edited": code, "other": "a"},
+                "parameters": {"n": number},
+                "versions": {"numpy": numpy},
+                "data": {},
+            },
+        )
+        for code, number, numpy in (("a", 1, "1"), (after, n, version))
     )
-    known = {"guilty": main, "innocent": "a"} if main else {}
-    told = str(compare.causes(before, after, known))
-    changed = {"n 1 → 2": n == 2, "numpy 1 → 2": version == "2"}
-    assert {text: text in told for text in changed} == changed
-    others = any(changed.values())
-    assert ("guilty" in told) == (code == "b" and (main != "b" or not others))
-    assert "innocent" not in told
-    assert (told == str(compare.NOTHING)) == (code == "a" and not others)
+    checkout = compare.Checkout(project_in(ROOT), {"edited": main, "other": "a"})
+    assert compare.what_differs(old, new, checkout, ()) == (
+        {
+            kind: [text]
+            for kind, text, is_told in (
+                ("changed parameter", "n 1 → 2", n == 2),
+                ("changed code", "edited (also on main)", after == main == "b"),
+                ("changed code", "edited", after == "b" and main != "b"),
+                ("other versions", "numpy 1 → 2", version == "2"),
+            )
+            if is_told
+        }
+        or compare.SAME
+    )
 
 
 OTHERS = {

@@ -36,6 +36,10 @@ import pytest
             "continuation: {fig08: {points: 61}}\ncontinuation: {fig09: {points: 61}}",
             "mine.yaml, line 2: continuation stands twice: write its keys together",
         ),
+        (
+            "continuation: {fig08: {points: 061}}",
+            "mine.yaml, line 1: YAML reads 061 as 49: write it in decimals",
+        ),
     ],
 )
 def test_a_mistake_is_one_line_before_any_job(fresh, changes, line):
@@ -69,3 +73,12 @@ def test_a_new_figure_needs_a_title_and_functions_and_may_have_any_parameters(fr
         fresh.edit(file, '"fig11": fig11', '"fig11": fig11, "fig99": fig11')
     status, printed = fresh.run(*command)
     assert status == 0 and "results/figures/fig99.png" in printed, printed
+
+
+@pytest.mark.parametrize("content", ["<<<<<<< HEAD\n", "release: d\xe9placement\n"])
+def test_a_configuration_that_cannot_be_read_is_one_line(fresh, content):
+    """With the marks of a conflict, or in another encoding than UTF-8."""
+    (fresh.path / "config/config.yaml").write_bytes(content.encode("latin-1"))
+    status, _ = fresh.run("-n", "--cores", "1", "--", "fig01")
+    assert status.startswith("configuration: config.yaml cannot be read: "), status
+    assert "\n" not in status

@@ -4,17 +4,19 @@ import json
 import os
 import platform
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from carbonelli2011.variables import described
-from paper_replication import datasets
+from paper_replication import datasets, provenance
 from paper_replication.datasets import Project, Variable
 
 # What `git hash-object` says of "pass" and a line end.
 PASS = "2ae28399f5fda2dfb1b04405f4a3b4895f5fac1e"
+NOTHING = provenance.sources(SimpleNamespace(code=[]))
 
 
 @pytest.fixture
@@ -35,7 +37,8 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_pat
     code = tmp_path / "code.py"
     code.write_bytes(b"pass\r\n")
     given = {"n": np.int64(1), "range": {"max": 2.0}}
-    datasets.save(small, path, "Figure 2", given, [code], project)
+    sources = provenance.sources(SimpleNamespace(code=[str(code)]))
+    datasets.save(small, path, "Figure 2", given, sources, project)
     saved = datasets.read(path)
     xr.testing.assert_equal(saved, small)
     assert saved.phase.attrs == {
@@ -58,7 +61,7 @@ def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_pat
 def test_a_variable_without_description_is_refused(small, project, tmp_path):
     with pytest.raises(ValueError, match=r"^fig02.nc: describe height, speed in variables.py$"):
         unknown = small.assign(height=1.0, speed=2.0)
-        datasets.save(unknown, tmp_path / "fig02.nc", "", {}, [], project)
+        datasets.save(unknown, tmp_path / "fig02.nc", "", {}, NOTHING, project)
 
 
 def test_a_failed_save_leaves_the_old_file(small, project, tmp_path, monkeypatch):
@@ -70,17 +73,17 @@ def test_a_failed_save_leaves_the_old_file(small, project, tmp_path, monkeypatch
 
     monkeypatch.setattr(xr.Dataset, "to_netcdf", fail)
     with pytest.raises(OSError, match="disk full"):
-        datasets.save(small, path, "", {}, [], project)
+        datasets.save(small, path, "", {}, NOTHING, project)
     assert path.read_text() == "old"
 
 
 def test_a_description_belongs_to_its_dataset(small, project, tmp_path):
     """A variable of one dataset has none in another; another package gives its own."""
     named = small.assign(impacts=3)
-    datasets.save(named, tmp_path / "three_balls.nc", "", {}, [], project)
+    datasets.save(named, tmp_path / "three_balls.nc", "", {}, NOTHING, project)
     with pytest.raises(ValueError, match="describe impacts in"):
-        datasets.save(named, tmp_path / "fig02.nc", "", {}, [], project)
+        datasets.save(named, tmp_path / "fig02.nc", "", {}, NOTHING, project)
     own = {"n": Variable("order"), "phase": Variable("angle"), "stable": Variable("whether")}
     mine = replace(project, describe=lambda name: own if name == "mine" else {})
-    datasets.save(small, tmp_path / "mine.nc", "", {}, [], mine)
+    datasets.save(small, tmp_path / "mine.nc", "", {}, NOTHING, mine)
     assert datasets.read(tmp_path / "mine.nc").phase.long_name == "angle"

@@ -99,28 +99,6 @@ def assert_readable(figure):
         assert not first.padded(-1).overlaps(second.padded(-1)), (one, other)
 
 
-@pytest.mark.parametrize("name", DOMAINS)
-def test_names_at_the_right_are_level_with_their_branches_or_next_to_each_other(name):
-    figure = of_reference(name)
-    points = drawing.POINTS / figure.dpi
-    for axes in figure.axes:
-        names = [text for text in axes.texts if text.get_text().startswith(("$\\varpi", "rest"))]
-        assert names
-        centres = []
-        moved = []
-        for text in names:
-            end = axes.transData.transform((0.0, text.xy[1]))[1] * points
-            moved.append(text.xyann[1])
-            centres.append(end + text.xyann[1])
-        order = np.argsort(centres)
-        gaps = np.diff(np.array(centres)[order])
-        # Numbers of the size of a panel in points, with rounding errors.
-        assert gaps.min(initial=np.inf) > drawing.LINE_HEIGHT - 1e-6
-        touching = np.abs(gaps - drawing.LINE_HEIGHT) < 1e-6
-        beside = np.concatenate([[False], touching]) | np.concatenate([touching, [False]])
-        assert (beside | (np.abs(np.array(moved)[order]) < 1e-6)).all()
-
-
 def branches(name, data):
     """The branches of a figure of domains, and the phases that it shows."""
     if name == "fig03":
@@ -206,18 +184,6 @@ def test_the_period_doublings_of_eq_8_are_marked(name):
     assert np.unique(cosines.round(12)) == pytest.approx(n * np.pi * (1 - r) / (1 + r))
 
 
-def test_a_short_stable_range_is_seen_between_its_marks():
-    axes = of_reference("fig08").axes[-1]
-    branch = curves.spring_damper_branch(reference("fig08").sel(frequency_ratio=2.0))
-    special = branch.isel(special=np.flatnonzero(branch.special_kind != ""))
-    special = special.sortby("special_along")
-    places = np.stack([special.special_amplitude, special.special_release_phase / np.pi], axis=1)
-    points = axes.transData.transform(places) * drawing.POINTS / axes.figure.dpi
-    size = max(curves.MARKS[kind]["markersize"] for kind in special.special_kind.values)
-    # What is seen of the line is at least as long as a mark.
-    assert np.linalg.norm(np.diff(points, axis=0), axis=1).min() > 2 * size
-
-
 def test_the_end_of_a_branch_at_permanent_contact_is_marked():
     data = reference("fig08")
     marks = lines_of(of_reference("fig08"), "joins permanent contact")
@@ -238,14 +204,6 @@ def test_a_branch_that_ends_early_at_its_last_point_is_marked_there():
     end = data.isel(frequency_ratio=-1, point=-4)
     expected = {(float(end.amplitude), float(end[phase]) / np.pi) for phase in PHASES}
     assert {tuple(line.get_xydata()[0]) for line in marks} == expected
-
-
-def test_the_summit_shows_both_models_apart():
-    data = reference("fig12")
-    low, high = of_reference("fig12").axes[1].get_ylim()
-    heights = [float(data.restitution_ball.max()), float(data.ball.isel(frequency_ratio=-1).max())]
-    assert low < min(heights) < max(heights) < high
-    assert heights[0] - heights[1] > 0.2 * (high - low)
 
 
 def test_a_motion_repeats_before_and_after_its_cycle():
@@ -273,13 +231,6 @@ def test_both_ends_of_the_axis_of_the_frequency_ratio_have_numbers(name):
     assert (numbers[0], numbers[-1]) == pytest.approx(ends)
 
 
-def test_an_end_beside_a_power_of_ten_has_no_number():
-    (data,) = data_of("fig14")
-    figure = laid_out("fig14", data.isel(frequency_ratio=data.frequency_ratio >= 9))
-    assert drawn_tick_labels(figure.axes[1].xaxis)[0].get_text() == "10"
-    assert_readable(figure)
-
-
 def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model():
     data = reference("fig13").isel(case=0)
     lines = [line.get_xydata() * np.pi for line in of_reference("fig13").axes[0].lines]
@@ -291,13 +242,6 @@ def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model()
     ):
         points = np.stack([x, y], axis=1)
         assert any(each.shape == points.shape and np.allclose(each, points) for each in lines)
-
-
-def test_the_stiffest_contact_of_the_poincare_map_has_its_own_name_if_no_other_is_beside_it():
-    (data,) = data_of("fig13")
-    figure = figures.draw("fig13", data.isel(frequency_ratio=data.frequency_ratio <= 10.001))
-    names = [text.get_text() for text in figure.axes[0].texts if text.get_text()]
-    assert names == 2 * ["$\\varpi=1$", "$\\varpi=2$", "$\\varpi=5$", "$\\varpi=10$"]
 
 
 def test_an_error_that_changes_its_sign_is_zero_between():
@@ -322,25 +266,6 @@ def test_velocities_of_the_cycle_are_tangents():
     assert velocities == pytest.approx([float(velocity) for velocity in expected])
 
 
-def test_contacts_begin_and_end_on_the_ball():
-    """With the force release it leaves below the level of the table."""
-    (data,) = data_of("fig07")
-    lower = data.assign(ball=data.ball - 0.5)
-    (axes,) = laid_out("fig07", lower).axes
-    dots = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "o"]
-    assert len(dots) == 3
-    for instant, height in dots:
-        assert height == pytest.approx(np.interp(instant, data.time / (2 * np.pi), lower.ball))
-
-
-def test_a_legend_that_is_too_wide_has_fewer_columns():
-    with drawing.style():
-        figure, _ = drawing.panels(2.0)
-        drawing.legend_below(figure, {letter * 30: drawing.sample() for letter in "abc"}, 3)
-        figure.draw_without_rendering()
-    assert_readable(figure)
-
-
 # Other parameters
 
 
@@ -363,20 +288,6 @@ def test_a_figure_without_an_orbit_is_refused_with_its_parameters(name):
     nothing = data.assign({each: np.nan * data[each] for each in empty})
     with pytest.raises(ValueError, match=rf"^{name} would be empty: no orbit has n = .*Eq\. 7"):
         figures.draw(name, nothing)
-
-
-def test_a_curve_whose_first_part_is_missing_has_the_style_of_its_legend():
-    """The legend had the dotted style of an empty part."""
-    (data,) = data_of("fig05")
-    absent = data.frequency_ratio < 5
-    admissible = data.admissible & ~absent
-    part = data.assign(
-        admissible=admissible, apparent_restitution=data.apparent_restitution.where(~absent)
-    )
-    figure = laid_out("fig05", part)
-    named = [line for line in figure.axes[0].lines if line.get_label().startswith("$r")]
-    assert len(named) == data.sizes["case"]
-    assert all(np.isfinite(line.get_ydata()).all() for line in named)
 
 
 def test_the_inadmissible_part_of_a_curve_is_in_the_legend():
@@ -449,13 +360,6 @@ def test_another_tolerance_and_release_have_no_printed_value():
     force = words(figures.draw("fig16", with_parameters(data, release="force")))
     assert r"spring-damper, $\Lambda_F$" in force
     assert not any("printed" in text or r"\sqrt" in text for text in force)
-
-
-def test_an_error_of_zero_and_without_orbits():
-    (data,) = data_of("fig14")
-    data.max_height[:40] = data.relative_error[:40] = np.nan
-    data.relative_error[50] = 0.0
-    assert_readable(laid_out("fig14", data))
 
 
 def test_a_case_without_orbits():
@@ -605,14 +509,6 @@ def test_each_panel_of_the_map_has_the_share_of_the_failing_orbits():
             assert float(share.strip(" %")) == pytest.approx(100 * mean, abs=0.05 + 1e-9)
 
 
-def test_narrow_strips_of_the_map_can_be_seen():
-    """0.2 % of the range at either end are more than a tenth of the panel."""
-    assert figures.stretched(np.array([0.002])) > 0.1
-    assert figures.stretched(np.array([0.998])) < 0.9
-    position = np.linspace(0, 1, 101) ** 3
-    assert figures.compressed(figures.stretched(position)) == pytest.approx(position, abs=1e-12)
-
-
 def test_the_curves_of_the_paper_are_in_the_panels_of_their_n():
     data = reference("validity_map")
     for _, n, axes in panels_of_map(data, of_reference("validity_map")):
@@ -622,13 +518,6 @@ def test_the_curves_of_the_paper_are_in_the_panels_of_their_n():
         assert found == set(
             zip(of_n.curve_restitution.values, of_n.curve_place.values, strict=True)
         )
-
-
-def test_the_legend_of_the_map_has_the_advised_frequency_ratio_of_the_dataset():
-    data = reference("validity_map").isel(n=[0], quantity=[0])
-    figure = laid_out("validity_map", with_parameters(data, advised=50))
-    entries = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert [r"$\varpi=50$" in entry for entry in entries] == [True, True, False]
 
 
 def test_an_orbit_of_the_validity_map_without_an_answer_is_a_cross():

@@ -49,3 +49,23 @@ def test_a_changed_parameter_is_red_and_named_until_it_is_accepted(accepted):
     git(accepted, "commit", "-qam", "second")
     assert accepted.run("--cores", "1", "accept")[0] == 0
     assert compared()[0] == 0
+
+
+@pytest.mark.parametrize(
+    "line, saves, made",
+    [
+        ('    """The stage."""\n', "pendulum.py", "figures/fig1.nc"),
+        ('    if name == "fig1":\n', "results/figures/fig1.nc", "figures/fig1.png"),
+    ],
+)
+def test_a_job_under_which_a_file_changes_leaves_no_result(
+    accepted, tmp_path, capfd, line, saves, made
+):
+    """Code that is saved while a stage computes, and a dataset while it is drawn."""
+    there = Checkout(shutil.copytree(accepted.path, tmp_path / "pendulum"))
+    save = f'{" " * (8 if "if" in line else 4)}Path("{saves}").open("ab").write(b"\\n")\n'
+    there.edit("pendulum.py", line, line + save)
+    assert there.run("--cores", "1", "diff")[0] == 1
+    (line,) = capfd.readouterr().err.splitlines()
+    assert line.startswith("run again: ") and line.endswith(f"{saves} changed while this job ran")
+    assert not (there.path / "results" / made).exists()

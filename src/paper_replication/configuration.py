@@ -5,6 +5,7 @@ that an entry may have besides its parameters is `described` among the definitio
 """
 
 import ast
+import re
 import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import get_close_matches
@@ -26,7 +27,7 @@ def checked(config: Mapping, schema_file: Path, files: Iterable[str]) -> dict:
     found = [
         f"{Path(file).name}, {line}"
         for file in files
-        for line in repeated_keys(Path(file).read_text("utf-8"))
+        for line in mistakes_in_text(Path(file).read_text("utf-8"))
     ]
     stop(found or mistakes(config, schema))
     return with_whole_numbers(config, schema, schema["$defs"])
@@ -198,11 +199,24 @@ def impossible_numbers(value: object, where: str = "") -> Iterator[str]:
         yield f"{where}: .nan must be a number"
 
 
-def repeated_keys(text: str) -> Iterator[str]:
-    """Yield a line for each key that a mapping in YAML has twice: only the last value counts.
+def unreadable(file: Path) -> Iterator[str]:
+    """Yield why a file is no YAML in UTF-8, as with the marks of a conflict."""
+    try:
+        yaml.safe_load(file.read_bytes())
+    except yaml.YAMLError as error:
+        yield f"{file.name} cannot be read: {' '.join(str(error).split())}"
 
-    >>> list(repeated_keys("validity: {}\\ntable: {n: 1}\\nvalidity: {}"))
+
+def mistakes_in_text(text: str) -> Iterator[str]:
+    """Yield a line for each key that a mapping in YAML has twice, of which only the last value
+    counts, and for each number that YAML 1.1 does not read as it is written.
+
+    >>> list(mistakes_in_text("validity: {}\\ntable: {n: 1}\\nvalidity: {}"))
     ['line 3: validity stands twice: write its keys together']
+    >>> list(mistakes_in_text("impacts: 02000"))
+    ['line 1: YAML reads 02000 as 1024: write it in decimals']
+    >>> list(mistakes_in_text("advised: [1:40, '1:40', 0.5, -1.0e-3]"))
+    ['line 1: YAML reads 1:40 as 100: write it in decimals']
     """
     nodes = [yaml.compose(text)]
     for node in nodes:
@@ -213,6 +227,12 @@ def repeated_keys(text: str) -> Iterator[str]:
                 if key is not last[key.value]:
                     line = last[key.value].start_mark.line + 1
                     yield f"line {line}: {key.value} stands twice: write its keys together"
+        elif isinstance(node, yaml.SequenceNode):
+            nodes.extend(node.value)
+        elif node and node.tag.endswith(("int", "float")) and re.search(r"^\W?0\d|:", node.value):
+            line = node.start_mark.line + 1
+            number = yaml.safe_load(node.value)
+            yield f"line {line}: YAML reads {node.value} as {number}: write it in decimals"
 
 
 def meant(key: str, known: Collection[str]) -> str:

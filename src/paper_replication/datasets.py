@@ -9,7 +9,8 @@ Texts, integers and booleans agree only if they are equal.
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+import platform
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from inspect import signature
@@ -19,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from paper_replication.provenance import computed_on, contents, versions
+from paper_replication.provenance import contents_in, relative
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ def save(
     path: str | Path,
     title: str,
     parameters: Mapping,
-    code: Iterable[str | Path],
+    sources: Mapping[str, Mapping],
     project: Project,
 ) -> None:
     """Save a dataset as netCDF, atomically, with descriptions and provenance.
@@ -120,8 +121,8 @@ def save(
         What the dataset shows.
     parameters
         The parameters with which it was computed, and the settings of the run.
-    code
-        Files of code that decide its numbers; the dataset records the content of each.
+    sources
+        What its job reads; the dataset records the code and the versions.
     project
         What describes its variables, and the checkout with its code.
 
@@ -141,8 +142,8 @@ def save(
         title=title,
         references=project.references,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
-        code=json.dumps(contents(code, project.checkout)),
-        versions=json.dumps(versions()),
+        code=json.dumps(below(project.checkout, sources["code"])),
+        versions=json.dumps(sources["versions"]),
         computed_on=computed_on(),
     )
     for name, variable in complete.variables.items():
@@ -152,6 +153,15 @@ def save(
     packed = {name: {"zlib": True} for name in large if complete[name].dtype.kind in "fib"}
     with whole(path) as unfinished:
         complete.to_netcdf(unfinished, engine="netcdf4", encoding=packed)
+
+
+def computed_on() -> str:
+    """Describe the platform and the library of linear algebra, which decide last digits.
+
+    The text is for the reader of a dataset, and is not compared.
+    """
+    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
+    return f"{platform.platform()}, {blas['name']} {blas['version']}"
 
 
 @contextmanager
@@ -173,7 +183,10 @@ def write(path: Path, content: bytes) -> None:
 
 
 def save_stage(
-    stage: Mapping[str, Callable[..., xr.Dataset]], snakemake: Any, project: Project
+    stage: Mapping[str, Callable[..., xr.Dataset]],
+    snakemake: Any,
+    sources: Mapping[str, Mapping],
+    project: Project,
 ) -> None:
     """Compute and save the datasets of a stage, for the job of its rule.
 
@@ -188,8 +201,8 @@ def save_stage(
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = computed(stage[name], entry | settings)
-        save(dataset, path, title, parameters(dataset), snakemake.input.code, project)
-    save_record(snakemake, project)
+        save(dataset, path, title, parameters(dataset), sources, project)
+    save_record(snakemake, sources, project)
 
 
 def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
@@ -204,7 +217,7 @@ def computed(function: Callable[..., xr.Dataset], given: Mapping) -> xr.Dataset:
     return found.assign_attrs(parameters=json.dumps(plain(given), ensure_ascii=False))
 
 
-def save_record(snakemake: Any, project: Project) -> None:
+def save_record(snakemake: Any, sources: Mapping[str, Mapping], project: Project) -> None:
     """Record what a job made, and from what, in its output `record`: a file of JSON.
 
     Paths are those from the folder of the results, and files of code those from the checkout. Each
@@ -212,15 +225,20 @@ def save_record(snakemake: Any, project: Project) -> None:
     """
     path = Path(snakemake.output.record)
     results = path.parents[1]
-    data = getattr(snakemake.input, "data", [])
+    files = [relative(results, file) for file in {*snakemake.output} - {snakemake.output.record}]
     found = {
-        "made": contents(set(snakemake.output) - {snakemake.output.record}, results),
-        "data": contents([data] if isinstance(data, str) else data, results),
-        "code": contents(snakemake.input.code, project.checkout),
-        "versions": versions(),
+        "made": contents_in(results, files),
+        "data": below(results, sources["data"]),
+        "code": below(project.checkout, sources["code"]),
+        "versions": sources["versions"],
         "entries": plain(getattr(snakemake.params, "entries", {})),
     }
     write(path, f"{json.dumps(found, indent=1, sort_keys=True)}\n".encode())
+
+
+def below(top: Path, contents: Mapping[str, str]) -> dict[str, str]:
+    """The contents of files, by their paths from a folder."""
+    return {relative(top, file): found for file, found in contents.items()}
 
 
 def attributes(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:

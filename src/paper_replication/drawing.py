@@ -19,7 +19,6 @@ from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Annotation
-from scipy.optimize import isotonic_regression
 
 from paper_replication.datasets import whole
 
@@ -161,6 +160,9 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """
     if not names:
         return
+    # SciPy is slow to import, and few figures have such labels.
+    from scipy.optimize import isotonic_regression
+
     order = sorted(names, key=lambda name: name[1])
     ends = [(0.0, height) for _, height, _ in order]
     points = POINTS / axes.figure.dpi

@@ -1,19 +1,51 @@
-"""How a result was made: its files of code with their contents, and the versions of libraries.
+"""How a result was made: the contents of the files that a job reads, and versions of libraries.
 
 Nothing here decides a number of a result.
 """
 
 import hashlib
+import os
 import platform
-from collections.abc import Iterable
-from functools import cache
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from importlib import metadata
 from pathlib import Path
-
-import numpy as np
+from typing import Any
 
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
 """The libraries on which numbers and pictures depend."""
+
+
+def sources(inputs: Any) -> dict[str, dict[str, str]]:
+    """What a job reads if it starts now: the contents of its files of `code` and of its `data`, by
+    their paths, and `versions`. Its `inputs` have `code`, and may have `data`, a file or several.
+    """
+    data = getattr(inputs, "data", [])
+    return {
+        "code": contents_in(Path(), inputs.code),
+        "data": contents_in(Path(), [data] if isinstance(data, str) else data),
+        "versions": versions(),
+    }
+
+
+@contextmanager
+def reading(inputs: Any) -> Iterator[dict[str, dict[str, str]]]:
+    """Yield what a job with these inputs reads; end the job if it has changed at the end.
+
+    A script imports within this context what decides its results, because Python reads a module
+    once, when it is imported. The job fails, and Snakemake removes its files.
+    """
+    before = sources(inputs)
+    try:
+        yield before
+    finally:
+        now = sources(inputs)
+        changed = {key for kind in now for key, _ in before[kind].items() - now[kind].items()}
+        if changed:
+            sys.exit(f"run again: {', '.join(sorted(changed))} changed while this job ran")
 
 
 def content(file: str | Path) -> str:
@@ -27,13 +59,16 @@ def content(file: str | Path) -> str:
     return hashlib.sha1(b"blob %d\0" % len(text) + text, usedforsecurity=False).hexdigest()
 
 
-def contents(files: Iterable[str | Path], top: Path) -> dict[str, str]:
-    """The contents of files, by their paths from a folder."""
-    paths = [Path(file).resolve() for file in files]
-    return {path.relative_to(top.resolve()).as_posix(): content(path) for path in paths}
+def contents_in(top: Path, files: Iterable[str]) -> dict[str, str]:
+    """The contents of those files that exist in a folder, by their paths from there."""
+    return {file: content(top / file) for file in files if (top / file).is_file()}
 
 
-@cache
+def relative(top: Path, file: str | Path) -> str:
+    """The path of a file from a folder."""
+    return Path(file).resolve().relative_to(top.resolve()).as_posix()
+
+
 def versions() -> dict[str, str]:
     """Return the versions of Python and of PACKAGES."""
     return {"python": platform.python_version()} | {
@@ -41,11 +76,29 @@ def versions() -> dict[str, str]:
     }
 
 
-@cache
-def computed_on() -> str:
-    """Describe the platform and the library of linear algebra, which decide last digits.
+def git(checkout: Path, *arguments: str) -> str:
+    """What git answers about a repository; empty without git.
 
-    The text is for the reader of a dataset, and is not compared.
+    A hook has variables that name the repository and the index of its commit. They are dropped, as
+    git advises for another repository.
     """
-    blas = np.show_config(mode="dicts")["Build Dependencies"]["blas"]
-    return f"{platform.platform()}, {blas['name']} {blas['version']}"
+    run = partial(subprocess.run, capture_output=True, check=True, text=True)
+    try:
+        names = run(["git", "rev-parse", "--local-env-vars"]).stdout.split()
+        environment = {name: value for name, value in os.environ.items() if name not in names}
+        command = ["git", "-C", str(checkout), "-c", "core.quotePath=off", *arguments]
+        return run(command, env=environment).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def tree(checkout: Path, commit: str, *paths: str) -> dict[str, str]:
+    """The hashes of the files of a commit; empty if git does not know it."""
+    lines = git(checkout, "ls-tree", "-r", commit, *paths).splitlines()
+    return {line.partition("\t")[2]: line.split()[2] for line in lines}
+
+
+def main_branch(checkout: Path) -> dict[str, str]:
+    """The hashes of the files on the main branch; empty if it is not known here."""
+    trees = (tree(checkout, name) for name in ("origin/HEAD", "origin/main", "main"))
+    return next(filter(None, trees), {})

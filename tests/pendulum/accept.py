@@ -4,4 +4,4 @@ from pendulum import PROJECT
 
 from paper_replication.compare import accept
 
-print(accept(PROJECT, Path("results")))
+print(accept(PROJECT, Path("results"), snakemake.input))

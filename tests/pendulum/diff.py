@@ -5,4 +5,4 @@ from pendulum import PROJECT
 
 from paper_replication.compare import report_of_run
 
-sys.exit(report_of_run(PROJECT, Path("results"), snakemake.params.config, snakemake.params.names))
+sys.exit(report_of_run(PROJECT, Path("results"), snakemake))

@@ -1,8 +1,11 @@
 from pathlib import Path
 
-from pendulum import PROJECT, draw
+from paper_replication.provenance import reading
 
-from paper_replication.datasets import read, save_record
+with reading(snakemake.input) as sources:
+    from pendulum import PROJECT, draw
 
-draw("fig1", read(snakemake.input.data), Path(snakemake.output.png).parent)
-save_record(snakemake, PROJECT)
+    from paper_replication.datasets import read, save_record
+
+    draw("fig1", read(snakemake.input.data), Path(snakemake.output.png).parent)
+    save_record(snakemake, sources, PROJECT)

@@ -1,14 +1,17 @@
 from pathlib import Path
 
-from pendulum import CLAIMS, PROJECT, SENTENCE
+from paper_replication.provenance import reading
 
-from paper_replication.datasets import read, save, save_record
-from paper_replication.judgements import judged
-from paper_replication.templates import environment
+with reading(snakemake.input) as sources:
+    from pendulum import CLAIMS, PROJECT, SENTENCE
 
-fig1 = read(snakemake.input.data)
-verdicts = judged({"fig1": fig1}, CLAIMS, [], "")
-save(verdicts, snakemake.output.claims, "Claims", {}, snakemake.input.code, PROJECT)
-text = environment(PROJECT.top).from_string(SENTENCE).render(fig1=fig1)
-Path(snakemake.output.paper).write_text(text, encoding="utf-8")
-save_record(snakemake, PROJECT)
+    from paper_replication.datasets import read, save, save_record
+    from paper_replication.judgements import judged
+    from paper_replication.templates import environment
+
+    fig1 = read(snakemake.input.data)
+    verdicts = judged({"fig1": fig1}, CLAIMS, [], "")
+    save(verdicts, snakemake.output.claims, "Claims", {}, sources, PROJECT)
+    text = environment(PROJECT.top).from_string(SENTENCE).render(fig1=fig1)
+    Path(snakemake.output.paper).write_text(text, encoding="utf-8")
+    save_record(snakemake, sources, PROJECT)

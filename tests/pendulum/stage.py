@@ -1,5 +1,8 @@
-from pendulum import PROJECT, period
+from paper_replication.provenance import reading
 
-from paper_replication.datasets import save_stage
+with reading(snakemake.input) as sources:
+    from pendulum import PROJECT, period
 
-save_stage({"fig1": period}, snakemake, PROJECT)
+    from paper_replication.datasets import save_stage
+
+    save_stage({"fig1": period}, snakemake, sources, PROJECT)

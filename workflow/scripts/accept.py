@@ -14,7 +14,7 @@ results = Path(snakemake.log[0]).parents[1]
 try:
     if why := unlike_the_paper({path.stem: read(path) for path in results.glob("figures/*.nc")}):
         raise ValueError(f"nothing is accepted, because the article is of another run: {why[0]}")
-    written = accept(PROJECT, results)
+    written = accept(PROJECT, results, snakemake.input)
 except (OSError, ValueError) as error:
     sys.exit(str(error))
 print(*written, f"{len(written)} files of the reference changed.", sep="\n")

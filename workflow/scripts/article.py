@@ -3,14 +3,17 @@
 import sys
 from pathlib import Path
 
-from project import PROJECT
-
-from carbonelli2011.index import written
-from paper_replication.datasets import read, save_record
+from paper_replication.provenance import reading
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-results = Path(snakemake.output.index).parent
-datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-for name, text in written(datasets, snakemake.params.entries).items():
-    (results / name).write_text(text, encoding="utf-8", newline="\n")
-save_record(snakemake, PROJECT)
+with reading(snakemake.input) as sources:
+    from project import PROJECT
+
+    from carbonelli2011.index import written
+    from paper_replication.datasets import read, save_record
+
+    results = Path(snakemake.output.index).parent
+    datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
+    for name, text in written(datasets, snakemake.params.entries).items():
+        (results / name).write_text(text, encoding="utf-8", newline="\n")
+    save_record(snakemake, sources, PROJECT)

@@ -3,13 +3,16 @@
 import sys
 from pathlib import Path
 
-from project import PROJECT
-
-from carbonelli2011.choices import changed_verdicts
-from paper_replication.datasets import read, save, save_record
+from paper_replication.provenance import reading
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
-title = "Verdicts that depend on what cannot be read in the paper"
-save(found, snakemake.output.nc, title, {}, snakemake.input.code, PROJECT)
-save_record(snakemake, PROJECT)
+with reading(snakemake.input) as sources:
+    from project import PROJECT
+
+    from carbonelli2011.choices import changed_verdicts
+    from paper_replication.datasets import read, save, save_record
+
+    found = changed_verdicts({Path(path).stem: read(path) for path in snakemake.input.data})
+    title = "Verdicts that depend on what cannot be read in the paper"
+    save(found, snakemake.output.nc, title, {}, sources, PROJECT)
+    save_record(snakemake, sources, PROJECT)

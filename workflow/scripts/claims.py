@@ -3,18 +3,21 @@
 import sys
 from pathlib import Path
 
-from project import PROJECT
-
-from carbonelli2011.claims import INTRODUCTION, TABLE, judge
-from paper_replication.datasets import read, save, save_record, write
-from paper_replication.judgements import all_claims, claims_markdown
-from paper_replication.texts import comma_separated
+from paper_replication.provenance import reading
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
-verdicts = judge(datasets)
-title = "Verdicts on the paper's claims"
-save(verdicts, snakemake.output.nc, title, {}, snakemake.input.code, PROJECT)
-write(Path(snakemake.output.md), claims_markdown(verdicts, INTRODUCTION, TABLE).encode())
-write(Path(snakemake.output.csv), comma_separated(all_claims(verdicts)).encode())
-save_record(snakemake, PROJECT)
+with reading(snakemake.input) as sources:
+    from project import PROJECT
+
+    from carbonelli2011.claims import INTRODUCTION, TABLE, judge
+    from paper_replication.datasets import read, save, save_record, write
+    from paper_replication.judgements import all_claims, claims_markdown
+    from paper_replication.texts import comma_separated
+
+    datasets = {Path(path).stem: read(path) for path in snakemake.input.data}
+    verdicts = judge(datasets)
+    title = "Verdicts on the paper's claims"
+    save(verdicts, snakemake.output.nc, title, {}, sources, PROJECT)
+    write(Path(snakemake.output.md), claims_markdown(verdicts, INTRODUCTION, TABLE).encode())
+    write(Path(snakemake.output.csv), comma_separated(all_claims(verdicts)).encode())
+    save_record(snakemake, sources, PROJECT)

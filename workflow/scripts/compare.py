@@ -20,16 +20,8 @@ from project import PROJECT  # noqa: E402
 
 from paper_replication.compare import main, report_of_run  # noqa: E402
 
-if __name__ == "__main__" and "snakemake" not in globals():
+if "snakemake" not in globals():
     sys.exit(main(PROJECT, sys.argv[1:]))
 
-if __name__ == "__main__":
-    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-    sys.exit(
-        report_of_run(
-            PROJECT,
-            Path(snakemake.log[0]).parents[1],
-            snakemake.params.config,
-            snakemake.params.names,
-        )
-    )
+sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], snakemake))

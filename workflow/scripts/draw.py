@@ -3,19 +3,22 @@
 import sys
 from pathlib import Path
 
-from project import PROJECT
-
-from carbonelli2011.curves import SALT
-from carbonelli2011.figures import Empty, draw
-from paper_replication.datasets import read, save_record
-from paper_replication.drawing import save_picture
+from paper_replication.provenance import reading
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-shown = [read(path) for path in snakemake.input.data]
-png = snakemake.output.png
-try:
-    figure = draw(Path(png).stem, *shown)
-except Empty as error:
-    sys.exit(f"configuration: {error}")
-save_picture(figure, png, snakemake.output.svg, SALT)
-save_record(snakemake, PROJECT)
+with reading(snakemake.input) as sources:
+    from project import PROJECT
+
+    from carbonelli2011.curves import SALT
+    from carbonelli2011.figures import Empty, draw
+    from paper_replication.datasets import read, save_record
+    from paper_replication.drawing import save_picture
+
+    shown = [read(path) for path in snakemake.input.data]
+    png = snakemake.output.png
+    try:
+        figure = draw(Path(png).stem, *shown)
+    except Empty as error:
+        sys.exit(f"configuration: {error}")
+    save_picture(figure, png, snakemake.output.svg, SALT)
+    save_record(snakemake, sources, PROJECT)

@@ -3,10 +3,13 @@
 import sys
 from importlib import import_module
 
-from project import PROJECT
-
-from paper_replication.datasets import save_stage
+from paper_replication.provenance import reading
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-stage = import_module(f"carbonelli2011.stages.{snakemake.params.stage}")
-save_stage(stage.STAGE, snakemake, PROJECT)
+with reading(snakemake.input) as sources:
+    from project import PROJECT
+
+    from paper_replication.datasets import save_stage
+
+    stage = import_module(f"carbonelli2011.stages.{snakemake.params.stage}")
+    save_stage(stage.STAGE, snakemake, sources, PROJECT)

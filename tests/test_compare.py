@@ -823,11 +823,13 @@ def moved(data, name, share, largest):
 
 
 def test_the_reference_declares_a_tolerance_and_gives_its_scale():
-    """A coordinate may be named tolerance."""
+    """A coordinate may be named tolerance. A single value is first, however little it differs."""
     data = xr.Dataset({"a": ("tolerance", [1.0], {"tolerance": 0.6, "floor": 0.1})})
     data["tolerance"] = ("tolerance", [5.0], {"tolerance": 0.1, "floor": 1.0})
-    told = ["a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
-    assert compare.differences("a.nc", data, data.assign(a=data.a.copy(data=[2.0]))) == told
+    data["b"] = ((), 1.0, {"tolerance": 0.1, "floor": 1.0})
+    told = ["b 1 → 1.15 (tolerance 0.1)", "a 1 → 2 at tolerance = 5 (tolerance 0.6)"]
+    other = data.assign(a=data.a.copy(data=[2.0]), b=data.b.copy(data=1.15))
+    assert compare.differences("a.nc", data, other) == told
 
 
 @pytest.mark.parametrize(

@@ -509,25 +509,51 @@ def test_each_panel_of_the_map_has_the_share_of_the_failing_orbits():
             assert float(share.strip(" %")) == pytest.approx(100 * mean, abs=0.05 + 1e-9)
 
 
-def test_the_curves_of_the_paper_are_in_the_panels_of_their_n():
-    data = reference("validity_map")
-    for _, n, axes in panels_of_map(data, of_reference("validity_map")):
-        (circles,) = [line for line in axes.lines if line.get_marker() == "o"]
-        found = {tuple(point) for point in circles.get_xydata() if np.isfinite(point).all()}
-        of_n = data.isel(curve=np.flatnonzero(data.curve_n == n))
-        assert found == set(
-            zip(of_n.curve_restitution.values, of_n.curve_place.values, strict=True)
-        )
-
-
-def test_an_orbit_of_the_validity_map_without_an_answer_is_a_cross():
+def test_an_orbit_of_the_validity_map_without_an_answer_leaves_the_share_unknown():
     data = reference("validity_map").copy(deep=True)
-    data.enough_from[1, 0, 7, 5] = np.nan
-    data.stiff_error[1, 0, 7, 5] = np.nan
     data.failing_mean[1, 0] = np.nan
     for quantity, n, axes in panels_of_map(data, laid_out("validity_map", data)):
-        crosses = [line for line in axes.lines if line.get_marker() == "x"]
-        found = [tuple(point) for line in crosses for point in line.get_xydata()]
         there = (quantity, n) == (data.quantity[1], data.n[0])
-        assert found == ([(data.restitution[7], data.place[5])] if there else [])
         assert ("unknown" in {text.get_text() for text in axes.texts}) == there
+
+
+def test_each_point_of_the_regimes_lies_in_the_region_of_its_answer():
+    data = reference("regimes")
+    line, axes = of_reference("regimes").axes
+    names = ("within 1 %", "off by more", "contact: period doubled", "only on the contact")
+    regions = [
+        each.get_paths()[0]
+        for name in names
+        for each in axes.collections
+        if name in each.get_label()
+    ]
+    contact = data[["saddle_node_amplitude", "period_doubling_amplitude"]]
+    for ratio in (5.0, 50.0, 500.0):
+        node, doubling = contact.interp(frequency_ratio=ratio).to_array().values
+        for amplitude in np.linspace(0.55, 1.25, 71):
+            is_rigid = data.amplitude[0] < amplitude < data.amplitude[-1]
+            enough = np.interp(amplitude, data.amplitude, data.enough_from)
+            wanted = [
+                is_rigid and ratio > enough and amplitude < doubling,
+                is_rigid and ratio < enough and amplitude < doubling,
+                is_rigid and amplitude > doubling,
+                not is_rigid and node < amplitude < doubling,
+            ]
+            inside = [region.contains_point((amplitude, ratio)) for region in regions]
+            # The region of the doubled period covers the first two.
+            inside[:2] = [each and not inside[2] for each in inside[:2]]
+            assert inside == wanted, (amplitude, ratio)
+    bars = {(bar.get_x(), bar.get_x() + bar.get_width()) for bar in line.patches}
+    assert bars == {(0, 1), tuple(data.amplitude.values[[0, -1]])}
+
+
+def test_the_inset_of_figure_3_has_both_period_doublings_of_the_last_family():
+    data = reference("fig03")
+    (inset,) = of_reference("fig03").axes[0].child_axes[:1]
+    last = data.isel(n=-1)
+    for kind, mark in {"exact": "s", "holmes": "x"}.items():
+        of_map = last.sel(impact_map=kind)
+        point = of_map.period_doubling_amplitude, of_map.period_doubling_phase / np.pi
+        (marks,) = [line.get_xydata() for line in inset.lines if line.get_marker() == mark]
+        assert marks[np.isfinite(marks).all(axis=1)] == pytest.approx(np.array([point]))
+        assert inset.viewLim.contains(*point)

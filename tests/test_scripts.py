@@ -695,6 +695,25 @@ def test_the_numbers_of_the_map_are_those_of_another_code(quantity):
     assert 100 * map_.below_mean.values == pytest.approx([1.652, 2.957, 4.306], abs=1e-3)
 
 
+@pytest.mark.parametrize("release", RELEASES)
+def test_the_regimes_of_a_ball_are_those_of_each_orbit_alone(release):
+    given = registered("validity", "regimes", places=5)
+    data = validity.regimes(given, release)
+    ratios = data.frequency_ratio.values
+    for k in (1, 2, 3):
+        at = float(data.amplitude[k])
+        height = errors.errors(["max_height"], 1, 0.65, at, ratios, release)["max_height"]
+        enough = errors.threshold(ratios, height, 0.01)
+        assert float(data.enough_from[k]) == pytest.approx(float(enough.ratio), rel=1e-9)
+    zeta = independent.restitution_to_damping(0.65, release)
+    near = data.sel(frequency_ratio=10, method="nearest")
+    ratio = float(near.frequency_ratio)
+    for kind in FORMS:
+        name = kind.replace("-", "_").replace(" ", "_") + "_amplitude"
+        end = end_of_range(1, ratio, zeta, release, kind)[0]
+        assert float(near[name]) == pytest.approx(end, rel=1e-8)
+
+
 @pytest.mark.parametrize(("n", "r"), [(1, 0.05), (1, 0.6), (3, 0.05), (3, 0.95)])
 def test_below_the_saddle_node_of_the_simple_model_a_stiff_contact_has_a_stable_orbit(n, r):
     """The motion that is integrated from it repeats itself, with a clear flight."""

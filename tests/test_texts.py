@@ -148,6 +148,6 @@ def test_links_pictures_and_files_that_are_named_exist(page):
 
 @pytest.mark.parametrize("page", [page for page in PAGES if ">>> " in text(page)])
 def test_examples_of_the_pages_run(page, monkeypatch):
-    monkeypatch.chdir(ROOT / "docs")
+    monkeypatch.chdir((ROOT / page).parent)
     found = doctest.testfile(str(ROOT / page), module_relative=False, encoding="utf-8")
     assert found.failed == 0

@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, Patch, Rectangle
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from carbonelli2011 import paper
@@ -28,6 +28,7 @@ from carbonelli2011.curves import (
     curve,
     draw_branch,
     label,
+    mark_look,
     mark_special,
     parted,
     restitution_branch,
@@ -140,27 +141,51 @@ def fig02(data: xr.Dataset) -> Figure:
 def fig03(data: xr.Dataset) -> Figure:
     """Branches of n-T orbits of the restitution model over Λ, with their bifurcations.
 
-    The period doublings of Eq. 8 are also marked.
+    The period doublings of Eq. 8 are also marked. The inset enlarges both of the last family.
     """
     figure, axes = panels(3.6)
+    amplitude_max = parameters(data)["amplitude_max"]
     names = []
     absent = []
+    enlarged: list[tuple[xr.Dataset, xr.Dataset, str]] = []
     for n, colour in zip(data.n.values, colours(data.sizes["n"]), strict=True):
         family = data.sel(n=n)
         branch = restitution_branch(family, family.sel(impact_map="exact"))
         if has_orbits(branch):
             draw_branch(axes, branch, "phase", colour, width=1.2)
             mark_special(axes, branch, "phase", colour)
+            doublings = np.sort(family.period_doubling_amplitude)
+            if doublings[0] < doublings[-1] <= amplitude_max:
+                enlarged = [(branch, family, colour)]
             names.append((label(n=n), right_end(branch, "phase"), colour))
         else:
             absent.append(label(n=n))
     axes.set(xlabel=r"amplitude $\Lambda$", ylabel=r"phase of the impact $\varphi/\pi$")
-    axes.set_xlim(0, parameters(data)["amplitude_max"])
+    axes.set_xlim(0, amplitude_max)
+    for chosen in enlarged:
+        enlarge_doublings(axes, *chosen)
     axes.set_title(title(data, "restitution") + no_branch(absent))
     branch_legend(figure, both_phases=False)
     figure.draw_without_rendering()
     name_at_right(axes, names)
     return figure
+
+
+def enlarge_doublings(axes: Axes, branch: xr.Dataset, family: xr.Dataset, colour: str) -> None:
+    """Enlarge the period doublings of the exact map and of Eq. 8, inside the loops of the branches.
+
+    Eq. 8 belongs to the map of Holmes, so the picture of the paper differs here.
+    """
+    inset = axes.inset_axes((0.74, 0.4, 0.25, 0.22))
+    draw_branch(inset, branch, "phase", colour, width=1.2)
+    mark_special(inset, branch, "phase", colour)
+    amplitudes, phases = family.period_doubling_amplitude, family.period_doubling_phase / np.pi
+    for values, limit in ((amplitudes, inset.set_xlim), (phases, inset.set_ylim)):
+        margin = 0.5 * np.ptp(values.values)
+        limit(values.min() - margin, values.max() + margin)
+    inset.set_xticks(amplitudes, [f"{value:.3f}" for value in amplitudes.values], size="small")
+    inset.set_yticks([])
+    axes.indicate_inset_zoom(inset, edgecolor="0.5")
 
 
 # Apparent restitution and velocity along ϖ
@@ -589,14 +614,6 @@ def mark_printed(axes: Axes, claim: str) -> None:
 # Where the frequency ratio of the paper is enough
 
 DOUBLED: Look = {"facecolor": pale(COLOURS[2]), "edgecolor": COLOURS[2], "linewidth": 0.8}
-CROSS: Look = {"marker": "x", "linestyle": "none", "color": "black"}
-CURVES: Look = {
-    "marker": "o",
-    "markersize": 3.4,
-    "linestyle": "none",
-    "color": "black",
-    "markerfacecolor": "white",
-}
 
 
 def validity_map(data: xr.Dataset) -> Figure:
@@ -610,16 +627,13 @@ def validity_map(data: xr.Dataset) -> Figure:
     for row, quantity in zip(grid, data.quantity.values, strict=True):
         for axes, n in zip(row, data.n.values, strict=True):
             draw_failures(axes, data.sel(quantity=quantity, n=n), given["tolerance"])
-            curves = data.where(data.curve_n == n)
-            axes.plot(curves.curve_restitution, curves.curve_place, **CURVES)
         row[0].set_ylabel(fill(paper.QUANTITIES[quantity], 14))
     for axes, n in zip(grid[0], data.n.values, strict=True):
         axes.set(xlim=data.restitution[[0, -1]], ylim=(0, 1))
         axes.set_title(label(n=n), pad=14)
         axes.set_yscale("function", functions=(stretched, compressed))
         axes.set_yticks([0, 0.01, 0.1, 0.5, 0.9, 0.99, 1], ["0 %", 1, 10, 50, 90, 99, 100])
-        ticks = round_ticks(*data.restitution.values[[0, -1]])
-        axes.set_xticks(ticks, [f"{tick:.15g}" for tick in ticks])
+        axes.xaxis.set_major_locator(MaxNLocator(3))
     for axes in grid[-1]:
         axes.set_xlabel("restitution $r$")
     # Above the legend, the middle of the panels is higher than that of the figure.
@@ -629,34 +643,56 @@ def validity_map(data: xr.Dataset) -> Figure:
         multialignment="center",
     )
     advised = rf"$\varpi={latex_number(given['advised'])}$"
-    entries: dict[str, Patch | Line2D] = {
+    entries = {
         f"{advised} is not enough: on the share above the panel": Patch(facecolor=CONTACT),
         f"the contact of {advised} has doubled the period": Patch(**DOUBLED),
     }
-    r = data.curve_restitution
-    inside = (r >= data.restitution.min()) & (r <= data.restitution.max())
-    inside &= (data.curve_place >= 0) & (data.curve_place <= 1) & data.curve_n.isin(data.n)
-    if inside.any():
-        entries["curves of the paper"] = sample(**CURVES)
-    if data.enough_from.isnull().any():
-        largest = latex_number(given["frequency_ratio"]["max"])
-        entries[rf"no $\varpi$ up to ${largest}$ is known to be enough"] = sample(**CROSS)
     legend_below(figure, entries, columns=1)
     return figure
 
 
-def round_ticks(low: float, high: float) -> NDArray:
-    """Return three ticks near the ends and the middle of a range, with as few digits as possible.
+def regimes(data: xr.Dataset) -> Figure:
+    """What a ball does over Λ, and at which ϖ the restitution model has its maximum height.
 
-    >>> round_ticks(0.05, 0.95).tolist(), round_ticks(0.6, 0.62).tolist()
-    ([0.1, 0.5, 0.9], [0.6, 0.61, 0.62])
+    The upper panel is about the restitution model, in which no ϖ occurs.
     """
-    near = low + (high - low) * np.array([1, 9, 17]) / 18
-    for digits in range(1, 16):
-        ticks = near.round(digits)
-        if np.unique(ticks).size == near.size and low <= ticks[0] and ticks[-1] <= high:
-            return ticks
-    return near
+    given = parameters(data)
+    percent = f"{100 * given['tolerance']:g} %"
+    ratio = data.frequency_ratio
+    first, last = data.amplitude.values[[0, -1]]
+    rest = float(data.restitution_threshold)
+    figure, (line, axes) = panels(4.3, rows=2, sharex=True, height_ratios=(1, 5))
+    bars = (
+        (0, rest, "a ball at rest stays at rest"),
+        (first, last, f"stable {given['n']}-T orbit"),
+    )
+    for height, (start, end, words) in enumerate(bars):
+        line.barh(height, end - start, left=start, height=0.7, color="0.85")
+        line.text((start + end) / 2, height, words, ha="center", va="center")
+    for kind, end in (("saddle-node", first), ("period doubling", last)):
+        line.plot(end, 1, color="black", label=kind, **mark_look(kind))
+    line.set_title(f"maximum height in flight, {title(data, 'n', 'restitution')}")
+    axes.set_xlim(0, 1.1 * max(last, rest))
+    line.axis("off")
+
+    right: Look = {"facecolor": "#dcebf5", "linewidth": 0, "label": f"within {percent}"}
+    enough = data.enough_from.fillna(ratio.max())
+    axes.fill_between(data.amplitude, enough, ratio.max(), **right)
+    wrong: Look = {"facecolor": CONTACT, "linewidth": 0, "label": f"off by more than {percent}"}
+    axes.fill_between(data.amplitude, ratio.min(), enough, **wrong)
+    doubling = data.period_doubling_amplitude.clip(first, last)
+    axes.fill_betweenx(ratio, doubling, last, label="contact: period doubled", **DOUBLED)
+    alone: Look = {"facecolor": "0.75", "linewidth": 0, "label": "orbit only on the contact"}
+    axes.fill_betweenx(ratio, data.saddle_node_amplitude.clip(max=first), first, **alone)
+    axes.plot(data.threshold_amplitude, ratio, color="black", label="contact: limit of rest")
+    axes.axhline(
+        given["advised"], label=f"advised: {given['advised']:g}", **ADVISED | {"color": "black"}
+    )
+    axes.set(xlabel=r"amplitude $\Lambda$", yscale="log", ylim=ratio[[0, -1]])
+    axes.set_ylabel(r"frequency ratio $\varpi$ of the contact")
+    axes.yaxis.set_major_formatter("{x:g}")
+    legend_below(figure)
+    return figure
 
 
 def stretched(position: NDArray) -> NDArray:
@@ -680,8 +716,7 @@ def compressed(height: NDArray) -> NDArray:
 def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
     """Draw the failing orbits of one quantity and one n, and their share as a number.
 
-    The orbits that are unstable on the contact cover them. A cross marks an orbit for which no
-    sufficient ϖ is known.
+    The orbits that are unstable on the contact cover them.
     """
     excess = (data.stiff_error - tolerance).transpose("place", "restitution")
     over = data.restitution, data.place, excess
@@ -691,8 +726,6 @@ def draw_failures(axes: Axes, data: xr.Dataset, tolerance: float) -> None:
         axes.contour(*over, levels=[0], colors=CONTACT, linewidths=0.8)
     if (data.doubled_share > 0).any():
         axes.fill_between(data.restitution, 1 - data.doubled_share, 1, zorder=2, **DOUBLED)
-    row, column = np.nonzero(data.enough_from.isnull().values)
-    axes.plot(data.restitution[row], data.place[column], **CROSS)
     share: Look = {"color": CONTACT, "ha": "center", "transform": axes.transAxes}
     axes.text(0.5, 1.04, share_text(float(data.failing_mean)), **share)
     axes.spines[["top", "right"]].set_visible(True)
@@ -720,6 +753,7 @@ PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig15": fig15,
     "fig16": fig16,
     "validity_map": validity_map,
+    "regimes": regimes,
 }
 FIGURES: Mapping[str, Callable[..., Figure]] = {**SCHEMATICS, **PLOTS}
 

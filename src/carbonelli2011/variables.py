@@ -262,6 +262,9 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
         "reason": Variable("why a claim or a motion is undecided"),
     },
 }
+OF_DATASET["regimes"] = {
+    name: OF_DATASET["validity_map"][name] for name in ("place", "enough_from")
+}
 
 
 def described(dataset: str) -> dict[str, Variable]:

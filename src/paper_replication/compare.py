@@ -302,16 +302,15 @@ def about(data: xr.Dataset) -> dict:
 
 
 def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:
-    """Where numbers and texts of a dataset differ: a line for each variable, the furthest first.
+    """Where numbers and texts of a dataset differ: a line for each variable.
 
-    Both datasets have the same variables.
+    Single values, such as a threshold, are first, then the furthest. Both datasets have the same
+    variables.
     """
     far = {name: distances(name, old, new) for name in map(str, old.variables)}
-    furthest_first = sorted(far, key=lambda name: -far[name].max(initial=0.0))
+    ordered = sorted(far, key=lambda name: (far[name].ndim > 0, -far[name].max(initial=0.0)))
     return [
-        furthest_value(old[name], new[name], far[name])
-        for name in furthest_first
-        if (far[name] > 1).any()
+        furthest_value(old[name], new[name], far[name]) for name in ordered if (far[name] > 1).any()
     ]
 
 

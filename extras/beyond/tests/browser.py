@@ -42,6 +42,14 @@ function look(frame) {
     && one.top < other.bottom && other.top < one.bottom;
   const boxes = letters.filter(text => text.textContent).map(text => text.getBoundingClientRect());
   const picture = page.getElementById(frame.dataset.picture);
+  // What the page fills in when the table and the contact are given by other values.
+  const switched = () => {
+    for (const [id, way] of [["moves", "acceleration"], ["touch", "stiffness"]]) {
+      page.getElementById(id).value = way;
+      page.getElementById(id).dispatchEvent(new view.Event("change"));
+    }
+    return ["acc", "k"].map(name => page.getElementById(name).value);
+  };
   return {
     top: picture.getBoundingClientRect().top,
     curves: picture.querySelectorAll("path, circle").length,
@@ -63,6 +71,7 @@ function look(frame) {
     others: [...page.querySelectorAll("#others button")].map(button => button.textContent),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
       ({dataset: {key, value}}) => [key, isNaN(value) ? value : Number(value)])),
+    switched: switched(),
   };
 }
 addEventListener("load", () => {

@@ -5,6 +5,7 @@ screen and writes down what the browser made of it.
 """
 
 import json
+import math
 import re
 from pathlib import Path
 
@@ -12,6 +13,7 @@ import pytest
 from browser import Frame, shown
 
 import bouncing_ball_beyond
+from bouncing_ball.spring_damper import contact_of_duration
 from paper_replication.datasets import read
 from studies.explorer import BOUND, page
 
@@ -27,6 +29,11 @@ STIFF = "#r=0.9&w=1000&a=0.5"
 README = "#tab=design&f=15&stroke=2.2&time=0.3&r=0.65"
 """The ball of the replication's README."""
 
+WITH_UNITS = "#tab=design&f=0.015%20kHz&stroke=0.22%20cm&time=300%C2%B5s&r=0.65"
+"""The same ball, in other units."""
+
+OTHER_UNIT = "#tab=design&f=20&stroke=0.1%20in&time=0.3&r=0.65"
+
 OUTSIDE = "#tab=design&f=30&stroke=1.5&time=2&r=0.8"
 """A stroke at which the restitution model has no stable orbit with n = 1."""
 
@@ -39,7 +46,7 @@ PICTURES = {
 }
 """The first picture by the address at which the page is opened."""
 
-ON_TELEPHONES = [README, OUTSIDE]
+ON_TELEPHONES = [README, WITH_UNITS, OTHER_UNIT, OUTSIDE]
 """Further addresses, opened on the small screen only. Their first picture is the motion."""
 
 VIEWS = [(screen, *view) for screen in SCREENS for view in PICTURES.items()]
@@ -106,6 +113,26 @@ def test_the_call_computes_what_the_page_shows(seen):
     for call in seen[f"desk {LOOSE}"]["call"].splitlines():
         impacts = int(eval(call, names).impacts)
         assert f"with {impacts} impacts" in seen[f"desk {LOOSE}"]["verdict"]
+
+
+def test_the_page_opens_with_what_people_measure(seen):
+    assert seen["desk "]["call"].startswith(
+        "on_shaker(frequency=20, displacement=1 / 2000, contact_duration=1.4 / 1000, "
+    )
+
+
+def test_a_number_is_read_with_its_unit(seen):
+    assert seen[f"telephone {WITH_UNITS}"]["call"] == seen[f"telephone {README}"]["call"]
+    assert "stroke = 0.1 in" in seen[f"telephone {OTHER_UNIT}"]["refused"]
+
+
+def test_what_a_switch_fills_in_is_rounded(seen):
+    found = seen[f"telephone {README}"]["switched"]
+    table = 2 * math.pi * 15
+    # A free impact whose contact ends with its force, and takes 0.3 ms, with a ball of 20 g.
+    ratio = contact_of_duration(table * 0.3e-3, 0.65, "force").frequency_ratio
+    wanted = [1.1e-3 * table**2 / 9.80665, 0.02 * (table * ratio) ** 2]
+    assert found == [f"{float(f'{value:.4g}'):.15g}" for value in wanted]
 
 
 @pytest.mark.parametrize("address", ["", STIFF])

@@ -17,7 +17,7 @@ from bouncing_ball import restitution
 from bouncing_ball.continuation import SPECIAL, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family, NoOrbit
-from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio
+from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
 from carbonelli2011.paper import CURVES
 from paper_replication.datasets import grid
 
@@ -211,4 +211,37 @@ def last_positive(values: NDArray, r: NDArray) -> float:
     return r[last] + part * (r[last + 1] - r[last])
 
 
-STAGE = {"validity_map": validity_map}
+def regimes(parameters: dict, release: str) -> xr.Dataset:
+    """The ϖ from which on the maximum height of a ball stays within the tolerance, over Λ, and the
+    amplitudes over ϖ between which its contact has the stable orbit, and a ball at rest stays.
+    """
+    ratios = grid(parameters["frequency_ratio"])
+    n, r = parameters["n"], parameters["restitution"]
+    contact = Contact.of_restitution(ratios, r, release)
+    if np.isnan(contact.damping_ratio):
+        raise NoOrbit(f"restitution = {r}: {NO_CONTACT}")
+    place = np.linspace(0, 1, parameters["places"]) ** 3
+    first, last = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+    amplitude = (first + place * (last - first)).reshape(-1, 1)
+    column = np.ones_like(amplitude)
+    family = Family(n * column, Contact.of_restitution(ratios, r * column, release))
+    orbits = orbits_along(family, amplitude)
+    enough = enough_from(family, orbits, r * column, amplitude, parameters["tolerance"])
+    node, doubling = (bifurcations(n, kind, contact)[0, 0] for kind in SPECIAL[:2])
+    return xr.Dataset(
+        {
+            "amplitude": ("place", amplitude[:, 0]),
+            "enough_from": ("place", enough[COMPARED.index("summit")]),
+            "saddle_node_amplitude": ("frequency_ratio", node),
+            "period_doubling_amplitude": ("frequency_ratio", doubling),
+            "threshold_amplitude": (
+                "frequency_ratio",
+                permanent_contact(ratios, contact.damping_ratio, release),
+            ),
+            "restitution_threshold": restitution.PERMANENT_CONTACT,
+        },
+        {"place": place, "frequency_ratio": ratios},
+    )
+
+
+STAGE = {"validity_map": validity_map, "regimes": regimes}

@@ -148,8 +148,10 @@ document.querySelectorAll("input[inputmode]").forEach(typed => typed.addEventLis
     const [low, high] = rangeOf(typed.dataset.name, current.tab);
     const whole = WHOLE.includes(typed.dataset.name) ? "whole " : "";
     const label = document.querySelector(`label[for=${typed.id}]`).textContent;
-    refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}.`);
-  } else change(typed.dataset.name, numberOf(typed.value));
+    const units = Object.keys(UNITS[typed.dataset.name] ?? {}).join(", ");
+    refuse(`${label}: ${typed.value || "this"} is not a ${whole}number from ${low} to ${high}`
+      + `${units && `, alone or with a unit: ${units}`}.`);
+  } else change(typed.dataset.name, numberOf(typed.value, typed.dataset.name));
 }));
 document.querySelectorAll("input[type=range]").forEach(slider => slider.addEventListener("input", () => {
   const {name} = slider.dataset, value = Number(slider.value);

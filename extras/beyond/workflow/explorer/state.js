@@ -7,7 +7,7 @@ const $ = id => document.getElementById(id);
 // differs from the one before, the periods that have passed, and how many times slower it plays.
 const DEFAULTS = {
   tab: "design", r: 0.85, w: 10, a: 0.8, n: 1, release: "force", side: "stable",
-  m: 20, f: 20, moves: "acceleration", acc: 0.8, stroke: 1, touch: "stiffness", k: 1e5, time: 1.4, t: 1,
+  m: 20, f: 20, moves: "stroke", acc: 0.8, stroke: 1, touch: "time", k: 1e5, time: 1.4, t: 1,
   model: "both", phi: 0, v: -3, balls: 1, dv: 0, dphi: 0, from: 0, pace: "1", view: "height",
   units: "physical",
 };
@@ -38,8 +38,22 @@ const modelsOf = ({model, r, w}) => Object.fromEntries(
   [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, "displacement")}]]
     .filter(([name]) => model === "both" || model === name));
 
-// A decimal comma is read as a point. NaN for 1,500, which is 1.5 or 1500.
-const numberOf = text => /^\s*[1-9]\d*,\d{3}\s*$/.test(text) ? NaN : Number(text.replace(",", "."));
+// The units in which a value may be given, in that of the page, which is the first.
+const UNITS = {
+  f: {Hz: 1, kHz: 1e3}, acc: {g: 1, "m/s²": 1 / GRAVITY, "m/s^2": 1 / GRAVITY},
+  stroke: {mm: 1, cm: 10, m: 1e3, "µm": 1e-3, "μm": 1e-3, um: 1e-3},
+  k: {"N/m": 1, "N/mm": 1e3, "kN/m": 1e3, "MN/m": 1e6},
+  time: {ms: 1, s: 1e3, "µs": 1e-3, "μs": 1e-3, us: 1e-3}, m: {g: 1, kg: 1e3, mg: 1e-3}, t: {"%": 1},
+};
+
+// A number, maybe with its unit. A decimal comma is read as a point. NaN for 1,500, which is 1.5 or
+// 1500, and for another unit.
+function numberOf(text, name) {
+  const [, digits, unit] = /^\s*([-+]?[\d.,]+(?:e[-+]?\d+)?)\s*(\S*)\s*$/i.exec(text) ?? [];
+  if (!digits || /^[1-9]\d*,\d{3}$/.test(digits)) return NaN;
+  const value = Number(digits.replace(",", "."));
+  return unit ? nearest(value * (UNITS[name]?.[unit] ?? NaN), 12) : value;
+}
 
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
 // hash have the values of `kept`. A scene is a state of the stage by its name. A hash with values and
@@ -60,7 +74,7 @@ function parse(hash, kept = DEFAULTS) {
     if (found.length > 1) refused.push(`${names[found[0]]} beside ${names[found[1]]}`);
   }
   for (const [name, text] of given) {
-    const value = numberOf(text), range = rangeOf(name, tab);
+    const value = numberOf(text, name), range = rangeOf(name, tab);
     if (name in CHOICES ? CHOICES[name].includes(text)
       : range && text.trim() !== "" && value >= range[0] && value <= range[1]
         && (!WHOLE.includes(name) || Number.isInteger(value)))
@@ -105,14 +119,14 @@ function givenBy(a, w, state) {
     time: 1000 * freeTime(state) * time / w};
 }
 
-// The same case on another tab, or given by other values. A value that belongs to the case already
-// keeps its digits.
+// The same case on another tab, or given by other values, which are filled in with four digits. A value
+// that belongs to the case already, within these digits, keeps its own.
 function likewise(state, changed) {
   const next = {...state, ...changed}, [table, contact] = givenOf(next);
   const a = amplitudeOf(state), w = frequencyRatioOf(state), given = givenBy(a, w, next);
-  const differs = (found, wanted) => Math.abs(found - wanted) > 1e-12 * wanted;
-  if (differs(amplitudeOf(next), a)) next[table] = given[table];
-  if (differs(frequencyRatioOf(next), w)) next[contact] = given[contact];
+  const differs = (found, wanted) => Math.abs(found - wanted) > 5e-4 * wanted;
+  if (differs(amplitudeOf(next), a)) next[table] = nearest(given[table], 4);
+  if (differs(frequencyRatioOf(next), w)) next[contact] = nearest(given[contact], 4);
   return next;
 }
 

@@ -33,12 +33,8 @@ def ends():
                 [[[0.255, 1.032]], *[[[np.nan] * 2]] * 2],
             ),
             "admissible": (("frequency_ratio", "n", "bound"), [[[True, True]]] * 3),
-            "restitution_range": (
-                ("impact_map", "n", "bound"),
-                [[[0.25472, 1.0383]], [[0.25472, 1.03193]]],
-            ),
         },
-        {"frequency_ratio": ROWS, "n": [1], "bound": BOUNDS, "impact_map": ["exact", "holmes"]},
+        {"frequency_ratio": ROWS, "n": [1], "bound": BOUNDS},
         {"parameters": json.dumps(PARAMETERS)},
     )
 
@@ -48,13 +44,7 @@ def test_each_printed_end_has_its_verdict(ends):
     assert header == ["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]
     assert rows[0][3:] == ["0.25471", "0.255", "rounds to 0.255", "reproduced"]
     assert rows[1][3:] == ["1.03830", "1.032", "+6.3 units, +0.61 %", "not reproduced"]
-    assert [row[0] for row in rows[6:]] == [
-        "restitution model, Eq. 5",
-        "restitution model, Eq. 5",
-        "restitution model, Eqs. 7 and 8",
-        "restitution model, Eqs. 7 and 8",
-    ]
-    assert rows[9][3:] == ["1.03193", "", "", ""]
+    assert len(rows) == ends["computed"].size
 
 
 def test_an_end_within_a_unit_is_named_as_such(ends):

@@ -97,6 +97,15 @@ def test_counts_of_readme_are_those_of_the_datasets():
     assert f"a grid of {stable} n-T orbits that are stable in both models" in readme
 
 
+def test_the_contact_times_of_your_ball_were_measured():
+    row = re.compile(r"\((\S+/experiments/\w+\.csv)\).* ([\d.]+) ± ([\d.]+) ms")
+    balls = row.findall(text("docs/your-ball.md"))
+    assert len(balls) == 2
+    for file, *typed in balls:
+        measured = re.findall(r"# contact time.*: (\S+) s", text(f"docs/{file}"))
+        assert [f"{1e3 * float(each):.3g}" for each in measured] == typed
+
+
 def test_the_journal_accepts_the_metadata():
     """Its converter measures addresses, LaTeX reads the texts, and an abstract has 250 words."""
     metadata = yaml.safe_load(text("metadata.yaml"))

@@ -18,9 +18,9 @@ from bouncing_ball import restitution, spring_damper
 from carbonelli2011 import measures, paper
 from paper_replication import origins
 from paper_replication.datasets import Datasets, parameters
-from paper_replication.judgements import counted, summary
+from paper_replication.judgements import counted
 from paper_replication.templates import environment
-from paper_replication.texts import fixed, listed, markdown
+from paper_replication.texts import fixed, listed
 
 TEMPLATES = Path(__file__).with_name("templates")
 
@@ -88,8 +88,6 @@ def written(name: str, datasets: Datasets) -> str:
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
-        summary=summary,
-        markdown=markdown,
     )
 
 

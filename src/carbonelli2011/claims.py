@@ -1055,11 +1055,11 @@ INTRODUCTION = """\
 A row is one claim of the paper, in our words; the ends of Table 1 are in [table1.md](table1.md).
 [Section 3 of the article](../paper.md) defines the four verdicts.
 A distance is in units of the last printed digit, and in per cent of the printed number.
-A statement is judged by a condition for each sense of its words: "yes" if it holds, "no" if not.
-The first sense is the literal one. The column *literal sense* says whether it holds, if the senses
-differ, and "cannot fail" if the statement holds by definition.
-Formulas were *restored* from the damaged text by deriving them again, and are not counted.
-`tests/test_formulas.py` compares each with its printed form.
+A statement may be read in several senses, the literal one first. Each sense has its own condition,
+which holds ("yes") or does not ("no"). If the senses disagree, the column *literal sense* says
+whether the literal one holds; "cannot fail" marks a statement that holds by definition.
+Formulas were *restored* from the damaged text by deriving them again, and are not counted;
+[claims.csv](claims.csv) lists them, and `tests/test_formulas.py` compares each with its print.
 """
 """The text above the claims on their page."""
 

@@ -75,6 +75,7 @@ def filled_in(
         counts=judgements.counts(claims),
         unasked=sum(each["verdict"] == "not asked" for each in judgements.counted(claims)),
         exceptions=exceptions(datasets["validity_map"]),
+        shifts=shifts(datasets["validity_map"]),
         failing=partial(article.failing, datasets["validity_map"]),
         formulas=judgements.chosen(judgements.SECTIONS["restored formula"], formulas),
         checked_by=formulas[0]["condition"],
@@ -117,31 +118,42 @@ def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:
 
 
 def exceptions(validity_map: xr.Dataset) -> list[list[str]]:
-    """Where the advised frequency ratio is not enough, as rows of texts, the header first.
+    """Errors at the advised frequency ratio, as rows of texts, the header first.
 
-    The last columns have the share of the range of Λ for each n, on average over r.
+    The last columns have, for each n, the share of the range of Λ on which the error exceeds the
+    tolerance, averaged over r.
     """
     given = parameters(validity_map)
     advised = texts.short(given["advised"])
     limit = texts.percent(given["tolerance"])
     families = [f"n = {n}" for n in validity_map.n.values]
-    heads = ["quantity", f"at ϖ ≥ {advised}", f"for some Λ: above {limit}, or it happens"]
+    heads = ["quantity", f"largest error at ϖ ≥ {advised}", f"above {limit} for some Λ"]
     rows = [[*heads, f"share: {families[0]}", *families[1:]]]
     for quantity in validity_map["quantity"].values:
         error = validity_map.largest_error.sel(quantity=quantity).max(skipna=False).item()
         of = " of a period" if quantity == "phase_in_periods" else ""
-        largest = "unknown" if np.isnan(error) else f"error up to {texts.percent(error, 2)}{of}"
+        largest = "unknown" if np.isnan(error) else f"{texts.percent(error, 2)}{of}"
         where = article.failing(validity_map, quantity)
         shares = map(texts.share_text, validity_map.failing_mean.sel(quantity=quantity).values)
         rows.append([QUANTITIES[quantity], largest, where, *shares])
-    beyond = {
-        "doubled": ("period", "doubled", "next to the period doubling"),
-        "below": ("no orbit in the simple model", "stable orbits", "below the saddle-node"),
+    return rows
+
+
+def shifts(validity_map: xr.Dataset) -> list[list[str]]:
+    """Orbits that only one model has at the advised frequency ratio, as rows of texts.
+
+    The last columns have, for each n, their part of Λ in units of the range, averaged over r.
+    """
+    advised = texts.short(parameters(validity_map)["advised"])
+    families = [f"n = {n}" for n in validity_map.n.values]
+    rows = [[f"the contact of ϖ = {advised}", "where", f"share: {families[0]}", *families[1:]]]
+    ends = {
+        "below": ("has stable orbits, the simple model none", "below the saddle-node"),
+        "doubled": ("has already doubled its period", "next to the period doubling"),
     }
-    for name, (quantity, found, side) in beyond.items():
+    for name, (found, side) in ends.items():
         where = positive(validity_map[f"{name}_share"], side)
-        shares = map(texts.share_text, validity_map[f"{name}_mean"].values)
-        rows.append([quantity, f"{found} at ϖ = {advised}", where, *shares])
+        rows.append([found, where, *map(texts.share_text, validity_map[f"{name}_mean"].values)])
     return rows
 
 

@@ -118,7 +118,7 @@ PAGES = {
     "figures/README.md": "index.html",
     "figures/claims.md": "claims.html",
 }
-"""The page for each text; the page of a table is a part of index.html."""
+"""The page for each text; the page of a table is a part of claims.html."""
 
 
 def page_of(
@@ -196,10 +196,10 @@ def link(target: str) -> str:
     """Where a link of a text leads in a browser.
 
     >>> link("supplement.md"), link("figures/table1.md"), link("figures/claims.csv")
-    ('supplement.html', 'index.html#table1', 'figures/claims.csv')
+    ('supplement.html', 'claims.html#table1', 'figures/claims.csv')
     """
     table = re.fullmatch(r"figures/(\w+)\.md", target)
-    return PAGES.get(target) or (f"index.html#{table[1]}" if table else target)
+    return PAGES.get(target) or (f"claims.html#{table[1]}" if table else target)
 
 
 def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:

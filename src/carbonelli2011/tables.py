@@ -15,7 +15,6 @@ from paper_replication.verdicts import answer
 
 NOT_FOLLOWED = ", which no ball follows"
 """What is added to the number of an orbit that is not admissible."""
-MAPS = {"exact": "restitution model, Eq. 5", "holmes": "restitution model, Eqs. 7 and 8"}
 
 
 # Numbers
@@ -26,8 +25,7 @@ def table1(data: xr.Dataset) -> list[list[str]]:
 
     A range goes from the saddle-node to the next period doubling. The table omits further stable
     ranges of the same family. The paper prints Λ to three decimals. An end that rounds to the
-    printed Λ has no distance. The last rows are the ranges of the restitution model, which the
-    paper does not print.
+    printed Λ has no distance.
     """
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
     ends = {claim.name: claim for claim in table1_ends()}
@@ -43,9 +41,6 @@ def table1(data: xr.Dataset) -> list[list[str]]:
         if not end["admissible"] and np.isfinite(end["computed"]):
             computed += NOT_FOLLOWED
         rows.append([*place, computed, printed, distance, judged.get("verdict", "")])
-    for end in each(data, "impact_map", "n", "bound"):
-        place = [MAPS[end["impact_map"].item()], str(end["n"].item()), end["bound"].item()]
-        rows.append([*place, number(end["restitution_range"], ".5f"), "", "", ""])
     return rows
 
 

@@ -228,10 +228,11 @@ def summary(data: xr.Dataset) -> list[list[str]]:
 def claims_markdown(data: xr.Dataset, introduction: str, elsewhere: str) -> str:
     """Return the claims with their verdicts as a page in Markdown, after an introduction.
 
-    Claims of the table `elsewhere` are left out, because they stand in that table.
+    Claims of the table `elsewhere` are left out, because they stand in that table, and so are the
+    restored formulas, which no verdict judges.
     """
     text = f"{introduction}\n## How many\n\n{markdown(summary(data))}"
-    for group, columns in SECTIONS.items():
+    for group in (*GROUPS, "own claim"):
         if claims := [each for each in claims_of(data, group) if each["item"] != elsewhere]:
-            text += f"\n## {group.capitalize()}s\n\n{markdown(chosen(columns, claims))}"
+            text += f"\n## {group.capitalize()}s\n\n{markdown(chosen(SECTIONS[group], claims))}"
     return text

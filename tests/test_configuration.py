@@ -79,7 +79,9 @@ def test_a_new_figure_needs_a_title_and_functions_and_may_have_any_parameters(fr
     assert status == 0 and "results/figures/fig99.png" in printed, printed
 
 
-@pytest.mark.parametrize("content", ["<<<<<<< HEAD\n", "release: d\xe9placement\n"])
+@pytest.mark.parametrize(
+    "content", ["<<<<<<< HEAD\nrelease: force\n=======\n", "release: d\xe9placement\n"]
+)
 def test_a_configuration_that_cannot_be_read_is_one_line(fresh, content):
     """With the marks of a conflict, or in another encoding than UTF-8."""
     (fresh.path / "config/config.yaml").write_bytes(content.encode("latin-1"))

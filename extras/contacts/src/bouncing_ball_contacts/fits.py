@@ -192,23 +192,6 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     return note * (by_drag > (high - low) / 2)
 
 
-def _size_note(found: Fit) -> str:
-    """Return how far r is off if heights are those of the top of the ball."""
-    recording = found.recording
-    if recording.kind not in ("drops", "heights"):
-        return ""
-    size = found.diameter or 0.04
-    # r = √(h′/h), and h′ = r² v²/2g.
-    impacts = found.impacts
-    too_high = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * impacts.speed**2)))
-    # Both heights of a series are too large.
-    too_high *= 1 - found.restitution**2 if recording.kind == "heights" else 1.0
-    return (
-        "heights are those of the lowest point of the ball; if they are of its top, r is too "
-        f"high by {too_high:.2g} ({show(size, 'm')}): subtract its diameter"
-    )
-
-
 def _contact_note(found: Fit) -> str:
     """Return what the contacts do to r of times between impacts, which include them."""
     recording = found.recording
@@ -262,7 +245,6 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
     unit = KINDS[found.recording.kind][0]
     wrong = [f"r = {impacts.restitution[i]:.3g} of impact {i + 1}" for i in misread(impacts)]
     drag = _drag_note(found, known, rounding)
-    size = _size_note(found)
     contact = _contact_note(found)
     gravity = _gravity_note(found)
     is_taken_off = bool(contact and found.contact_time)
@@ -282,7 +264,11 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
                     f"{show(at, 'm/s')} is outside of the measured speeds",
                 ),
                 *((True, note) for note in found.recording.notes),
-                (size, size),
+                (
+                    found.recording.kind in ("drops", "heights"),
+                    "heights are those of the lowest point of the ball: subtract its diameter from "
+                    "those of its top",
+                ),
                 (drag, drag),
                 (contact and not is_taken_off, contact),
                 (
@@ -353,12 +339,11 @@ def fit(
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
-    asked = "drag" if drag else "speed"
     refuse(
         [
             (
                 recording.no_speed and (drag or speed is not None),
-                f"{recording.name}: no {asked} is known: {recording.no_speed}",
+                f"{recording.name}: no speed is known: {recording.no_speed}",
             )
         ]
     )

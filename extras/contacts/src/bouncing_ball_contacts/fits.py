@@ -176,20 +176,21 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     if recording.kind not in _WITH_DRAG or recording.no_speed:
         return ""
     is_known = bool(found.mass and found.diameter)
+    # A ball of table tennis does not fall faster than 8.6 m/s.
+    lightest = STANDARD_GRAVITY / (2 * found.impacts.speed.max() ** 2)
     mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
     r_with, r_without = (
         estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
-        for drag in (drag_of(mass or 0.0, diameter or 0.0), 0.0)
+        for drag in (min(drag_of(mass or 0.0, diameter or 0.0), lightest), 0.0)
     )
     by_drag = r_with - r_without
     note = (
         f"the drag of the air is removed, which raises r by {by_drag:.2g}"
         if is_known
-        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a table "
-        "tennis ball, and by less for a heavier ball; give --mass and --diameter"
+        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a ball of "
+        "table tennis, and by less for a heavier ball; give --mass and --diameter"
     )
-    low, high = found.interval
-    return note * (by_drag > (high - low) / 2)
+    return note * (by_drag > np.ptp(found.interval) / 2)
 
 
 def _contact_note(found: Fit) -> str:
@@ -213,7 +214,7 @@ def _contact_note(found: Fit) -> str:
 
 
 def _gravity_note(found: Fit) -> str:
-    """Return how gravity changes in a film; empty if r changes by less than half of the interval.
+    """Return how gravity changes in a film; empty if a quarter of the interval is more than r does.
 
     If gravity is k₁ g in the first flights of n impacts and k₂ g in the last ones, speeds are wrong
     by these factors, and the mean of ln r by ln(k₂/k₁)/n. A parabola through n positions with the
@@ -234,7 +235,7 @@ def _gravity_note(found: Fit) -> str:
     return (
         f"gravity is not one number: it changes by {max(ratios) - 1:.0%} from flight to flight, "
         f"which makes r wrong by up to {changes:.2g}: is the camera oblique, or does it zoom?"
-    ) * (changes > (found.interval[1] - found.interval[0]) / 2)
+    ) * (changes > (found.interval[1] - found.interval[0]) / 4)
 
 
 def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, ...]:

@@ -71,9 +71,10 @@ def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
 def impact_of(track: Array, drag: float = 0.0) -> Array:
     """Fit two flights with one gravity, and return how they meet, shape (6,).
 
-    In units of the track these are the speeds down before and up after the impact, gravity, the root mean square of
-    the distances of the positions from the flights, and the time and the position of the impact.
-    ``track`` has the columns time in s, position upwards, and 1 after the impact or else 0.
+    In units of the track these are the speeds down before and up after the impact, gravity, the
+    root mean square of the distances of the positions from the flights, and the time and the
+    position of the impact. ``track`` has the columns time in s, position upwards, and 1 after the
+    impact or else 0.
 
     A flight is a parabola but for what the drag changes, which depends on its top and on gravity:
     parabolas are fitted again to the positions without that until nothing changes any more.

@@ -445,7 +445,7 @@ def _left_out(films: list[_Film], impacts: list[list[tuple[int, Array]]]) -> lis
     ]
 
 
-def _clock(columns: list[Column], gravity: float, fall: float) -> tuple[float, str, str]:
+def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, str]:
     """Return m per unit if times follow from the free fall, else 0; why no speed is known; a note.
 
     Gravity, in units of the positions per s², tells true times if the unit is one of lengths. For
@@ -479,8 +479,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     if not tracks:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
     before, _, gravity, *_ = np.transpose([impact_of(each) for each in tracks])
-    fall = float(np.max(before / gravity))
-    metres, no_speed, by_clock = _clock(columns, float(np.mean(gravity)), fall)
+    metres, no_speed, by_clock = _clock(columns, np.mean(gravity), np.max(before / gravity))
     notes = [
         (by_clock, by_clock),
         (no_speed, f"no speed is known: {no_speed}"),

@@ -190,7 +190,7 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
         else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a ball of "
         "table tennis, and by less for a heavier ball; give --mass and --diameter"
     )
-    return note * (by_drag > np.ptp(found.interval) / 2)
+    return note * (2 * by_drag > found.interval[1] - found.interval[0])
 
 
 def _contact_note(found: Fit) -> str:

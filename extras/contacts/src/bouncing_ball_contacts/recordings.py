@@ -530,9 +530,9 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        counted = {"heights": ["height"], "times": ["touch"]}.get(kind, ["trial", "height"])
-        is_counted = each.role in counted and (
-            "touch" in counted or re.search(r"\d$", each.name + other.name)
+        counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
+        is_counted = each.role == counted and (
+            counted == "touch" or re.search(r"\d$", each.name + other.name)
         )
         if each.role == other.role and not is_counted:
             raise Refused(

@@ -10,7 +10,7 @@ import pytest
 from bouncing_ball_contacts import Refused, fit, tables
 from bouncing_ball_contacts.recordings import read
 from bouncing_ball_contacts.tables import experiments
-from bouncing_ball_contacts.tracks import copies, flights_of
+from bouncing_ball_contacts.tracks import copies
 
 FLIGHTS = 0.9 * 0.82 ** np.arange(6)
 TIMES = 0.3 + np.concatenate([[0.0], np.cumsum(FLIGHTS)])
@@ -480,31 +480,6 @@ def test_a_column_group_pools_balls_whose_impacts_share_an_error(columns):
     assert "3 groups deviate" in str(found) or len(found.impacts.speed) == 3
 
 
-def test_a_film_is_a_group(tmp_path):
-    path = tmp_path / "films.csv"
-    path.write_text("t,y\n" + "\n\n".join([track()] * 3))
-    found = fit(path)
-    assert "means of 3 groups deviate" in str(found)
-    assert list(found.impacts.groups) == [0] * 6 + [1] * 6 + [2] * 6
-
-
-@pytest.mark.parametrize("drift", [-0.4, 0.2, 0.9])
-def test_gravity_that_changes_along_a_film_is_said_first(drift):
-    """Of a film with 30,300 to 56,800 px/s² r had an interval of 0.014 without a word."""
-    noisy = 1e-3 * np.random.default_rng(4).normal(size=len(FRAMES))
-    up = np.array([position(t) for t in FRAMES])
-    plain, drifting = (
-        fit({"t": FRAMES, "y (px)": 1000 * (1 + by * FRAMES / FRAMES[-1]) * up + 1000 * noisy})
-        for by in (0, drift)
-    )
-    assert not any("gravity is not one number" in note for note in plain.notes)
-    said = drifting.notes[0]
-    wrong = abs(drifting.restitution - 0.82)
-    # r is wrong by about half of the limit that is printed, and by no more than it.
-    assert "gravity is not one number" in said
-    assert wrong < float(re.search(r"up to ([\d.]+)", said)[1]) < 4 * wrong
-
-
 def test_a_line_without_r_has_no_error_either():
     """Errors of four impacts met five lines: a traceback of NumPy."""
     r = [0.8, None, 0.79, 0.81, 0.8]
@@ -681,21 +656,6 @@ def test_more_impacts_than_a_fit_takes_are_refused():
         fit(series)
 
 
-def test_bottoms_of_a_track_stand_out_of_noise_and_of_a_fiftieth_of_its_height():
-    """A bottom is an impact, and no error of a position and no stir of a ball at rest."""
-    t = np.arange(0, TIMES[-2] + 0.1, 1 / 240)
-    up = np.array([position(each) for each in t])
-    impacts = np.searchsorted(t, TIMES[:-1])
-    noisy = up + 0.012 * np.random.default_rng(2).normal(size=len(t))
-    # Half of the positions are exact, so that the noise of the third differences is 0.
-    stirring = np.concatenate([up, np.zeros(len(t)), 0.01 * np.ptp(up) * (np.arange(90) % 9 == 4)])
-    for positions, end in ((up, len(t)), (noisy, len(t)), (stirring, len(t))):
-        _, bottoms = flights_of(np.arange(len(positions)) / 240, positions)
-        found = [each for each in bottoms if each < end - 2]
-        assert len(found) == len(impacts) and np.abs(np.array(found) - impacts).max() <= 4
-        assert len(bottoms) <= len(found) + 1
-
-
 FRAME = np.arange(len(FRAMES))
 COPIES = "copies of the frame before: line"
 OUTLIERS = "positions that no ball has: line"
@@ -739,23 +699,6 @@ def test_rounded_positions_near_a_top_are_no_copies():
     assert not copies(y, 1.0).any()
     y[101::2] = y[100::2][: len(y[101::2])]
     assert copies(y, 1.0)[101::2].sum() > 100 and not copies(y, 1.0)[100::2].any()
-
-
-def test_an_impact_among_missing_frames_is_not_used():
-    """Two flights beside a flight that is missing have r² for r."""
-    seen = (TIMES[1] - 0.2 > FRAMES) | (TIMES[2] + 0.05 < FRAMES)
-    found = fit({"t": FRAMES[seen], "y": [position(t) for t in FRAMES[seen]]})
-    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
-
-
-def test_a_ball_may_leave_the_picture(tmp_path):
-    """Frames without a position were a gap in the time, as between two films."""
-    path = tmp_path / "track.csv"
-    seen = [(t, position(t)) for t in FRAMES]
-    path.write_text("t,y\n" + "\n".join(f"{t:.4f},{y if y < 0.6 else ''}" for t, y in seen))
-    found = fit(path)
-    assert len(found.impacts.speed) == 6
-    assert np.abs(found.impacts.restitution - 0.82).max() < 1e-3
 
 
 RECORDINGS = {"tables", "tracks", "flights", "recordings", "intervals", "fits", "sounds"}

@@ -133,7 +133,7 @@ def verdict(path, option, r, drop, first):
         return (
             "refused"
             if re.search(
-                "positions in metres, y|correct what is wrong|mass, diameter and times right|above 1 by",
+                "in metres, y|correct what|mass, diameter and|above 1 by",
                 str(refused),
             )
             else str(refused)

@@ -141,7 +141,7 @@ def verdict(path, option, r, drop, first):
     # Four standard deviations in place of two, because there are hundreds of cells.
     holds = abs(r - found.restitution) <= np.ptp(found.interval)
     is_fast = not math.isnan(speed) and abs(math.log(found.impacts.speed.max() / first)) > 0.1
-    said = re.search("falls from ([\\d.]+) m |gravity is not|left out are pos", str(found.notes))
+    said = re.search("falls from ([\\d.]+) m:|gravity is not|left out are pos", str(found.notes))
     is_named = said and (said[1] is None or float(said[1]) > 1.2 * drop)
     return "named" if is_named and (is_fast or not holds) else f"{found}" * (is_fast or not holds)
 

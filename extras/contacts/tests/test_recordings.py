@@ -440,7 +440,10 @@ def test_the_drag_is_said_only_where_it_matters():
             "missing in line 3, 4, 6, 7, 8, which",
         ),
         (FILES["two lines of heights"], "missing in line 3, which"),
-        (FILES["picture, pixels"], "no speed is known: it needs positions in metres"),
+        (
+            FILES["picture, pixels"],
+            "no speed is known, and no drag .*: it needs positions in metres",
+        ),
         ("t (s),y (cm)\n" + track(shown=lambda y: 1e4 * y), "gravity is 981 m/s² .* correct what"),
         (TWO, "lowest point of the ball"),
         (

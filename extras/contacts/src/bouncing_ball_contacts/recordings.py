@@ -461,7 +461,7 @@ def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, 
         return 0.0, "", ""
     if not unit or math.isnan(metres):
         drop = show(STANDARD_GRAVITY * fall**2 / 2, "m")
-        said = f"the ball falls from {drop} by the frame rate, which is wrong if that is wrong"
+        said = f"by the frame rate the ball falls from {drop}: if it does not, correct the rate"
         missing = "it needs positions in metres, y (m), or frames below a line # frame rate: 240"
         return 0.0, *(("", said) if is_stated else (missing, ""))
     if slow < 1 or is_stated:
@@ -482,7 +482,7 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     metres, no_speed, by_clock = _clock(columns, np.mean(gravity), np.max(before / gravity))
     notes = [
         (by_clock, by_clock),
-        (no_speed, f"no speed is known: {no_speed}"),
+        (no_speed, f"no speed is known, and no drag of the air is removed: {no_speed}"),
         *((True, note) for note in _left_out(films, of_films)),
         (
             of_films is ways[1],

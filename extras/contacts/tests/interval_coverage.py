@@ -96,6 +96,7 @@ def films(rng, r, heights, impacts, error, scatter, shared):
     tracks = []
     for height, own in zip(heights, shared_errors(rng, shared, len(heights)), strict=True):
         v = math.sqrt(2 * G * height)
+        begin = 0.0
         for _ in range(impacts):
             up = v * float(np.squeeze(r(v))) * math.exp(own + scatter * rng.normal())
             fall = np.arange(-1.9 * v / G, -0.02, 1 / 60)
@@ -103,7 +104,8 @@ def films(rng, r, heights, impacts, error, scatter, shared):
             t = np.concatenate([fall, rise])
             y = np.concatenate([-v * fall, up * rise]) - G / 2 * t**2
             noisy = y + error * rng.normal(size=len(t))
-            tracks.append(np.column_stack([t, noisy, t > 0]))
+            tracks.append(np.column_stack([begin + t, noisy, t > 0]))
+            begin += 2 * up / G
             v = up
     groups = np.repeat(np.arange(len(heights)), impacts)
     return Recording("films", "track", tuple(tracks), groups=groups)

@@ -414,7 +414,7 @@ def test_a_diagnosis_says_what_was_given_and_what_was_assumed():
     assert 'solref = "-20000 -0"; of the other body solref = "-30000 -20"; mass 1 kg.' in text
     assert 'the defaults solimp = "0.9 0.95 0.001", refsafe = 1, friction = 1, condim' in text
     assert "cone = pyramidal; a drop from 1 m" in text
-    assert "a solid ball of steel (give its size or --density), radius 31.2 mm." in text
+    assert "a solid ball of steel (give its size or density), radius 31.2 mm." in text
     undamped = diagnose(ball, "mujoco", {"solref": "-2e4 -0"}, "1 ms").explained
     assert "a damping ratio of 0;" in undamped
 

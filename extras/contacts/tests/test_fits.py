@@ -185,7 +185,7 @@ def test_a_number_that_is_typed_wrongly_is_pointed_at():
     typed = {"v (m/s)": v, "e": [0.8, 0.08, 0.81, 0.8, 0.8], "error": [0.01] * 5}
     found = fit(typed)
     assert found.interval[0] < found.restitution < found.interval[1]
-    assert any("r = 0.08 at 3.13 m/s: far" in note for note in found.notes)
+    assert any("r = 0.08 of impact 2: far" in note for note in found.notes)
     # Two that are alike are not one that is typed wrongly.
     for e in ([0.8, 0.75, 0.81, 0.8, 0.8], [0.8, 0.4, 0.41, 0.8, 0.8]):
         assert not any("far from" in note for note in fit({**typed, "e": e}).notes)
@@ -308,11 +308,14 @@ def test_a_fit_is_a_bounce_for_an_engine():
 @pytest.mark.parametrize(
     ("readings", "named"),
     [
-        ({"height (mm)": [1000, 640, 412, 262, 260, 107]}, ("r = 0.996 at", "r = 0.642 at")),
+        (
+            {"height (mm)": [1000, 640, 412, 262, 260, 107]},
+            ("r = 0.996 of impact 4", "r = 0.642 of impact 5"),
+        ),
         ({"height (mm)": [1000, 640, 410, 226, 168, 107, 69, 44]}, ("r = 0.742", "r = 0.862")),
-        ({"height (mm)": [1000, 640, 412, 262, 107]}, ("r = 0.639 at",)),
+        ({"height (mm)": [1000, 640, 412, 262, 107]}, ("r = 0.639 of impact 4",)),
         # A top is missing in the middle.
-        ({"height (mm)": [1000, 640, 412, 168, 107, 69]}, ("r = 0.639 at",)),
+        ({"height (mm)": [1000, 640, 412, 168, 107, 69]}, ("r = 0.639 of impact 3",)),
         (
             {"time (s)": [0, 0.9, 1.62, 2.25, 2.65, 3.02, 3.32, 3.56]},
             ("r = 0.875", "r = 0.635", "r = 0.925"),

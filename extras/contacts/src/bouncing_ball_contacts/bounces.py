@@ -210,7 +210,7 @@ class Bounce:
     def assumed(self) -> list[str]:
         """Assumptions on the drop and the body, as text."""
         solid = "a solid cube" if self.points > 1 else "a solid ball"
-        of = "this density" if self.density else "steel (give its size or --density)"
+        of = "this density" if self.density else "steel (give its size or density)"
         return holding(
             [
                 (

@@ -18,15 +18,9 @@ from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Refused,
-    holding,
     in_si,
     refuse,
 )
-
-_DENSITY = click.Option(
-    ["--density"], help="In place of the size or the mass; also steel, rubber, …"
-)
-
 
 _BODY = [
     click.Option(["--mass"], help="Mass of the body, such as '50 g'."),
@@ -34,7 +28,7 @@ _BODY = [
     click.Option(["--drop-height"], help="Height of the drop; 1 m if no speed is given."),
     click.Option(["--speed"], help="Impact speed, in place of the height."),
     click.Option(["--radius"], help="Radius, or half the height of a box."),
-    _DENSITY,
+    click.Option(["--density"], help="In place of the size or the mass; also steel, rubber, …"),
     click.Option(
         ["--points"], type=int, default=1, help="4 for the face of a box, in engines with springs."
     ),
@@ -43,13 +37,6 @@ _BODY = [
         default=str(STANDARD_GRAVITY),
         help=f"{STANDARD_GRAVITY} m/s² if not given; 0 needs the speed.",
     ),
-]
-_FRICTION = click.Option(["--friction"], help="Coefficient of friction.")
-_CONTACT = [
-    click.Option(["--penetration"], help="Depth that must not be exceeded."),
-    click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
-    click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
-    _FRICTION,
 ]
 _STEP = click.Option(["--time-step"], help="Of the engine, such as '2 ms', 1/240 or '240 Hz'.")
 
@@ -105,17 +92,16 @@ def _print(
         click.echo(json.dumps(plain, indent=1, ensure_ascii=False))
         return
     answers = list(found.items()) if isinstance(found, dict) else [("", found)]
-    said: set[str] = set()
-    for i, (name, one) in enumerate(answers if isinstance(found, dict) else []):
-        # What is known of each ball is printed for the first one.
-        named = {re.sub(r"[\d.]+", "", note): note for note in one.notes}
-        fresh = tuple(note for key, note in named.items() if key not in said)
-        answers[i] = (name, dataclasses.replace(one, notes=fresh))
-        said |= named.keys()
     if written is not None:
         answers.append(("", written))
     texts = [f"{name}\n{each.explained if explain else each}" for name, each in answers]
-    click.echo("\n\n".join(text.lstrip("\n") for text in texts))
+    said: set[str] = set()
+    for line in "\n\n".join(text.lstrip("\n") for text in texts).split("\n"):
+        # A note on each of several balls is printed for the first one.
+        note = re.sub(r"[\d.]+", "", line)
+        if note not in said or note[:1] != "!":
+            click.echo(line)
+        said.add(note)
 
 
 def _status(found: Answer) -> int:
@@ -123,7 +109,20 @@ def _status(found: Answer) -> int:
     return int(not (found.is_kept or found.snippet or found.change or found.also))
 
 
-@main.command("design", params=[*_BODY, *_CONTACT, _ENGINE, _STEP, _EXPLAIN, _JSON])
+@main.command(
+    "design",
+    params=[
+        *_BODY,
+        click.Option(["--penetration"], help="Depth that must not be exceeded."),
+        click.Option(["--stiffness"], help="Of the contact, in place of the penetration."),
+        click.Option(["--contact-time"], help="Of a contact without damping, in place of these."),
+        click.Option(["--friction"], help="Coefficient of friction."),
+        _ENGINE,
+        _STEP,
+        _EXPLAIN,
+        _JSON,
+    ],
+)
 def design_command(
     engine: str, time_step: str | None, explain: bool, as_json: bool, **bounce: Any
 ) -> int:
@@ -156,7 +155,6 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
     params=[
         click.Argument(["parameters"], nargs=-1, metavar="[NAME=VALUE]..."),
         *_BODY,
-        _FRICTION,
         _ENGINE,
         _STEP,
         click.Option(["--one-body"], is_flag=True, help="The other body keeps its defaults."),
@@ -237,8 +235,7 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
         click.Option(["--to", "end"], help="End of the fall in a sound."),
         click.Option(["--engine"], help="For which the contact is written."),
         _STEP,
-        _DENSITY,
-        *_CONTACT,
+        click.Option(["--contact-time"], help="Measured, in place of that of the file."),
         _EXPLAIN,
         _JSON,
     ],
@@ -251,10 +248,6 @@ def fit_command(
     end: str | None,
     engine: str | None,
     time_step: str | None,
-    density: str | None,
-    penetration: str | None,
-    stiffness: str | None,
-    friction: str | None,
     explain: bool,
     as_json: bool,
     **of_fit: Any,
@@ -282,25 +275,16 @@ def fit_command(
         raise Refused("--from and --to are of a sound: give a file drop.wav")
     balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
-    contact = {
-        "density": density,
-        "penetration": penetration,
-        "stiffness": stiffness,
-        "friction": friction,
-    }
-    given = {name: value for name, value in contact.items() if value is not None}
     if engine is None:
-        of_engine = {**given, "time_step": time_step}
-        for name in holding((value, name) for name, value in of_engine.items()):
-            option = name.replace("_", "-")
-            raise Refused(f"--{option} needs an engine for which the contact is: --engine mujoco")
+        if time_step is not None:
+            raise Refused("--time-step needs an engine for which the contact is: --engine mujoco")
         _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain, heard=heard)
         return
     if len(fits) > 1:
         raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
     (found,) = fits.values()
     # The contact time of a recording is for springs.
-    bounce = found.bounce(is_spring=rows_of(engine)[1] is None, **given)
+    bounce = found.bounce(is_spring=rows_of(engine)[1] is None)
     _print(found, as_json, explain, design(bounce, engine, time_step), heard)
 
 

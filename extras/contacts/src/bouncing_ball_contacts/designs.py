@@ -175,22 +175,6 @@ class Problem:
         said = f"{lies}, or {hops}" if lies else f"at rest it {hops}"
         return said, height > self.bounce.size / 100
 
-    def slides(self, law: Law, step: float) -> str:
-        """Return how weakly friction acts in MuJoCo.
-
-        Friction is a damper, with the damping of the contact. A body at rest leaves the contact for
-        one or two steps each time, and slides on a slope in these steps.
-        """
-        share = float(law.damping) / math.sqrt(float(law.stiffness))
-        if not share:
-            return "friction acts as a damper: nothing of a sliding speed is taken"
-        creeps = 2e3 * self.bounce.gravity * math.sin(math.radians(10)) * step / (math.pi * share)
-        return (
-            f"friction acts as a damper: a bounce leaves {100 * math.exp(-math.pi * share):.2g} % "
-            "of a sliding speed that Coulomb's friction would take"
-            f"{f', and a body at rest on 10° creeps at up to {creeps:.2g} mm/s' if creeps else ''}"
-        )
-
     @property
     def duration(self) -> float:
         """Duration of an undamped contact divided by its depth, T/δ in s/m."""
@@ -557,7 +541,6 @@ def _remarks(
             (True, f"The largest force is {show(outcome.force[1], 'N')}"),
             (is_sliding, f"Of bodies that slide r is {', '.join(ranges)}"),
             (bounce.friction and engine.friction, engine.friction),
-            (bounce.friction and isinstance(law, Impedance), problem.slides(law, step)),
             (
                 bounce.friction and not is_pasted,
                 f"The friction of {bounce.friction or 0:g} is not in what is pasted",

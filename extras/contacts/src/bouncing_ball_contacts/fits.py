@@ -176,37 +176,21 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
     if recording.kind not in _WITH_DRAG or recording.no_speed:
         return ""
     is_known = bool(found.mass and found.diameter)
+    # A ball of table tennis does not fall faster than 8.6 m/s.
+    lightest = STANDARD_GRAVITY / (2 * found.impacts.speed.max() ** 2)
     mass, diameter = (found.mass, found.diameter) if is_known else _TABLE_TENNIS_BALL
     r_with, r_without = (
         estimate(curves_of(impacts_of(recording, drag), known, found.speed, rounding)).of_r[0]
-        for drag in (drag_of(mass or 0.0, diameter or 0.0), 0.0)
+        for drag in (min(drag_of(mass or 0.0, diameter or 0.0), lightest), 0.0)
     )
     by_drag = r_with - r_without
     note = (
         f"the drag of the air is removed, which raises r by {by_drag:.2g}"
         if is_known
-        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a table "
-        "tennis ball, and by less for a heavier ball; give --mass and --diameter"
+        else f"the drag of the air is not removed: r is too low by {by_drag:.2g} for a ball of "
+        "table tennis, and by less for a heavier ball; give --mass and --diameter"
     )
-    low, high = found.interval
-    return note * (by_drag > (high - low) / 2)
-
-
-def _size_note(found: Fit) -> str:
-    """Return how far r is off if heights are those of the top of the ball."""
-    recording = found.recording
-    if recording.kind not in ("drops", "heights"):
-        return ""
-    size = found.diameter or 0.04
-    # r = √(h′/h), and h′ = r² v²/2g.
-    impacts = found.impacts
-    too_high = float(np.mean(size * STANDARD_GRAVITY / (impacts.restitution * impacts.speed**2)))
-    # Both heights of a series are too large.
-    too_high *= 1 - found.restitution**2 if recording.kind == "heights" else 1.0
-    return (
-        "heights are those of the lowest point of the ball; if they are of its top, r is too "
-        f"high by {too_high:.2g} ({show(size, 'm')}): subtract its diameter"
-    )
+    return note * (2 * by_drag > found.interval[1] - found.interval[0])
 
 
 def _contact_note(found: Fit) -> str:
@@ -230,7 +214,7 @@ def _contact_note(found: Fit) -> str:
 
 
 def _gravity_note(found: Fit) -> str:
-    """Return how gravity changes in a film; empty if r changes by less than half of the interval.
+    """Return how gravity changes in a film; empty if a quarter of the interval is more than r does.
 
     If gravity is k₁ g in the first flights of n impacts and k₂ g in the last ones, speeds are wrong
     by these factors, and the mean of ln r by ln(k₂/k₁)/n. A parabola through n positions with the
@@ -251,7 +235,7 @@ def _gravity_note(found: Fit) -> str:
     return (
         f"gravity is not one number: it changes by {max(ratios) - 1:.0%} from flight to flight, "
         f"which makes r wrong by up to {changes:.2g}: is the camera oblique, or does it zoom?"
-    ) * (changes > (found.interval[1] - found.interval[0]) / 2)
+    ) * (changes > (found.interval[1] - found.interval[0]) / 4)
 
 
 def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, ...]:
@@ -262,7 +246,6 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
     unit = KINDS[found.recording.kind][0]
     wrong = [f"r = {impacts.restitution[i]:.3g} of impact {i + 1}" for i in misread(impacts)]
     drag = _drag_note(found, known, rounding)
-    size = _size_note(found)
     contact = _contact_note(found)
     gravity = _gravity_note(found)
     is_taken_off = bool(contact and found.contact_time)
@@ -282,7 +265,11 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
                     f"{show(at, 'm/s')} is outside of the measured speeds",
                 ),
                 *((True, note) for note in found.recording.notes),
-                (size, size),
+                (
+                    found.recording.kind in ("drops", "heights"),
+                    "heights are those of the lowest point of the ball: subtract its diameter from "
+                    "those of its top",
+                ),
                 (drag, drag),
                 (contact and not is_taken_off, contact),
                 (
@@ -353,12 +340,11 @@ def fit(
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
-    asked = "drag" if drag else "speed"
     refuse(
         [
             (
                 recording.no_speed and (drag or speed is not None),
-                f"{recording.name}: no {asked} is known: {recording.no_speed}",
+                f"{recording.name}: no speed is known: {recording.no_speed}",
             )
         ]
     )

@@ -12,7 +12,6 @@ which they agree for a drag of 1e-30/m.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -69,33 +68,13 @@ def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
     return depth, (np.tan(rise) + np.tanh(fall)) / a
 
 
-class Meeting(NamedTuple):
-    """Where the flight before an impact meets the flight after it, in units of the track.
+def impact_of(track: Array, drag: float = 0.0) -> Array:
+    """Fit two flights with one gravity, and return how they meet, shape (6,).
 
-    Attributes
-    ----------
-    before, after
-        Speeds downwards before and upwards after the impact.
-    gravity
-        Of both flights.
-    misfit
-        Root mean square of the distances of the positions from the flights.
-    time, floor
-        Time and position of the impact.
-    """
-
-    before: float
-    after: float
-    gravity: float
-    misfit: float
-    time: float
-    floor: float
-
-
-def impact_of(track: Array, drag: float = 0.0) -> Meeting:
-    """Fit two flights with one gravity, and return where they meet.
-
-    ``track`` has the columns time in s, position upwards, and 1 after the impact or else 0.
+    In units of the track these are the speeds down before and up after the impact, gravity, the
+    root mean square of the distances of the positions from the flights, and the time and the
+    position of the impact. ``track`` has the columns time in s, position upwards, and 1 after the
+    impact or else 0.
 
     A flight is a parabola but for what the drag changes, which depends on its top and on gravity:
     parabolas are fitted again to the positions without that until nothing changes any more.
@@ -124,5 +103,5 @@ def impact_of(track: Array, drag: float = 0.0) -> Meeting:
     depths, speeds = _fall(meet - tops, drag)
     down, up = gravity * speeds * [1, -1]
     misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
-    floor = float(np.mean(heights - gravity * depths))
-    return Meeting(float(down), float(up), float(gravity), misfit, float(begin + meet), floor)
+    floor = np.mean(heights - gravity * depths)
+    return np.array([down, up, gravity, misfit, begin + meet, floor])

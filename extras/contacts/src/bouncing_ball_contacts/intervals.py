@@ -118,8 +118,6 @@ class Impacts:
         Middle of the prior of scatter, and the width of its logarithm above the middle.
     is_set
         Whether speeds were set, and do not follow from the impact before.
-    by_floor
-        Standard deviation of ln r that all impacts share, by the speed of the floor in a film.
     """
 
     speed: Array
@@ -131,7 +129,6 @@ class Impacts:
     scatter: float = _SCATTER
     width: float = _WIDTH_OF_SCATTER
     is_set: bool = True
-    by_floor: float = 0.0
 
     @property
     def restitution(self) -> Array:
@@ -198,23 +195,9 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     """
     kind = recording.kind
     chains = recording.chains
-    by_floor = 0.0
     if kind == "track":
-        speeds, errors = zip(
-            *(speeds_of_film(film, drag, recording.has_clock) for film in recording.films),
-            strict=True,
-        )
-        chains = (np.concatenate(speeds),)
-        by_floor = float(np.mean(np.concatenate(errors))) / math.sqrt(len(errors))
-        refuse(
-            [
-                (
-                    not np.all(chains[0] > 0),
-                    f"{recording.name}: with this drag no flight is as fast as those of the film: "
-                    "are mass, diameter and times right?",
-                )
-            ]
-        )
+        films = [speeds_of_film(film, drag, recording.has_clock) for film in recording.films]
+        chains = (np.concatenate(films),)
     pairs = np.concatenate(
         [
             values if values.ndim == 2 else np.column_stack([values[:-1], values[1:]])
@@ -237,6 +220,11 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
                 f"{recording.name}: no impact lies between two flights: three times or two heights "
                 "are needed",
             ),
+            (
+                not np.all(pairs > 0),
+                f"{recording.name}: with this drag no flight is as fast as those of the film: are "
+                "mass, diameter and times right?",
+            ),
         ]
     )
     before, after = pairs.T
@@ -253,9 +241,7 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     is_set = kind in ("drops", "coefficients")
     log_r = np.log(after / before)
     usual = KINDS[kind][1]
-    return Impacts(
-        before, log_r, readings, of_speed, usual, groups, is_set=is_set, by_floor=by_floor
-    )
+    return Impacts(before, log_r, readings, of_speed, usual, groups, is_set=is_set)
 
 
 def group_means(
@@ -559,9 +545,7 @@ def curves_of(
         confidence=confidence,
         value=middle + value,
         slope=slope,
-        spread=np.sqrt(
-            (1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends + impacts.by_floor**2
-        ),
+        spread=np.sqrt((1 / ones)[:, None] / precision + shift[:, None] ** 2 / of_bends),
         # A curve has two parameters, and a constant r has one.
         scatter=math.sqrt(float(np.sum(errors_of_r**2)) / max(n - 1 - has_slope, 1)),
         has_slope=has_slope,

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.tables import (
     HEADINGS,
     LAYOUTS,
@@ -27,7 +28,7 @@ from bouncing_ball_contacts.tables import (
     Table,
     table_of,
 )
-from bouncing_ball_contacts.tracks import FEWEST, Impact, copies, impacts_of_track, outliers
+from bouncing_ball_contacts.tracks import FEWEST, copies, impacts_of_track, outliers
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Array,
@@ -116,14 +117,12 @@ class Recording:
     notes: tuple[str, ...] = ()
 
     @property
-    def films(self) -> list[list[Array]]:
+    def films(self) -> list[tuple[Array, ...]]:
         """Tracks of the impacts of each film, which begins with an earlier time."""
-        films: list[list[Array]] = []
-        for track in self.chains:
-            if not films or track[0, 0] < films[-1][-1][0, 0]:
-                films.append([])
-            films[-1].append(track)
-        return films
+        begins = [track[0, 0] for track in self.chains]
+        ends = np.flatnonzero(np.diff(begins) < 0) + 1
+        edges = itertools.pairwise([0, *ends, len(begins)])
+        return [self.chains[begin:end] for begin, end in edges]
 
 
 def rounding_of(recording: Recording) -> float:
@@ -373,8 +372,8 @@ class _Film(NamedTuple):
     is_copy: NDArray[np.bool_]
     is_out: NDArray[np.bool_]
 
-    def impacts(self, way: int) -> list[tuple[int, Impact]]:
-        """Return each impact with its line; `way` is -1 if positions grow downwards."""
+    def impacts(self, way: int) -> list[tuple[int, Array]]:
+        """Return the line and the track of each impact; `way` is -1 if positions grow downwards."""
         used = np.flatnonzero(~(self.is_copy | self.is_out))
         if len(used) <= 2 * FEWEST:
             return []
@@ -382,12 +381,12 @@ class _Film(NamedTuple):
         return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
 
 
-def _film(columns: list[Column], t: Array, y: Array, lines: Lines, slow: float) -> _Film:
+def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
     """Return a film of positions; its rounded times are replaced by those of even frames."""
     frames = np.arange(len(t))
     even = np.polyval(np.polyfit(frames, t, 1), frames)
     is_even = np.abs(t - even).max() <= columns[0].scale * columns[0].digit
-    t = np.where(is_even, even, t) / slow
+    t = np.where(is_even, even, t)
     digit = columns[1].digit
     is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
     is_out = np.zeros(len(t), bool)
@@ -400,9 +399,6 @@ def _film(columns: list[Column], t: Array, y: Array, lines: Lines, slow: float) 
 def _films(table: Table, columns: list[Column]) -> list[_Film]:
     """Return the films; an empty line or a name divides films."""
     films = []
-    rate = table.head.get("frame rate")
-    # Those of frames follow from the rate, also if some are missing.
-    has_times = rate is not None and columns[0].name.lower() not in NAMES["frame"].split(", ")
     for part in _series(table):
         times, positions = part.of(columns[0].role)[0], part.of(columns[1].role)[0]
         both = np.column_stack([part.values(times), positions.numbers])
@@ -419,15 +415,13 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
             found = frames[~np.isnan(both[frames, 1])]
             if len(found) > 2 * FEWEST:
                 t, y = both[found].T
-                usual = float(np.median(np.diff(t)))
-                slow = usual * positive("frame rate", rate, "Hz") if has_times and usual else 1.0
-                films.append(_film(columns, t - t[0], y, part.lines[found], slow))
+                films.append(_film(columns, t - t[0], y, part.lines[found]))
     if not films:
         raise Refused(f"{table.name}: too few lines of a track; tops are one column, height")
     return films
 
 
-def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> list[str]:
+def _left_out(films: list[_Film], impacts: list[list[tuple[int, Array]]]) -> list[str]:
     """Return what is left out of films between the begin of their first and end of last flight."""
     left: dict[str, list[int]] = {
         "copies of the frame before": [],
@@ -437,7 +431,7 @@ def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> li
     for film, found in zip(films, impacts, strict=True):
         if not found:
             continue
-        begin, end = found[0][1].track[0, 0], found[-1][1].track[-1, 0]
+        begin, end = found[0][1][0, 0], found[-1][1][-1, 0]
         during = (film.t >= begin) & (film.t <= end)
         steps = np.diff(film.t, prepend=film.t[0])
         of_kinds = film.is_copy, film.is_out, steps > 2.5 * np.median(steps)
@@ -451,25 +445,28 @@ def _left_out(films: list[_Film], impacts: list[list[tuple[int, Impact]]]) -> li
     ]
 
 
-def _clock(table: Table, unit: str, gravity: float) -> tuple[float, str, str]:
-    """Return m per unit of the positions, why no speed is known, and how times are corrected.
+def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, str]:
+    """Return m per unit if times follow from the free fall, else 0; why no speed is known; a note.
 
     Gravity, in units of the positions per s², tells true times if the unit is one of lengths. For
-    pixels the frame rate of the camera does, if it is stated.
+    pixels the frame rate of the camera does, if the times are frames; the longest fall in s tells
+    whether it is right.
     """
-    is_stated = "frame rate" in table.head
+    unit = columns[1].unit
     metres = in_si("unit", f"1 {unit}", "m") if unit in ("", *units_of("m")) else math.nan
-    measured = metres * gravity
-    slow = math.sqrt(STANDARD_GRAVITY / measured)
-    is_length = bool(unit) and not math.isnan(metres)
-    if abs(slow - 1) < _SAME_CLOCK or (is_stated and not is_length):
-        return 1.0, "", ""
-    by = f"gravity is {measured:.3g} m/s² by the heights in {unit} and the times"
-    if is_length and slow > 1 and not is_stated:
-        return metres, "", f"{by}: times are {slow:.3g} times the true ones, which are used"
-    wrong = f"{by}{is_stated * ' of the frame rate'}: correct what is wrong"
-    scale = "it needs positions in metres, y (m), or a line # frame rate: 240 of the camera"
-    return 1.0, wrong if is_length else scale, ""
+    slow = math.sqrt(STANDARD_GRAVITY / (metres * gravity))
+    by = f"gravity is {metres * gravity:.3g} m/s² by the heights in {unit} and the times"
+    is_stated = columns[0].name.lower() in NAMES["frame"].split(", ")
+    if abs(slow - 1) < _SAME_CLOCK:
+        return 0.0, "", ""
+    if not unit or math.isnan(metres):
+        drop = show(STANDARD_GRAVITY * fall**2 / 2, "m")
+        said = f"by the frame rate the ball falls from {drop}: if it does not, correct the rate"
+        missing = "it needs positions in metres, y (m), or frames below a line # frame rate: 240"
+        return 0.0, *(("", said) if is_stated else (missing, ""))
+    if slow < 1 or is_stated:
+        return 0.0, f"{by}{is_stated * ' of the frame rate'}: correct what is wrong", ""
+    return metres, "", f"{by}: times are {slow:.3g} times the true ones, which are used"
 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
@@ -478,21 +475,14 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]
     of_films = max(ways, key=lambda each: sum(map(len, each)))
-    numbers, impacts = zip(*itertools.chain(*of_films), strict=True) if any(of_films) else ((), ())
-    if not impacts:
+    numbers, tracks = zip(*itertools.chain(*of_films), strict=True) if any(of_films) else ((), ())
+    if not tracks:
         raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
-    tracks, *speeds, gravities = zip(*impacts, strict=True)
-    metres, no_speed, corrected = _clock(table, columns[1].unit, float(np.mean(gravities)))
-    tracks = tuple(each * [1, metres, 1] for each in tracks)
-    drop = float(np.max((np.array(speeds[0]) / gravities) ** 2)) * STANDARD_GRAVITY / 2
+    before, _, gravity, *_ = np.transpose([impact_of(each) for each in tracks])
+    metres, no_speed, by_clock = _clock(columns, np.mean(gravity), np.max(before / gravity))
     notes = [
-        (corrected, corrected),
-        (no_speed, f"no speed is known: {no_speed}"),
-        (
-            "frame rate" in table.head and not no_speed,
-            f"by the frame rate the ball falls from {show(drop, 'm')}: another height is that of "
-            "another frame rate",
-        ),
+        (by_clock, by_clock),
+        (no_speed, f"no speed is known, and no drag of the air is removed: {no_speed}"),
         *((True, note) for note in _left_out(films, of_films)),
         (
             of_films is ways[1],
@@ -504,9 +494,9 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     return Recording(
         table.name,
         "track",
-        tracks,
+        tuple(each * [1, metres or 1, 1] for each in tracks),
         groups=groups,
-        has_clock=not corrected,
+        has_clock=not metres,
         no_speed=no_speed,
         notes=tuple(holding(notes)),
     )
@@ -540,9 +530,9 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
         )
     columns = [each for role in needed for each in table.of(role)]
     for each, other in itertools.pairwise(columns):
-        counted = {"heights": ["height"], "times": ["touch"]}.get(kind, ["trial", "height"])
-        is_counted = each.role in counted and (
-            "touch" in counted or re.search(r"\d$", each.name + other.name)
+        counted = {"heights": "height", "times": "touch"}.get(kind, "trial")
+        is_counted = each.role == counted and (
+            counted == "touch" or re.search(r"\d$", each.name + other.name)
         )
         if each.role == other.role and not is_counted:
             raise Refused(

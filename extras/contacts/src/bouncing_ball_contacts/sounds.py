@@ -325,8 +325,9 @@ def listen(sound: Sound) -> Heard:
     flights = np.diff(times)
     if np.median(flights[1:] / flights[:-1]) > _EVEN:
         raise Refused(
-            f"{sound.name}: the sounds from {times[0]:.2f} s are evenly spaced, by "
-            f"{np.median(flights):.3g} s: no ball"
+            f"{sound.name}: the sounds from {times[0]:.2f} s come every {np.median(flights):.3g} "
+            "s, but the intervals of a bouncing ball shrink: choose another part with --from and "
+            "--to"
         )
     # The speed of an impact goes as the flight before it.
     both = np.cov(np.log(flights), np.log(rises.loudness[series[1:]]))

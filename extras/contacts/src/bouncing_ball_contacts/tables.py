@@ -560,8 +560,7 @@ def _with_one_unit(cells: list[str]) -> tuple[list[str], str]:
     units = {SPELLED.get(each[2].lower(), each[2]) for each in found if each}
     if None in found or len(units) != 1 or not units <= _KNOWN_UNITS:
         return cells, ""
-    numbers = [re.sub(r"\s*[^\W\d]+$", "", cell) for cell in cells]
-    return numbers, units.pop()
+    return [re.sub(r"\s*[^\W\d]+$", "", cell) for cell in cells], units.pop()
 
 
 def _with_units(columns: list[Column]) -> list[Column]:

@@ -7,7 +7,6 @@ outliers, and frames that are missing. An impact lies between two flights.
 import itertools
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -24,28 +23,8 @@ _LONGEST_GAP = 10
 _MEDIAN = 0.6745
 
 
-class Impact(NamedTuple):
-    """Impact between two flights that one gravity fits.
-
-    Attributes
-    ----------
-    track
-        Positions of both flights, with the columns time, position, and 1 after the impact or else
-        0.
-    before, after, gravity
-        Speeds before and after it, and gravity, in the unit of the positions.
-    """
-
-    track: Array
-    before: float
-    after: float
-    gravity: float
-
-
-def speeds_of_film(
-    tracks: Sequence[Array], drag: float, has_clock: bool = True
-) -> tuple[Array, Array]:
-    """Return speeds before and after the impacts of a film, and the error of ln r by its floor.
+def speeds_of_film(tracks: Sequence[Array], drag: float, has_clock: bool) -> Array:
+    """Return the speeds in m/s before and after the impacts of a film, shape (n, 2).
 
     Gravity is the scale of each impact. Without a clock positions are in m, and times are scaled
     until gravity is the standard one.
@@ -56,35 +35,20 @@ def speeds_of_film(
     Parameters
     ----------
     tracks : sequence of arrays
-        Those of `Impact`.
+        Of each impact, as of `impact_of`.
     drag : float
         ρ C A/(2 m) in 1/m.
     has_clock : bool
         Whether times are true.
-
-    Returns
-    -------
-    speeds : array
-        In m/s, shape (n, 2).
-    errors : array
-        Standard deviations of ln r that the impacts of a film share, shape (n,).
     """
     for _ in range(1 if has_clock else 5):
-        found = [impact_of(each, drag) for each in tracks]
-        before, after, gravity, misfit, time, floor = np.array(found).T
+        before, after, gravity, _, time, floor = np.transpose([impact_of(x, drag) for x in tracks])
         slow = 1.0 if has_clock else math.sqrt(max(gravity.mean() / STANDARD_GRAVITY, 1e-9))
         tracks = [each * [slow, 1, 1] for each in tracks]
-    n = len(tracks)
     since = time - time.mean()
     moves = since @ floor / max(since @ since, 1e-9)
-    # A straight line through few heights hides their errors, which are at least those of the ends
-    # of parabolas through the positions.
-    ends = 3 * np.mean(misfit / np.sqrt([len(each) for each in tracks]))
-    misses = floor - floor.mean() - moves * since
-    error = math.sqrt((misses @ misses + 2 * ends**2) / n)
-    error *= (n > 1) / math.sqrt(max(since @ since, 1e-9))
     speeds = np.column_stack([before + moves, after - moves])
-    return speeds * (STANDARD_GRAVITY / gravity)[:, None], error * np.sum(1 / speeds, axis=1)
+    return speeds * (STANDARD_GRAVITY / gravity)[:, None]
 
 
 def _third_differences(t: Array, y: Array) -> Array:
@@ -154,8 +118,11 @@ def flights_of(t: Array, up: Array) -> tuple[list[NDArray[np.intp]], list[int]]:
     return flights, bottoms
 
 
-def impacts_of_track(t: Array, up: Array) -> dict[int, Impact]:
-    """Return the impacts between two flights, by the indices of their lowest positions."""
+def impacts_of_track(t: Array, up: Array) -> dict[int, Array]:
+    """Return the tracks of impacts between two flights, by the indices of their lowest positions.
+
+    A track has the columns time, position, and 1 after the impact or else 0.
+    """
     flights, bottoms = flights_of(t, up)
     longest = _LONGEST_GAP * float(np.median(np.diff(t)))
     impacts = {}
@@ -171,5 +138,5 @@ def impacts_of_track(t: Array, up: Array) -> dict[int, Impact]:
         slowest = min(v_before, v_after)
         is_flight = gravity > 0 and misfit < 0.05 * slowest**2 / (2 * gravity)
         if is_flight and 0 < v_after < 1.05 * v_before:
-            impacts[bottom] = Impact(track, v_before, v_after, gravity)
+            impacts[bottom] = track
     return impacts

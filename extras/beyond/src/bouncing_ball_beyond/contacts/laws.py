@@ -394,7 +394,7 @@ class ForceLaw(Force):
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
-    @np.errstate(invalid="ignore")
+    @np.errstate(divide="ignore", invalid="ignore")
     def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
         """Release function: -q, or (-κp′)^{1/m} - q, or -f, or -q f(p, p′)/f(p, 0).
 

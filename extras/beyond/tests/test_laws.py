@@ -256,40 +256,6 @@ class TestByIntegration:
         difference = (sides[0] - 8 * sides[1] + 8 * sides[2] - sides[3]) / 12e-3
         assert abs(impact.speed.imag / H - difference) < 1e-10
 
-    def test_centroid_and_loss_by_their_definitions(self):
-        law = hunt_crossley(1000.0, 0.15)
-
-        def rates(t, y):
-            f = float(law.force(max(y[0], 0.0), y[1], **law.values))
-            return [y[1], -f, f, t * f]
-
-        def end(t, y):
-            return y[0]
-
-        end.terminal, end.direction = True, -1
-        found = solve_ivp(
-            rates, (0, 1), [0, 3.0, 0, 0], "DOP853", events=end, rtol=1e-13, atol=1e-16
-        )
-        impulse, moment = found.y[2:, -1]
-        signature = law.signature(3.0)
-        assert abs(signature.centroid - moment / impulse) < CLOSE
-
-        # The impulse at a fixed closing speed v = u + a t* of the instant.
-        def impulse_at(a, v=3.0):
-            u = v
-            for _ in range(8):
-                impact = law.first_impact(0.0, u, 0.0, a)[1]
-                impulse = u + impact.speed + a * impact.duration
-                w = impact.speed
-                D = impact.duration
-                centroid = D - (impact.gap + u * D + a * D**2 / 2) / impulse
-                u = v - a * centroid
-            assert w > 0
-            return impulse
-
-        loss = (impulse_at(1e-3) - impulse_at(-1e-3)) / 2e-3
-        assert abs(signature.loss - loss) < 1e-7 * signature.duration
-
 
 def test_parameters_may_be_lists():
     def spring(p, v, stiffness):

@@ -108,16 +108,15 @@ def weakest_grip(ball, amplitude, harmonics=SINE):
             motion, (0, end), deep * y, "DOP853", rtol=1e-12, atol=1e-15, dense_output=True
         )
 
+    # A force that pushes at the surface ends contacts there.
+    surface = ball.release == "displacement" or acceleration(ball, -1e-12, 1e-6) > 0
     start = moved(np.array([-1.0, 0.0]), 8 * np.pi, 4).y[:, -1] / deep
     steady = fsolve(lambda y: moved(y).y[:, -1] / deep - y, start, xtol=1e-10)
     motion = moved(steady).sol
 
     def grip(t):
         gap, rate = motion(t)
-        if ball.release == "displacement":
-            return -gap / deep
-        # A power of the depth is flat at the surface, where the depth itself is not.
-        return min(-gap / deep, acceleration(ball, gap, rate))
+        return -gap / deep if surface else acceleration(ball, gap, rate)
 
     times = np.linspace(0.1, 2 * np.pi + 0.1, 2001) % (2 * np.pi)
     near = times[np.argmin([grip(t) for t in times])]

@@ -14,7 +14,17 @@ from bouncing_ball_beyond.contacts import root_time
 from bouncing_ball_beyond.contacts.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.contacts.root_time import solve_panel
+from bouncing_ball_beyond.errors.error_law import (
+    contact_values,
+    error_thresholds,
+    exact_errors,
+    free_impact,
+    law_errors,
+    law_thresholds,
+)
+from bouncing_ball_beyond.motions import effort
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
+from bouncing_ball_beyond.motions.long_term import lyapunov
 from bouncing_ball_beyond.periodic.chains import dense, solve_bordered
 from bouncing_ball_beyond.periodic.continuation import limits
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
@@ -362,3 +372,29 @@ def test_orbits_on_two_tones_return():
     for each in found:
         after, _ = around(each)
         np.testing.assert_allclose(after, [each.times[0], each.speeds[0]], atol=1e-8)
+
+
+def test_a_search_ends_after_its_evaluations():
+    tried = "tried: orbits near those of instantaneous impacts, motions from 3072 first impacts"
+    text = f"orbit: no answer after 1,000 evaluations; {tried}; give more evaluations"
+    with pytest.raises(effort.SearchEnded, match=f"^{text}$"):
+        orbit(hunt_crossley(1000.0, 0.3), amplitude=0.2, evaluations=1000)
+
+
+def test_searches_report_their_progress(monkeypatch):
+    monkeypatch.setattr(effort, "EVERY", 0.0)
+    told = []
+    limits(Rigid(0.5), progress=told.append)
+    lyapunov(Rigid(0.7), amplitude=1.345, phase=1.0, neighbours=1, progress=told.append)
+    steps = [each.partition(",")[0] for each in told]
+    assert {"limits: the branches of these orbits", "lyapunov: their neighbours"} <= {*steps}
+
+
+@pytest.mark.parametrize("ball", [SpringDamper(20.0, damping_ratio=1.2), tsuji(1e3, 2.5)], ids=repr)
+def test_a_contact_that_does_not_end_is_named_before_a_search(ball, monkeypatch):
+    monkeypatch.setattr(OrbitEquations, "linearized", None)
+    asked = [contact_values, exact_errors, law_errors, law_thresholds, error_thresholds]
+    given = {call: {"amplitude": 1.0} for call in asked} | {free_impact: {}, Corrected: {}}
+    for call, arguments in given.items():
+        with pytest.raises(ValueError, match="its free impacts do not end, so it has no restitu"):
+            call(ball, **arguments)

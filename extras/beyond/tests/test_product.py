@@ -482,10 +482,12 @@ def permanent_contact(pair):
 
 @question
 def threshold_of_permanent_contact(pair):
-    """The weakest grip of the steady motion is zero."""
+    """The weakest grip of the steady motion falls to zero. At zero the integrator may lose it."""
     found = bb.permanent_contact(pair.ball, table=pair.table)
     if pair.ball.has_duration:
-        assert_close(weakest_grip(pair.ball, found, pair.harmonics), 0.0)
+        below = found * (1 - np.array([1e-6, 2e-6]))
+        near, farther = (weakest_grip(pair.ball, each, pair.harmonics) for each in below)
+        assert_close(2 * near - farther, 0.0)
     else:
         tau = np.linspace(0, PERIOD, 20_001)
         assert_close(found * waveform(pair.harmonics, tau, 2).min(), -1.0)

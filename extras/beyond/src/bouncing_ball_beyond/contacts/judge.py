@@ -7,7 +7,7 @@ allows. There it must
 2. stop balls without damping (:func:`judge`);
 3. be analytic, but for the kinks that the law declares (:func:`_check_lines`);
 4. be a function of p^{1/m} at p = 0 to which polynomials converge (:func:`_check_root`);
-5. not pull at p = 0, if contacts end where the force vanishes (:func:`_check_release`);
+5. not pull at rest, if contacts end where the force vanishes (:func:`_check_release`);
 6. add no energy to free impacts (:func:`_check_energy`).
 
 Points are (p, v, load), arrays of the shape (3, ...).
@@ -21,7 +21,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import H, broadcast_named
-from bouncing_ball_beyond.contacts.forces import Force
+from bouncing_ball_beyond.contacts.forces import DEPTHS, Force
 
 FIRST_SPEED, FIRST_LOAD = 12.0, 6.0
 """Closing speed and load up to which a new law is judged.
@@ -306,12 +306,14 @@ def _check_release(law: Force, force: Callable, points: NDArray) -> None:
             "lag: must return κ of the line p + κp′ = 0 on which the force vanishes, but the force"
             " does not vanish there"
         )
-    start = force(np.array([[0.0], [0.0], [1.0]]))[0]
-    if start < -ROUNDED * np.abs(values).max():
+    depths = np.append(0.0, DEPTHS[DEPTHS < points[0].max()])
+    held = force((depths, 0 * depths, 1 + 0 * depths))
+    weakest = held.argmin()
+    if held[weakest] < -ROUNDED * np.abs(values).max():
         raise ValueError(
-            f"force: pulls with {-start:.3g} at p = 0, but release='force' ends contacts where the"
-            " force vanishes: a slow ball would leave as it arrives; write a force that is 0 at"
-            " p = v = 0, or give release='displacement'"
+            f"force: pulls with {-held[weakest]:.3g} at p = {depths[weakest]:.2g} and v = 0, but"
+            " release='force' ends contacts where the force vanishes: a slow ball would leave as it"
+            " arrives; write a force that does not pull at rest, or give release='displacement'"
         )
 
 

@@ -106,7 +106,8 @@ class ForceLaw(Force):
         1 if the force is smooth at p = 0. It is 2 for powers of √p, as in Hertz' law, and 4 for
         powers of p^{1/4}. For powers of p^{1/3} it is 6.
     release : {"displacement", "force"}
-        If "displacement", contacts end where p = 0. If "force", they end where the force vanishes.
+        If "displacement", contacts end where p = 0. If "force", they end where the force changes
+        its sign, and at p = 0 at the latest.
     lag : callable, optional
         Function ``lag(**values)`` that returns κ. Give it if the force vanishes where p + κp′ = 0,
         and ends contacts there (release "force").
@@ -394,7 +395,7 @@ class ForceLaw(Force):
         centroid = r * (duration - gap / speed) / (1 + r)
         return Signature(r, duration, centroid, by_load - centroid * by_speed)
 
-    @np.errstate(invalid="ignore")
+    @np.errstate(divide="ignore", invalid="ignore")
     def _release(self, q: Values, v: Values, t: Values, given: Mapping) -> Values:
         """Release function: -q, or (-κp′)^{1/m} - q, or -f, or -q f(p, p′)/f(p, 0).
 

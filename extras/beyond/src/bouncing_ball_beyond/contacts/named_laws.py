@@ -193,22 +193,22 @@ def linear(
     """
     kinds: dict[str, Any] = {
         "displacement": {"force": _spring_damper},
-        "force": {"force": _spring_damper, "release": "force", "lag": _lag_of_ratios},
-        "approach": {"force": _damped_on_approach, "kinks": (_turning_point,)},
+        "force": {
+            "force": _spring_damper,
+            "release": "force",
+            "lag": lambda frequency_ratio, damping_ratio: 2 * damping_ratio / frequency_ratio,
+        },
+        "approach": {"force": _damped_on_approach, "kinks": (lambda p, v, **values: v,)},
     }
     if release not in kinds:
         raise ValueError(f"release = {release!r}: must be 'displacement', 'force' or 'approach'")
     return _given(
         {"frequency_ratio": frequency_ratio, "damping_ratio": damping_ratio},
         {"restitution": restitution, "duration": duration, "speed": speed},
-        _of_ratios,
+        lambda g, P, v: {"frequency_ratio": v / P, "damping_ratio": g},
         units=UNITS_OF_RATIOS,
         **kinds[release],
     )
-
-
-def _of_ratios(g: Values, P: Values, v: Values) -> dict[str, Values]:
-    return {"frequency_ratio": v / P, "damping_ratio": g}
 
 
 def _spring_damper(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
@@ -219,14 +219,6 @@ def _damped_on_approach(
     p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values
 ) -> Values:
     return _spring_damper(p, np.where(np.real(v) > 0, v, 0.0), frequency_ratio, damping_ratio)
-
-
-def _turning_point(p: Values, v: Values, frequency_ratio: Values, damping_ratio: Values) -> Values:
-    return v
-
-
-def _lag_of_ratios(frequency_ratio: Values, damping_ratio: Values) -> Values:
-    return 2 * damping_ratio / frequency_ratio
 
 
 def hunt_crossley(
@@ -382,17 +374,13 @@ def kuwabara_kono(
         force=_kuwabara_kono,
         root=2,
         release="force",
-        lag=_lag_of_damping,
+        lag=lambda stiffness, damping: damping,
         units={"stiffness": HERTZ, "damping": (0, 0, 1)},
     )
 
 
 def _kuwabara_kono(p: Values, v: Values, stiffness: Values, damping: Values) -> Values:
     return stiffness * np.sqrt(p) * (p + damping * v)
-
-
-def _lag_of_damping(stiffness: Values, damping: Values) -> Values:
-    return damping
 
 
 def adams_impact(
@@ -511,7 +499,7 @@ def simscape_contact(
         lambda g, P, v: {"stiffness": (v / P) ** 2, "damping": g * v / P, "depth": STEPPED * P},
         force=_simscape,
         release="force",
-        lag=_lag_of_force,
+        lag=lambda stiffness, damping, depth: damping / stiffness,
         kinks=(_full_depth,),
         units={"stiffness": SPRING, "damping": DAMPER, "depth": (0, 1, 0)},
     )
@@ -519,7 +507,3 @@ def simscape_contact(
 
 def _simscape(p: Values, v: Values, stiffness: Values, damping: Values, depth: Values) -> Values:
     return _step(p, depth) * (stiffness * p + damping * v)
-
-
-def _lag_of_force(stiffness: Values, damping: Values, depth: Values) -> Values:
-    return damping / stiffness

@@ -708,7 +708,8 @@ def lyapunov(
         Variables of :func:`motion_of`. The exponent of a periodic motion is ln|μ|/m, where μ is the
         multiplier with the larger modulus. It is -∞ if the later motion does not depend on earlier
         impacts. The error is NaN if a ball was followed for too few relaxation lengths; one such
-        length is about 1/(1 - r²) impacts.
+        length is about 1/(1 - r²) impacts. A ``reason`` concerns the kind or the period of
+        the motion; its exponent is right unless it is NaN.
 
     Warnings
     --------

@@ -2,8 +2,8 @@
 
 The steady motion of the ball in contact has the period of the table. Its penetration p obeys
 p″ = 1 + ΛW″ - f(p, p′). The ball is released where its grip falls to zero. The grip is p, or
-:meth:`.Force.grip` for the release "force". As Λ rises from 0, the minimum of the grip falls from its value at
-rest. The threshold is the Λ at which it is zero (Eq. 33 for a spring and a damper).
+:meth:`.Force.grip` for the release "force". As Λ rises from 0, the minimum of the grip falls from
+its value at rest. The threshold is the Λ at which it is zero (Eq. 33 for a spring and a damper).
 """
 
 from typing import Any
@@ -91,7 +91,10 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
         )
         x, y, unknown = found.x, found.y, found.p
         if not found.success:
-            raise ValueError(f"{law}: no steady motion in contact at Λ = {unknown[1]:.4g}")
+            raise ValueError(
+                f"{law}: no steady motion in contact is found near Λ = {unknown[1]:.4g}; forces"
+                " that begin with a power below 1 are too steep at the surface"
+            )
         if unknown[1] < before:
             raise ValueError(
                 f"{law}: the steady motion in contact ends, or is not the only one, near"

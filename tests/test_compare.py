@@ -547,17 +547,21 @@ def test_a_figure_that_is_not_made_any_more_leaves_the_reference(project):
     made = [file for file in MADE if "fig01" not in file]
     left = [project.top / f"results/figures/fig01.{kind}" for kind in ("png", "svg")]
     assert f"fig01: no rule makes it, remove it: {left[0]}" in lines(project, made=made)
-    with pytest.raises(ValueError, match=f"remove first what no rule makes: {left[0]} {left[1]}"):
+    with pytest.raises(
+        ValueError, match="; ".join(f"no rule makes it, remove it: {path}" for path in left)
+    ):
         accept(project, made)
     for path in left:
         path.unlink()
     assert "fig01: missing: figures/fig01.png in the results" in lines(project, made=made)
-    assert accept(project, made) == ["figures/fig01.png", "figures/fig01.svg"]
-    assert not (project.top / "figures/fig01.png").exists()
+    git(project.top, "rm", "-q", "--cached", "figures/fig01.svg")
+    assert accept(project, made) == ["figures/fig01.png"]
+    assert [path.name for path in project.top.glob("figures/fig01.*")] == ["fig01.svg"]
     assert (project.top / "figures/mine.md").exists()
-    unnamed = "mine: no record names: figures/mine.md in the reference; missing: figures/mine.md"
-    assert lines(project, made=made)[0] == f"{unnamed} in the results"
-    assert report(project, made=made).status == 2
+    assert (
+        "mine: no record names: figures/mine.md in the reference; "
+        "missing: figures/mine.md in the results" in lines(project, made=made)
+    )
 
 
 PROCESSORS = (np.array([1.0, 2.0]), np.array([1.0, 2.0 + 1e-12]))
@@ -601,7 +605,7 @@ def reference(project):
     return {path.relative_to(project.top): path.read_bytes() for path in paths}
 
 
-def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path, monkeypatch):
+def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path):
     """Each attempt is killed within its second write, until one has nothing more to write."""
     run(project, (1.0, 2.5), text="83")
     whole = project_in(shutil.copytree(project.top, tmp_path / "whole"))
@@ -619,11 +623,12 @@ def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_pat
 
         with pytest.MonkeyPatch.context() as patch, suppress(KeyboardInterrupt):
             patch.setattr(datasets.os, "replace", move)
+            patch.setattr(datasets.os, "getpid", lambda: attempt)
             accept(project)
         return len(writes) == 2
 
     assert sum(1 for _ in takewhile(killed, count())) == 5
-    assert [*(project.top / "figures").glob(".*")]
+    assert len([*project.top.rglob(".*.part.*")]) == 5
     assert reference(project) == reference(whole)
 
 

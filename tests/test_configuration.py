@@ -37,6 +37,10 @@ import pytest
             "mine.yaml, line 2: continuation stands twice: write its keys together",
         ),
         (
+            "error_thresholds: {fig14: {frequency_ratio: {min: 10, max: 10}}}",
+            "error_thresholds.fig14.frequency_ratio: min = 10 must be less than max = 10",
+        ),
+        (
             "continuation: {fig08: {points: 061}}",
             "mine.yaml, line 1: YAML reads 061 as 49: write it in decimals",
         ),

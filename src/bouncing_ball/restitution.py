@@ -169,26 +169,22 @@ def grazing_height(n: int, r: float) -> float:
 
     Define h(s) = nπ s - s²/2 - X sin s. At a time s after the impact, the ball is at the height
     Y(1 - cos s) + h(s) above the table. This height is positive for all s if Y exceeds the maximum
-    of -h(s)/(1 - cos s). The function -h(s)/(1 - cos s) has a maximum in each period of the flight.
+    of -h(s)/(1 - cos s). This function tends to minus infinity at both ends of each period of the
+    flight. Its largest maximum is in the first period, because the parabola nπ s - s²/2 is lowest
+    in the first and the last period, and -X sin s lowers h in the outer half of the first one only.
     """
     x = float(saddle_node(n, r))
 
     def needed(s):
         return -(bounce_velocity(n) * s - s**2 / 2 - x * np.sin(s)) / (1 - np.cos(s))
 
-    largest = -np.inf
-    for k in range(n):
-        # In each period 1 - cos s is positive, and it vanishes at both ends of the period. There
-        # the function tends to minus infinity, so it has a maximum inside the period.
-        grid = 2 * np.pi * (k + np.linspace(0, 1, 202)[1:-1])
-        best = int(np.argmax(needed(grid)))
-        low = grid[max(best - 1, 0)]
-        high = grid[min(best + 1, grid.size - 1)]
-        found = minimize_scalar(
-            lambda s: -needed(s), bounds=(low, high), method="bounded", options={"xatol": 1e-12}
-        )
-        largest = max(largest, -found.fun)
-    return largest
+    grid = 2 * np.pi * np.linspace(0, 1, 202)[1:-1]
+    best = int(np.argmax(needed(grid)))
+    bounds = (grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)])
+    found = minimize_scalar(
+        lambda s: -needed(s), bounds=bounds, method="bounded", options={"xatol": 1e-12}
+    )
+    return -found.fun
 
 
 def flight_time(amplitude: float, time: float, velocity: float) -> float:

@@ -75,6 +75,8 @@ def share_text(share: float) -> str:
     --------
     >>> share_text(0.1222), share_text(0.0004), share_text(0.0), share_text(float("nan"))
     ('12.2 %', '< 0.1 %', 'none', 'unknown')
+    >>> share_text(0.00051), share_text(0.00049)
+    ('0.1 %', '< 0.1 %')
     """
     if np.isnan(share):
         return "unknown"

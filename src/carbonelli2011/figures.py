@@ -686,7 +686,9 @@ def regimes(data: xr.Dataset) -> Figure:
     axes.fill_betweenx(ratio, data.saddle_node_amplitude.clip(max=first), first, **alone)
     axes.plot(data.threshold_amplitude, ratio, color="black", label="contact: limit of rest")
     axes.axhline(
-        given["advised"], label=f"advised: {given['advised']:g}", **ADVISED | {"color": "black"}
+        given["advised"],
+        label=rf"$\varpi={latex_number(given['advised'])}$",
+        **ADVISED | {"color": "black"},
     )
     axes.set(xlabel=r"amplitude $\Lambda$", yscale="log", ylim=ratio[[0, -1]])
     axes.set_ylabel(r"frequency ratio $\varpi$ of the contact")

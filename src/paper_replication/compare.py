@@ -54,7 +54,10 @@ from paper_replication.templates import environment
 
 ACCEPTED = "figures/accepted.json"
 RECORD = ("made", "data", "code", "versions", "entries")
-"""What a record has."""
+"""What a record has. `made`, `data` and `code` are hashes of files by path: those that were made,
+and those they were made of. `versions` are by library. `entries` are the parameters of a text; a
+dataset has its own. The record of the reference has no `data`.
+"""
 PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
 """Attributes of a dataset that say how it was made."""
 MISSING, UNREADABLE, UNNAMED = "missing", "cannot be compared", "no record names"
@@ -120,7 +123,7 @@ def run_in(folder: Path, label: str) -> Run:
     """The run in a folder, with its records."""
     records: dict[str, dict] = {}
     damaged = []
-    for path in [*folder.glob("records/*.json"), *folder.glob(ACCEPTED)]:
+    for path in [*sorted(folder.glob("records/*.json")), *folder.glob(ACCEPTED)]:
         name = path.relative_to(folder).as_posix()
         try:
             known = {"data": {}} | json.loads(path.read_text("utf-8"))
@@ -146,6 +149,9 @@ def one_line(error: Exception) -> str:
 @dataclass(frozen=True)
 class Checkout:
     """A checkout with its reference: results must be what it makes today.
+
+    Two runs are compared without one. Code and descriptions are always checked, parameters only
+    with `config`, and files that no rule makes only with `made`.
 
     Attributes
     ----------
@@ -443,7 +449,8 @@ def finding(old: Side, new: Side, checkout: Checkout | None, differing: Collecti
         lines = (
             differences(new.path.name, old.contents, new.contents) if old.hash != new.hash else []
         )
-        # A dataset that was written anew has the same numbers. The reference is as accepted.
+        # A dataset with other bytes than its record says, but with numbers that agree, was written
+        # anew and not edited. That is no excuse for the reference, whose bytes were accepted.
         is_anew = is_data and not lines and not (checkout and old.wrong)
         if wrong and not (is_anew and wrong.keys() == {EDITED}):
             return Finding("differs", lines if EDITED in wrong else (), wrong)
@@ -559,7 +566,7 @@ class Report:
 
     @property
     def status(self) -> int:
-        """The exit status: 1 if a file differs, else 2 if one, or none at all, can be compared."""
+        """The exit status: 1 if a file differs, else 2 if one is not comparable or none exists."""
         found = {STATUS[each.verdict] for each in self.found.values()}
         return 1 if 1 in found else max(found, default=2)
 
@@ -662,6 +669,8 @@ def refusals(
 ) -> Iterator[str]:
     """Yield why results may not be accepted: the code is not committed, a result is not fresh and
     as recorded, or they were made with several versions of libraries.
+
+    Stop at the first: the later ones read records that exist only if no result is wrong.
     """
     status = ("status", "--porcelain", "--untracked-files=all", "--", *project.code)
     if edited := git(project.checkout, *status):

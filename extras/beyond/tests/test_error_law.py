@@ -72,6 +72,10 @@ def test_thresholds_of_the_replication(n, r, amplitude, release):
     found = error_thresholds(ball, **known)
     for name in QUANTITIES:
         other = replication.threshold(grid, errors[names[name]], 0.01)
+        if other.status == "first orbit":
+            # The replication leaves out unstable orbits, which are compared here.
+            assert not found[name].ratio > other.ratio
+            continue
         assert found[name].status == other.status
         # Both root finders stop at rounding, which is 1e-16 of values whose errors are 0.01.
         assert found[name].ratio == pytest.approx(other.ratio, rel=1e-11, nan_ok=True)

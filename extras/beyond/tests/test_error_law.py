@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bouncing_ball import errors as replication
+from bouncing_ball.spring_damper import damping_ratio
 from bouncing_ball_beyond.contacts.balls import Corrected, Rigid, SpringDamper
 from bouncing_ball_beyond.contacts.named_laws import hunt_crossley, kuwabara_kono, tsuji
 from bouncing_ball_beyond.errors.error_law import (
@@ -62,7 +63,7 @@ def test_table_of_the_article():
 def test_thresholds_of_the_replication(n, r, amplitude, release):
     """The root's package is another code for the same orbits, along ϖ by continuation."""
     grid = np.geomspace(3, 1e5, 80)
-    zeta = replication.damping_ratio(r, release)
+    zeta = damping_ratio(r, release)
     ball = SpringDamper(1.0, damping_ratio=zeta, release=release)
     assert ball.signature(1.0).restitution == pytest.approx(r, rel=1e-14)
     names = {name: name for name in QUANTITIES} | {"phase": "phase_in_periods"}
@@ -71,6 +72,10 @@ def test_thresholds_of_the_replication(n, r, amplitude, release):
     found = error_thresholds(ball, **known)
     for name in QUANTITIES:
         other = replication.threshold(grid, errors[names[name]], 0.01)
+        if other.status == "first orbit":
+            # The replication leaves out unstable orbits, which are compared here.
+            assert not found[name].ratio > other.ratio
+            continue
         assert found[name].status == other.status
         # Both root finders stop at rounding, which is 1e-16 of values whose errors are 0.01.
         assert found[name].ratio == pytest.approx(other.ratio, rel=1e-11, nan_ok=True)

@@ -95,6 +95,9 @@ def grid(limits: Mapping, spaced: Callable[..., np.ndarray] = np.geomspace) -> n
 
     >>> grid({"min": 1.0, "max": 100.0, "samples": 3}).tolist()
     [1.0, 10.0, 100.0]
+    >>> grid({"min": 2.0, "max": 2.0, "samples": 3})
+    Traceback (most recent call last):
+    ValueError: min = 2 must be less than max = 2
     """
     if not limits["min"] < limits["max"]:
         raise ValueError(f"min = {limits['min']:g} must be less than max = {limits['max']:g}")

@@ -448,14 +448,6 @@ def test_what_the_article_says_of_the_branches(data):
         assert len(measures.stable_ranges(branch)) == 1
 
 
-def test_stable_ranges_are_those_of_the_orbits(data):
-    for ratio in data["fig08"].frequency_ratio.values:
-        branch = data["fig08"].sel(frequency_ratio=ratio)
-        ranges = measures.stable_ranges(branch)
-        stable = branch.amplitude.values[branch.stable.values]
-        assert all(any(low <= each <= high for low, high in ranges) for each in stable)
-
-
 def test_what_the_article_says_of_table_1(data):
     computed = data["table1"].computed
     doublings = computed.sel(bound="period doubling")
@@ -505,16 +497,3 @@ def test_numbers_are_rounded_correctly():
         exact = 100 * Decimal(value)
         nearest = texts.percent(value, 2).removesuffix(" %").replace("−", "-")
         assert abs(Decimal(nearest) - exact) <= Decimal("0.005")
-
-
-def test_only_powers_of_ten_are_written_as_such():
-    numbers = [texts.short(value) for value in (1e4, 2e4, 1e3, 0.25, -0.5, 0.0)]
-    assert numbers == ["10⁴", "20000", "1000", "0.25", "−0.5", "0"]
-
-
-def test_shares_that_are_decimal_numbers_stay():
-    assert texts.percent(0.01, 2) == "1.00 %"
-    assert texts.fixed(-1e-14, 2) == "0.00"
-    assert texts.percent(0.01) == "1 %"
-    assert texts.percent(0.355, 0) == "36 %"
-    assert texts.percent(0.005) == "0.5 %"

@@ -4,7 +4,6 @@ import csv
 import importlib
 import io
 import json
-from collections import Counter
 from dataclasses import replace
 from operator import attrgetter
 from pathlib import Path
@@ -23,7 +22,6 @@ from carbonelli2011 import claims, measures, paper
 from carbonelli2011.paper import printed_table
 from paper_replication import judgements, texts
 from paper_replication.datasets import other_parameters, parameters
-from paper_replication.verdicts import VERDICTS as ALL_VERDICTS
 from paper_replication.verdicts import answer
 
 ROOT = Path(__file__).parents[1]
@@ -512,41 +510,6 @@ def test_thresholds_are_compared_from_the_printed_ratio_on(judged):
     exact = 1 - np.sqrt(1 + (4 * zeta**2 - 2) / 36 + 1 / 36**2)
     found = judged["found"].sel(claim="different below 6 only")
     assert float(found) == pytest.approx(exact, rel=1e-5)
-
-
-def test_claims_have_different_names_a_place_and_a_text():
-    every = [*claims.CLAIMS, *claims.table1_ends()]
-    assert len({claim.name for claim in every}) == len(every)
-    for claim in every:
-        # A claim of one's own is at no place of the paper.
-        assert claim.place.partition(" ")[0] in {
-            "",
-            "Abstract",
-            "Abstract,",
-            "Introduction",
-            "Conclusion",
-            "after",
-            "before",
-            "Eq.",
-            "Fig.",
-            "Figs.",
-            "Table",
-        }
-        # Tables and the article cite a claim by its name.
-        assert 0 < len(claim.name) < len(claim.text)
-
-
-def test_counts_are_those_of_the_dataset_without_the_restored_formulas(judged):
-    pairs = zip(judged["group"].values.tolist(), judged["verdict"].values.tolist(), strict=True)
-    expected = Counter(pairs)
-    found = judgements.counts(judged)
-    assert set(found) == {"printed number", "statement"}
-    for group, by_verdict in found.items():
-        assert set(by_verdict) == set(ALL_VERDICTS)
-        for verdict, number in by_verdict.items():
-            assert number == expected[group, verdict]
-    of_paper = [claim for claim in claims.CLAIMS if claim.place]
-    assert sum(map(sum, map(dict.values, found.values()))) == len(of_paper) + 18
 
 
 def test_restored_formulas_cover_the_equations_and_name_members():

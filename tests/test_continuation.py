@@ -253,14 +253,6 @@ def test_a_walk_along_the_frequency_ratio_follows_the_stable_orbits(release):
             assert saddle_node > 0
 
 
-def test_twenty_periods():
-    y = continuation.stable_orbits(20, 0.85, 5.2, [5.0, 1e3])
-    for j, ratio in enumerate([5.0, 1e3]):
-        assert_on_closed_form(
-            20, ratio, independent.restitution_to_damping(0.85), "displacement", y[:, 0, j]
-        )
-
-
 def test_where_there_is_no_orbit_there_is_none():
     # The saddle-node of the 5-T orbits rises again on compliant contacts.
     ratios = np.array([1.0, 1.05, 3.0, 100.0])

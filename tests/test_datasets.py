@@ -89,11 +89,6 @@ def test_a_description_belongs_to_its_dataset(small, project, tmp_path):
     assert datasets.read(tmp_path / "mine.nc").phase.long_name == "angle"
 
 
-def test_a_range_is_not_empty():
-    with pytest.raises(ValueError, match=r"^min = 2 must be less than max = 2$"):
-        datasets.grid({"min": 2.0, "max": 2.0, "samples": 3})
-
-
 def test_two_processes_that_write_the_same_file_do_not_meet(tmp_path, monkeypatch):
     path = tmp_path / "paper.md"
     with datasets.whole(path) as one:

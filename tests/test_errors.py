@@ -19,10 +19,6 @@ from bouncing_ball.spring_damper import (
 RATIOS = np.geomspace(1, 1e3, 61)
 
 
-def test_errors_are_shares_of_the_restitution_model():
-    np.testing.assert_allclose(errors.relative_error([0.99, 2.2], [1.0, -2.0]), [0.01, 2.1])
-
-
 def test_a_threshold_is_the_last_crossing_of_the_tolerance():
     # Three crossings of 0.1: at 2, 5 and 20.
     def error(ratio):
@@ -154,11 +150,6 @@ def test_known_thresholds(known_errors, name):
     assert error == pytest.approx(0.01, rel=1e-7)
 
 
-def test_the_threshold_of_permanent_contact_is_among_the_others(known_errors):
-    found = errors.threshold(RATIOS, known_errors["permanent_contact"], 0.01)
-    assert round(found.ratio, 4) == 9.8118
-
-
 def test_permanent_contact_needs_no_orbit():
     # There is no orbit with this amplitude.
     found = errors.errors(["permanent_contact"], 1, 0.65, 0.1, RATIOS, "displacement")
@@ -246,14 +237,6 @@ def test_the_error_by_hand_is_that_of_the_stable_orbits_of_its_domain(release, r
     assert (family.clearance(y) > 0).all()
     size = (family.max_height(y) / restitution.max_height(n, r, amplitude) - 1) * n * ratio
     assert y.size and -1 <= size.min() and size.max() <= -0.58
-
-
-def test_a_ball_whose_contact_ends_with_its_force():
-    """r = 0.65 at ϖ = 77: the contact of Eq. 16 would have another r, and an error of 0.26 %."""
-    ratios = np.array([77.0])
-    found = errors.errors(["max_height"], 1, 0.65, 1.0, ratios, "force")["max_height"].values
-    assert found == pytest.approx(quantities(1, 0.65, 1.0, 77.0, "force")["max_height"], abs=1e-8)
-    assert round(100 * found.item(), 2) == 1.07
 
 
 @pytest.mark.parametrize(("release", "least"), [("displacement", 0.05), ("force", 0.14)])

@@ -272,9 +272,3 @@ def test_citations_and_sections_are_linked(read):
     references = {f"paper.html#{name}" for name in page.places["id"] if "reference-" in name}
     assert {*cited} == references and len(references) > 20
     assert "supplement.html#section-S3" in page.places["href"]
-
-
-def test_lines_do_not_break_within_a_relation(texts):
-    for text in texts.values():
-        body = re.sub(r"(?s)<(style|code|pre)>.*?</\1>|<[^>]*>", "", text)
-        assert re.findall(r".{8} (?:=|&gt;|≥) ", body) == []

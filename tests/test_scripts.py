@@ -13,7 +13,7 @@ from tests import independent
 from tests.checkout import ROOT
 from tests.reference import CONFIG, reference, table_with_another_row
 
-from bouncing_ball import errors, orbits
+from bouncing_ball import errors
 from bouncing_ball.orbits import NoOrbit
 from bouncing_ball.spring_damper import RELEASES
 from carbonelli2011 import claims
@@ -579,20 +579,6 @@ def test_the_quantities_of_the_configuration_are_those_that_are_computed_and_nam
     found = errors.errors(allowed, 1, 0.65, 1.0, np.array([50.0, 100.0]), "displacement")
     assert [*found] == allowed
     assert {*allowed, *errors.COMPARED} == {*QUANTITIES}
-
-
-def test_a_further_quantity_is_that_of_the_figure_that_asks_for_it():
-    apparent = apparent_restitution
-    given = registered("apparent_restitution", "fig10")
-    given["frequency_ratio"] = {"min": 10.0, "max": 100.0, "samples": 3}
-    ratios = np.array([10.0, 100.0])
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(orbits.OBSERVABLES, "summit", orbits.Family.summit)
-        names = (*apparent.QUANTITIES, "summit")
-        more = apparent.amplitudes(given, ratios, "displacement", names)
-        same = apparent.fig10(given, "displacement")
-    assert {*more.variables} - {*same.variables} == {"summit"}
-    assert (more.summit == more.max_height).all()
 
 
 # Where a frequency ratio is enough

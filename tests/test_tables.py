@@ -1,7 +1,5 @@
 """Table 1, the thresholds and the hypotheses on the printed numbers as texts."""
 
-import csv
-import io
 import json
 
 import numpy as np
@@ -9,8 +7,6 @@ import pytest
 import xarray as xr
 
 from carbonelli2011 import tables
-from paper_replication import judgements, texts
-from paper_replication.verdicts import against_print
 
 BOUNDS = ["saddle-node", "period doubling"]
 ROWS = [1e4, 10.0, 2.0]
@@ -133,15 +129,3 @@ def test_hypotheses_have_their_distances_and_counts():
         ["equations as they stand", "1 of 2", "1 of 1", "2.88", "82.18 (+0.18)", "3 of 4"],
         ["other", "1 of 2", "1 of 1", "–", "–", "2 of 4"],
     ]
-
-
-def test_a_distance_is_in_units_of_the_last_printed_digit_and_in_per_cent():
-    comparison = against_print(1.0383, "1.032")
-    assert judgements.distance_text(comparison.units, comparison.share) == "+6.3 units, +0.61 %"
-    assert judgements.distance_text(np.nan, np.nan) == ""
-
-
-def test_markdown_and_csv_have_the_same_cells():
-    rows = [["a, b", "c"], ["1", "2"]]
-    assert texts.markdown(rows) == "| a, b | c |\n| --- | --- |\n| 1 | 2 |\n"
-    assert list(csv.reader(io.StringIO(texts.comma_separated(rows)))) == rows

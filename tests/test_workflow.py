@@ -57,12 +57,6 @@ def test_a_name_makes_its_files_and_needs_its_stage_only(fresh):
     assert fresh.made() == files | {"figures/thresholds.nc"}
 
 
-def test_every_rule_is_listed_with_what_it_makes(fresh):
-    status, printed = fresh.run("--list")
-    assert status == 0
-    assert {*COMPUTED, *FIGURES, *TABLES, *TEXTS, "diff", "accept", "all"} <= {*printed.split()}
-
-
 def test_a_run_in_another_folder_has_its_own_results(fresh, tmp_path):
     mine = tmp_path / "mine"
     mine.mkdir()

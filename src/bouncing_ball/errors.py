@@ -76,8 +76,8 @@ def relative_error(value: Numbers, reference: Numbers) -> NDArray:
 
     The reference is the value of the restitution model.
 
-    >>> float(relative_error(0.99, 1.0).round(12))
-    0.01
+    >>> relative_error([0.99, 2.2], [1.0, -2.0]).round(12).tolist()
+    [0.01, 2.1]
     """
     return np.abs(np.asarray(value) - reference) / np.abs(reference)
 

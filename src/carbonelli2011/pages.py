@@ -20,36 +20,6 @@ from paper_replication.templates import environment
 
 
 @dataclass(frozen=True)
-class Row:
-    """A claim as it is shown.
-
-    Attributes
-    ----------
-    name
-        The name of the claim.
-    said, where
-        What the paper says, with the printed number, and where.
-    found
-        The computed number, or the conditions of the verdict.
-    verdict
-        One of `verdicts.VERDICTS`.
-    literal
-        Whether the literal sense holds, if the senses differ.
-    reason, remark
-        Why the claim is not testable, and how we read it.
-    """
-
-    name: str
-    said: str
-    where: str
-    found: Sequence[str]
-    verdict: str
-    literal: str
-    reason: str
-    remark: str
-
-
-@dataclass(frozen=True)
 class Part:
     """A figure, a table or a dataset, with its claims.
 
@@ -60,7 +30,7 @@ class Part:
     files
         Names of the files, by what they are.
     rows
-        The claims.
+        The claims (`judgements.claims_of`).
     table
         Rows of texts, the header first.
     elsewhere
@@ -71,7 +41,7 @@ class Part:
     title: str
     caption: str = ""
     files: Mapping[str, str] = field(default_factory=dict)
-    rows: Sequence[Row] = ()
+    rows: Sequence[Mapping] = ()
     table: Sequence[Sequence[str]] = ()
     elsewhere: Sequence[str] = ()
 
@@ -85,28 +55,13 @@ def with_subscripts(page: str) -> str:
     return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
 
 
-def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[Row]:
+def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
     """Return the claims next to a figure or table, without those of the table `elsewhere`."""
     return [
-        row(claim)
+        claim
         for claim in [*counted(datasets["claims"]), *claims_of(datasets["claims"], "own claim")]
         if claim["beside"] == name and claim["item"] != elsewhere
     ]
-
-
-def row(claim: Mapping) -> Row:
-    """A claim as it is shown."""
-    number = " ".join(filter(None, (claim["computed"], f"({claim['distance']})")))
-    return Row(
-        name=claim["claim"],
-        said=": ".join(filter(None, (claim["statement"], claim["printed_text"]))),
-        where=claim["item"],
-        found=[number] if claim["distance"] else claim["senses"],
-        verdict=claim["verdict"],
-        literal=claim["own_sense"],
-        reason=claim["reason"],
-        remark=claim["remark"],
-    )
 
 
 # The article and its supplement

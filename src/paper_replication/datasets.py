@@ -95,6 +95,9 @@ def grid(limits: Mapping, spaced: Callable[..., np.ndarray] = np.geomspace) -> n
 
     >>> grid({"min": 1.0, "max": 100.0, "samples": 3}).tolist()
     [1.0, 10.0, 100.0]
+    >>> grid({"min": 2.0, "max": 2.0, "samples": 3})
+    Traceback (most recent call last):
+    ValueError: min = 2 must be less than max = 2
     """
     if not limits["min"] < limits["max"]:
         raise ValueError(f"min = {limits['min']:g} must be less than max = {limits['max']:g}")
@@ -242,18 +245,12 @@ def below(top: Path, contents: Mapping[str, str]) -> dict[str, str]:
 
 
 def attributes(variable: Variable, dtype: np.dtype) -> dict[str, str | float]:
-    """Attributes of a variable; only floating-point numbers have a tolerance."""
-    found: dict[str, str | float] = {"long_name": variable.long_name, "units": variable.units}
-    if variable.symbol:
-        found["symbol"] = variable.symbol
-    if variable.equation:
-        found["equation"] = variable.equation
+    """Attributes of a variable, unless empty; only floating-point numbers have a tolerance."""
+    names = ["long_name", "units", "symbol", "equation"]
     if dtype.kind == "f":
-        found["tolerance"] = variable.tolerance
-        found["floor"] = variable.floor
-        if variable.tolerance_scale:
-            found["tolerance_scale"] = variable.tolerance_scale
-    return found
+        names += ["tolerance", "floor", "tolerance_scale"]
+    values = {name: getattr(variable, name) for name in names}
+    return {name: value for name, value in values.items() if value != ""}
 
 
 def read(path: str | Path) -> xr.Dataset:

@@ -17,7 +17,7 @@ from paper_replication.datasets import write
 def fixed(value: float, digits: int, shift: int = 0) -> str:
     """Round a number to a number of decimals, with the decimal point moved by `shift`.
 
-    >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-0.001, 2), fixed(np.nan, 2)
+    >>> fixed(82.1774, 2), fixed(-0.25, 1), fixed(-1e-14, 2), fixed(np.nan, 2)
     ('82.18', '−0.2', '0.00', '–')
     """
     if not np.isfinite(value):
@@ -32,8 +32,8 @@ def fixed(value: float, digits: int, shift: int = 0) -> str:
 def percent(value: float, digits: int | None = None) -> str:
     """Print a share in per cent, with all its digits if `digits` is None.
 
-    >>> percent(0.01), percent(0.005), percent(0.02673, 1)
-    ('1 %', '0.5 %', '2.7 %')
+    >>> percent(0.01), percent(0.005), percent(0.02673, 1), percent(0.01, 2), percent(0.355, 0)
+    ('1 %', '0.5 %', '2.7 %', '1.00 %', '36 %')
     """
     text = short(100 * value) if digits is None else fixed(value, digits, shift=2)
     return text if text == "–" else f"{text} %"
@@ -42,8 +42,8 @@ def percent(value: float, digits: int | None = None) -> str:
 def short(value: float) -> str:
     """Print a parameter with all its digits, and large powers of ten as such.
 
-    >>> short(0.85), short(10.0), short(1e4)
-    ('0.85', '10', '10⁴')
+    >>> short(0.85), short(1e3), short(1e4), short(2e4), short(-0.5), short(0.0)
+    ('0.85', '1000', '10⁴', '20000', '−0.5', '0')
     """
     number = float(value)
     exponent = round(np.log10(number)) if number > 0 else 0

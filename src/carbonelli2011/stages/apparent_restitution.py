@@ -2,8 +2,6 @@
 13).
 """
 
-from collections.abc import Iterable
-
 import numpy as np
 import xarray as xr
 
@@ -24,7 +22,7 @@ QUANTITIES = (
     "stable",
     "admissible",
 )
-"""Quantities of every orbit. A figure that needs more of them adds their names."""
+"""Quantities of every orbit."""
 
 
 def along_frequency_ratio(
@@ -33,11 +31,10 @@ def along_frequency_ratio(
     amplitude: np.ndarray,
     ratios: np.ndarray,
     release: str,
-    names: Iterable[str] = QUANTITIES,
 ) -> xr.Dataset:
-    """The named quantities of the orbits, shape (case, ϖ), NaN where there is none."""
+    """The quantities of the orbits, shape (case, ϖ), NaN where there is none."""
     family = Family(n, Contact.of_restitution(ratios, r[:, np.newaxis], release))
-    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), names)
+    quantities = family.observables(stable_orbits(n, r, amplitude, ratios, release), QUANTITIES)
     shape = ("case", "frequency_ratio")
     labels = [f"r = {one:g}, Λ = {other:g}" for one, other in zip(r, amplitude, strict=True)]
     return xr.Dataset(
@@ -59,9 +56,7 @@ def cases(parameters: dict, release: str) -> xr.Dataset:
     return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
 
 
-def amplitudes(
-    parameters: dict, ratios: np.ndarray, release: str, names: Iterable[str] = QUANTITIES
-) -> xr.Dataset:
+def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset:
     """One r and several Λ, with the limits of a stiff contact: phase and velocities of the
     restitution model.
     """
@@ -69,7 +64,7 @@ def amplitudes(
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
     velocity = float(restitution.bounce_velocity(n))
-    return along_frequency_ratio(n, r, amplitude, ratios, release, names).assign(
+    return along_frequency_ratio(n, r, amplitude, ratios, release).assign(
         restitution_phase=("case", restitution.impact_phase(n, r, amplitude)),
         restitution_bounce_velocity=velocity,
         restitution_impact_velocity=-velocity,

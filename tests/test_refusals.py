@@ -51,7 +51,7 @@ def calls():
         for name, function in vars(module).items():
             own = getattr(function, "__module__", "") == module.__name__
             public = own and callable(function) and not name.startswith("_")
-            if not public or name in ("NoOrbit", "unknown"):
+            if not public or name == "NoOrbit":
                 continue
             names = inspect.signature(function).parameters
             given = {each: RIGHT[each] for each in names if each in RIGHT}

@@ -26,9 +26,9 @@ from bouncing_ball.continuation import (
     stable_orbits,
     walk,
 )
-from bouncing_ball.orbits import Family, NoOrbit
+from bouncing_ball.orbits import Family, NoOrbit, contact_of_ball
 from bouncing_ball.restitution import Numbers, is_stable
-from bouncing_ball.spring_damper import NO_CONTACT, Contact, permanent_contact
+from bouncing_ball.spring_damper import Contact, permanent_contact
 
 
 class Error(NamedTuple):
@@ -277,9 +277,7 @@ def errors(
     [0.061, 0.006]
     """
     ratios = np.atleast_1d(ratios)
-    contact = Contact.of_restitution(ratios, r, release)
-    if np.isnan(contact.damping_ratio):
-        raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
+    contact = contact_of_ball(ratios, r, release)
     if unknown := [name for name in quantities if name not in QUANTITIES]:
         raise ValueError(f"the quantity is {unknown[0]!r}: give any of {', '.join(QUANTITIES)}")
     known: dict[str, Error] = {}

@@ -18,12 +18,23 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball.restitution import is_stable, periods
-from bouncing_ball.spring_damper import Contact
+from bouncing_ball.restitution import Numbers, is_stable, periods
+from bouncing_ball.spring_damper import NO_CONTACT, Contact
 
 
 class NoOrbit(ValueError):
     """The orbit does not exist, or Newton's method does not find it."""
+
+
+def contact_of_ball(frequency_ratio: Numbers, r: float, release: str) -> Contact:
+    """Contact with whose damping a free impact has the restitution r.
+
+    Raises NoOrbit if there is none (`spring_damper.damping_ratio`).
+    """
+    contact = Contact.of_restitution(frequency_ratio, r, release)
+    if np.isnan(contact.damping_ratio):
+        raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")
+    return contact
 
 
 @dataclass(frozen=True)

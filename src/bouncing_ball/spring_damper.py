@@ -20,9 +20,10 @@ from bouncing_ball.restitution import Numbers, coefficient, required
 RELEASES = ("displacement", "force")
 
 
-def unknown(release: str) -> ValueError:
-    """The error of a function for a release that it does not know."""
-    return ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
+def check_release(release: str) -> None:
+    """Raise ValueError unless a release is one of `RELEASES`."""
+    if release not in RELEASES:
+        raise ValueError(f"release is {release!r}: it must be {' or '.join(RELEASES)}")
 
 
 def check_ratios(frequency_ratio: Numbers, damping_ratio: Numbers) -> None:
@@ -45,11 +46,8 @@ def free_angle(zeta: Numbers, release: str) -> NDArray | float:
       force leads its displacement (Schwager and Pöschel, 2007).
     """
     check_ratios(1, zeta)
-    if release == "force":
-        return 2 * np.arccos(zeta)
-    if release != "displacement":
-        raise unknown(release)
-    return np.pi
+    check_release(release)
+    return 2 * np.arccos(zeta) if release == "force" else np.pi
 
 
 def free_duration(zeta: Numbers, release: str) -> NDArray:
@@ -84,6 +82,7 @@ def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
     (0.05166, 0.05348)
     """
     logarithm = np.log(coefficient(r))
+    check_release(release)
     if release == "force":
         found = find_root(
             lambda zeta, logarithm: zeta * free_duration(zeta, release) + logarithm,
@@ -92,8 +91,6 @@ def damping_ratio(r: Numbers, release: str = "displacement") -> NDArray:
             tolerances={"xatol": 1e-15},
         )
         return np.where(found.success, found.x, np.nan)[()]
-    if release != "displacement":
-        raise unknown(release)
     # Subtract from 0.0, because a minus sign would give -0.0 for r = 1.
     return 0.0 - logarithm / np.hypot(np.pi, logarithm)
 
@@ -165,8 +162,7 @@ class Contact:
         return cls(frequency_ratio, damping_ratio(r, release), release)
 
     def __post_init__(self):
-        if self.release not in RELEASES:
-            raise unknown(self.release)
+        check_release(self.release)
         for name in ("frequency_ratio", "damping_ratio", "weight"):
             object.__setattr__(self, name, np.asarray(getattr(self, name))[()])
         check_ratios(self.frequency_ratio, self.damping_ratio)
@@ -179,8 +175,6 @@ class Contact:
         """
         if self.release == "displacement":
             return np.zeros_like(self.frequency_ratio, dtype=float)
-        if self.release != "force":
-            raise unknown(self.release)
         return 2 * np.asarray(self.damping_ratio) / self.frequency_ratio
 
     @property
@@ -301,12 +295,11 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
     0.2
     """
     check_ratios(ratio, zeta)
+    check_release(release)
     ratio = np.asarray(ratio, dtype=float)
     resistance = np.hypot(ratio**2 - 1, 2 * zeta * ratio)
     if release == "displacement":
         return resistance / ratio**2
-    if release != "force":
-        raise unknown(release)
     return resistance / np.hypot(ratio**2, 2 * zeta * ratio)
 
 
@@ -323,11 +316,10 @@ def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tupl
     [1.0102, 0.199]
     """
     check_ratios(1, zeta)
+    check_release(release)
     if release == "force":
         ratio = np.sqrt((1 + np.sqrt(1 + 8 * zeta**2)) / 2)
         return float(ratio), float(permanent_contact(ratio, zeta, release))
-    if release != "displacement":
-        raise unknown(release)
     if 2 * zeta**2 >= 1:
         return np.inf, 1.0
     return float(1 / np.sqrt(1 - 2 * zeta**2)), float(2 * zeta * np.sqrt(1 - zeta**2))

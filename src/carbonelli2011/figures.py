@@ -499,8 +499,7 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     """
     absent = [name for panel in shown for name, branch, _ in panel if not has_orbits(branch)]
     present = [[each for each in panel if has_orbits(each[1])] for panel in shown]
-    # Without any branch, one empty panel remains.
-    present = [panel for panel in present if panel] or [[]]
+    present = [panel for panel in present if panel]
     figure, grid = panels(height, rows=len(present), sharex=True, squeeze=False)
     column = grid[:, 0]
     for axes, panel in zip(column, present, strict=True):
@@ -509,8 +508,7 @@ def domains(data: xr.Dataset, shown: list[list[Branch]], height: float) -> Figur
     # A branch with a short range of phases still needs room for its numbers and its name.
     column[0].get_gridspec().set_height_ratios(np.maximum(spans, 0.25 * spans.max()))
     amplitude_max = parameters(data)["amplitude_max"]
-    starts = [float(branch.amplitude.min()) for panel in present for _, branch, _ in panel]
-    least = min(starts, default=0.0)
+    least = min(float(branch.amplitude.min()) for panel in present for _, branch, _ in panel)
     # If all branches start far to the right, the space left of them would be empty.
     left = 0.0 if least < amplitude_max / 2 else 1.1 * least - 0.1 * amplitude_max
     column[0].set_xlim(left, amplitude_max)

@@ -198,13 +198,12 @@ def save_stage(
     records only these.
     """
     for name in snakemake.params.entries:
-        path = snakemake.output[name]
         entry = dict(snakemake.params.entries[name])
         title = entry.pop("title")
         arguments = signature(stage[name]).parameters
         settings = {k: each for k, each in snakemake.params.settings.items() if k in arguments}
         dataset = computed(stage[name], entry | settings)
-        save(dataset, path, title, parameters(dataset), sources, project)
+        save(dataset, snakemake.output[name], title, parameters(dataset), sources, project)
     save_record(snakemake, sources, project)
 
 

@@ -154,12 +154,10 @@ MARK_RADIUS = 3
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """Add labels at the right edge of a panel.
 
-    `names` are the text, the height in data coordinates and the colour of each label. Labels are
-    moved as little as possible so that none overlap and all are next to the panel. Draw the figure
-    without rendering first, because the panel needs its final size.
+    `names` are the text, the height in data coordinates and the colour of each label, of at least
+    one. Labels are moved as little as possible so that none overlap and all are next to the panel.
+    Draw the figure without rendering first, because the panel needs its final size.
     """
-    if not names:
-        return
     # SciPy is slow to import, and few figures have such labels.
     from scipy.optimize import isotonic_regression
 

@@ -95,7 +95,13 @@ def number(value: xr.DataArray | float, form: str, none: str = "–") -> str:
 
 
 def markdown(rows: list[list[str]]) -> str:
-    """Print rows of texts, the header first, as a Markdown table."""
+    """Print rows of texts, the header first, as a Markdown table.
+
+    >>> print(markdown([["a, b", "c"], ["1", "2"]]), end="")
+    | a, b | c |
+    | --- | --- |
+    | 1 | 2 |
+    """
     header, *body = rows
     lines = [header, ["---"] * len(header), *body]
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)

@@ -5,22 +5,15 @@ import xarray as xr
 
 from bouncing_ball import restitution, spring_damper
 from bouncing_ball.errors import permanent_contact_error, threshold
-from bouncing_ball.orbits import NoOrbit
+from bouncing_ball.orbits import contact_of_ball
 from paper_replication.datasets import grid
-
-
-def damping(r: float, release: str) -> float:
-    """The damping ratio of the contact with a restitution coefficient."""
-    zeta = float(spring_damper.damping_ratio(r, release))
-    if np.isnan(zeta):
-        raise NoOrbit(f"r = {r:g}: {spring_damper.NO_CONTACT}")
-    return zeta
 
 
 def fig11(parameters: dict, release: str) -> xr.Dataset:
     """Λ_SD with its lowest value (Eqs. 33 and 36), and Λ_CR (Eq. 9)."""
-    zeta = damping(parameters["restitution"], release)
     ratios = grid(parameters["frequency_ratio"])
+    contact = contact_of_ball(ratios, parameters["restitution"], release)
+    zeta = float(contact.damping_ratio)
     lowest_ratio, lowest = spring_damper.lowest_permanent_contact(zeta, release)
     thresholds = spring_damper.permanent_contact(ratios, zeta, release)
     return xr.Dataset(
@@ -37,8 +30,9 @@ def fig11(parameters: dict, release: str) -> xr.Dataset:
 
 def fig16(parameters: dict, release: str) -> xr.Dataset:
     """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
-    zeta = damping(parameters["restitution"], release)
     ratios = grid(parameters["frequency_ratio"])
+    contact = contact_of_ball(ratios, parameters["restitution"], release)
+    zeta = float(contact.damping_ratio)
     error = permanent_contact_error(ratios, zeta, release)
     # The lowest threshold is the only extremum of the error: with it no crossing is missed.
     lowest_ratio, _ = spring_damper.lowest_permanent_contact(zeta, release)

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicSpline
 from bouncing_ball import restitution
 from bouncing_ball.continuation import SPECIAL, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
-from bouncing_ball.orbits import Family, NoOrbit
+from bouncing_ball.orbits import Family, NoOrbit, contact_of_ball
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
 from carbonelli2011.paper import CURVES
 from paper_replication.datasets import grid
@@ -217,9 +217,7 @@ def regimes(parameters: dict, release: str) -> xr.Dataset:
     """
     ratios = grid(parameters["frequency_ratio"])
     n, r = parameters["n"], parameters["restitution"]
-    contact = Contact.of_restitution(ratios, r, release)
-    if np.isnan(contact.damping_ratio):
-        raise NoOrbit(f"restitution = {r}: {NO_CONTACT}")
+    contact = contact_of_ball(ratios, r, release)
     place = np.linspace(0, 1, parameters["places"]) ** 3
     first, last = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
     amplitude = (first + place * (last - first)).reshape(-1, 1)

@@ -68,6 +68,11 @@ def make(name, data, folder, form="{:.3g}"):
     save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "a salt")
 
 
+def side_by_side(name, several):
+    """Pictures as bytes: the heights of all datasets."""
+    return [f"{name} {each.max_height.values}".encode() for each in several]
+
+
 def project_in(top):
     return datasets.Project(
         top=top,
@@ -77,6 +82,7 @@ def project_in(top):
         references="",
         describe=variables.described,
         described_in=("src/variables.py",),
+        side_by_side=side_by_side,
         make=make,
     )
 
@@ -400,9 +406,17 @@ def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     assert ([*found.found], found.status) == ([*pictures], 2)
 
 
-def test_the_page_shows_both_pictures(project, capsys):
+@pytest.mark.parametrize("drawn", [True, False])
+def test_the_page_shows_both_pictures(project, capsys, drawn):
+    """Datasets that differ are drawn with the same axes, unless this fails."""
     run(project, height=(1.0, 2.5))
     results = project.top / "results"
+    sides = (project.top / "figures/fig14.nc", results / "figures/fig14.nc")
+    pictures = [path.with_suffix(".png").read_bytes() for path in sides]
+    if drawn:
+        pictures = side_by_side("fig14", [datasets.read(path) for path in sides])
+    else:
+        project = replace(project, side_by_side=None)
     job = SimpleNamespace(
         input=[results / file for file in MADE], params=SimpleNamespace(config=CONFIG, names=[])
     )
@@ -410,10 +424,7 @@ def test_the_page_shows_both_pictures(project, capsys):
     page = results / "diff/index.html"
     text = page.read_text("utf-8")
     assert "max_height 2 → 2.5" in text
-    shown = [
-        text.index(base64.b64encode((side / "figures/fig14.png").read_bytes()).decode())
-        for side in (project.top, results)
-    ]
+    shown = [text.index(base64.b64encode(picture).decode()) for picture in pictures]
     assert shown == sorted(shown)
     printed = capsys.readouterr().err
     assert (results / "diff/report.txt").read_text("utf-8") == printed

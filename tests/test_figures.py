@@ -318,6 +318,17 @@ def test_several_cases_of_the_poincare_map():
     assert {"$\\Lambda=1$", "$\\Lambda=1.2$"} <= set(words(figure))
 
 
+def test_two_figures_have_the_same_axes():
+    one = figures.draw("fig14", *data_of("fig14"))
+    (data,) = data_of("fig14")
+    other = figures.draw("fig14", data.isel(frequency_ratio=slice(60, None)))
+    first, second = drawing.on_the_same_axes([one, other])
+    assert first != second
+    for axes, same in zip(one.axes, other.axes, strict=True):
+        assert (axes.get_xlim(), axes.get_ylim()) == (same.get_xlim(), same.get_ylim())
+        assert axes.get_xlim()[0] < float(data.frequency_ratio[1])
+
+
 # Files
 
 SETTINGS = {

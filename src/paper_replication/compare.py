@@ -25,6 +25,7 @@ import re
 import shutil
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import SequenceMatcher
 from functools import cache
@@ -742,7 +743,7 @@ def main(project: Project, arguments: list[str]) -> int:
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
         report = compare(project, old, new, checkout if len(runs) == 1 else None)
         folder = paths[-1] if paths[-1].is_dir() else paths[-1].parent
-        return written(report, folder / "diff", sys.stdout)
+        return written(project, report, folder / "diff", sys.stdout)
 
 
 def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
@@ -754,20 +755,29 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
     checkout = Checkout(project, main_branch(project.checkout), snakemake.params.config, made)
     reference, run = run_in(project.top, "the reference"), run_in(results, "the results")
     report = compare(project, reference, run, checkout, snakemake.params.names)
-    return written(report, results / "diff", sys.stderr if report.status else sys.stdout)
+    stream = sys.stderr if report.status else sys.stdout
+    return written(project, report, results / "diff", stream)
 
 
-def written(report: Report, folder: Path, stream: TextIO) -> int:
+def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:
+    """The pictures of both sides as PNG. If it is the datasets that differ, they are drawn by
+    today's code, with the same axes.
+    """
+    paths = [side.path for side in report.sides[file]]
+    if report.found[file].verdict == "follows":
+        with suppress(Exception):  # Whatever reading and drawing a dataset of other code raises.
+            data = [read(path.with_suffix(".nc")) for path in paths]
+            return project.side_by_side(paths[0].stem, data)
+    return [path.read_bytes() for path in paths if path.is_file()]
+
+
+def written(project: Project, report: Report, folder: Path, stream: TextIO) -> int:
     """Print a report, and save it as a text and as a page with the pictures of both sides.
 
     Returns the exit status.
     """
     pictures = {
-        file: [
-            base64.b64encode(side.path.read_bytes()).decode()
-            for side in report.sides[file]
-            if side.path.is_file()
-        ]
+        file: [base64.b64encode(each).decode() for each in pictures_of(project, report, file)]
         for file, finding in report.found.items()
         if file.endswith(".png") and finding.verdict != "agrees"
     }

@@ -72,6 +72,8 @@ class Project:
         Today's descriptions of the variables of a dataset, by its name.
     described_in
         Files of code with the descriptions, from the checkout. No dataset records them.
+    side_by_side
+        Draws a figure by its name for several datasets, with the same axes. Returns PNG files.
     make
         Writes the files that follow from one dataset into a folder: pictures, tables and pages. It
         takes their name, the dataset, or none for a picture without data, and the folder.
@@ -84,6 +86,7 @@ class Project:
     references: str
     describe: Describe
     described_in: tuple[str, ...]
+    side_by_side: Callable[[str, list[xr.Dataset]], list[bytes]]
     make: Callable[[str, Any, Path], None]
 
 

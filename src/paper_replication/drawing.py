@@ -8,6 +8,7 @@ The pictures are independent of the user's settings: `style` starts from matplot
 
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -218,6 +219,21 @@ def move(note: Annotation, place: tuple[float, float]) -> None:
 
 
 # Files
+
+
+def on_the_same_axes(figures: Sequence[Figure]) -> list[bytes]:
+    """Return figures of the same kind as PNG, each panel with limits that hold those of all."""
+    for panels_of_all in zip(*(figure.axes for figure in figures), strict=True):
+        x = [axes.get_xlim() for axes in panels_of_all]
+        y = [axes.get_ylim() for axes in panels_of_all]
+        for axes in panels_of_all:
+            axes.set(xlim=(np.min(x), np.max(x)), ylim=(np.min(y), np.max(y)))
+    pictures = []
+    for figure in figures:
+        with style(), BytesIO() as picture:
+            figure.savefig(picture, format="png")
+            pictures.append(picture.getvalue())
+    return pictures
 
 
 def save_picture(figure: Figure, png: str | Path, svg: str | Path, salt: str) -> None:

@@ -30,13 +30,18 @@ def period(given, gravity):
     return xr.Dataset({"period": small / agm(1, np.cos(np.radians(angle) / 2)), "angle": angle})
 
 
-def draw(name, data, folder):
-    """The figure, if a dataset has one."""
+def draw(data):
+    """The figure."""
+    figure, axes = drawing.panels(2.0)
+    axes.plot(data.angle, data.period, color=drawing.COLOURS[1])
+    axes.set(xlabel="angle θ in degrees", ylabel="period T in s")
+    return figure
+
+
+def save_drawn(name, data, folder):
+    """The files of the figure, if a dataset has one."""
     if name == "fig1":
-        figure, axes = drawing.panels(2.0)
-        axes.plot(data.angle, data.period, color=drawing.COLOURS[1])
-        axes.set(xlabel="angle θ in degrees", ylabel="period T in s")
-        drawing.save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", "pendulum")
+        drawing.save_picture(draw(data), folder / f"{name}.png", folder / f"{name}.svg", "pendulum")
 
 
 def small_swings(fig1):
@@ -58,5 +63,6 @@ PROJECT = Project(
     references="An invented paper",
     describe=lambda name: VARIABLES,
     described_in=("pendulum.py",),
-    make=draw,
+    side_by_side=lambda name, several: drawing.on_the_same_axes([*map(draw, several)]),
+    make=save_drawn,
 )

@@ -8,6 +8,14 @@ from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import Project
 
 
+def side_by_side(name: str, datasets: list[xr.Dataset]) -> list[bytes]:
+    """Draw a figure for several datasets, with the same axes, as PNG."""
+    from carbonelli2011.figures import draw
+    from paper_replication.drawing import on_the_same_axes
+
+    return on_the_same_axes([draw(name, data) for data in datasets])
+
+
 def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
     """Write the pictures and the tables of a dataset into a folder, for a comparison."""
     # A stage depends on neither figures nor tables.
@@ -34,5 +42,6 @@ PROJECT = Project(
     references=REFERENCE,
     describe=described,
     described_in=("src/carbonelli2011/variables.py",),
+    side_by_side=side_by_side,
     make=make,
 )

@@ -9,6 +9,14 @@ from paper_replication.datasets import Project
 from studies.variables import described
 
 
+def side_by_side(name: str, datasets: list[xr.Dataset]) -> list[bytes]:
+    """Draw a figure for several datasets, with the same axes, as PNG."""
+    from paper_replication.drawing import on_the_same_axes
+    from studies.figures import draw
+
+    return on_the_same_axes([draw(name, data) for data in datasets])
+
+
 def make(name: str, data: xr.Dataset, folder: Path) -> None:
     """Write the pictures, the tables and the page of a dataset into a folder, for a comparison."""
     # A stage depends on none of them.
@@ -37,5 +45,6 @@ PROJECT = Project(
     references=REFERENCE,
     describe=described,
     described_in=("extras/beyond/workflow/studies/variables.py",),
+    side_by_side=side_by_side,
     make=make,
 )

@@ -394,7 +394,7 @@ def ball_at_ratio(
 ) -> Callable:
     """Return a function that maps ϖ, or the number that replaces it, to the ball."""
     one_number("tolerance", tolerance)
-    if isinstance(contacts, Ball):
+    if isinstance(contacts, SpringDamper | ForceLaw):
         impact = free_impact(contacts, n)
         return contacts.at_ratio(impact.restitution, impact.centroid)
     if not callable(contacts):
@@ -651,7 +651,7 @@ def error_thresholds(
     # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
     alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
     together = [name for name in quantities if name not in alone]
-    found = {}
+    found: dict[str, ErrorThreshold] = {}
     for names in filter(None, [together, *([name] for name in alone)]):
 
         def excess(logarithms: Values, places: Values, names: Any = names) -> Values:

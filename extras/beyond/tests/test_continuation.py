@@ -346,11 +346,9 @@ def test_kinds_are_understood_with_spaces_and_hyphens(name):
 def test_an_unknown_kind_is_refused_with_those_that_there_are():
     branch = follow(orbit(Rigid(0.5), amplitude=1.2), to=1.8)
     assert branch.first("period-doubling") is branch.first("period doubling")
-    with pytest.raises(
-        OrbitNotFound, match="no fold is passed here; special orbits that are: peri"
-    ):
+    with pytest.raises(OrbitNotFound, match="no fold here; special orbits: peri"):
         branch.first("fold")
-    with pytest.raises(OrbitNotFound, match="no saddle-node is passed here; special orbits"):
+    with pytest.raises(OrbitNotFound, match="no saddle-node here; special orbits"):
         branch.first("saddle-node")
 
 

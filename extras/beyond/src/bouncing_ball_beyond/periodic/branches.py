@@ -139,7 +139,7 @@ class FollowedBranch:
             if each.kind.replace("-", " ") == str(kind).replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {kind} is passed here; special orbits that are: {others}")
+        raise OrbitNotFound(f"no {kind} here; special orbits: {others}")
 
     def with_special(self) -> list[PeriodicOrbit]:
         """All orbits and special orbits in order.

@@ -379,8 +379,8 @@ def test_a_restitution_of_one_is_no_damping():
         (lambda: SpringDamper(1.0, 0.5, 0.1), "exactly one of them must be given"),
         (lambda: SpringDamper(1.0, 0.5, release="gap"), "release = 'gap': must be 'displacement'"),
         (lambda: SpringDamper(1.0, 0.5).at(zeta=0.1), "zeta: no parameter of SpringDamper"),
-        (lambda: Corrected(0.5), "of = 0.5: must be a ball"),
-        (lambda: Corrected(SpringDamper(1.0, damping_ratio=1.5)), "must end even without gravity"),
+        (lambda: Corrected(0.5), "ball = 0.5: must be a ball"),
+        (lambda: Corrected(SpringDamper(1.0, damping_ratio=1.5)), "its free impacts do not end"),
     ],
 )
 def test_what_is_refused(make, message):

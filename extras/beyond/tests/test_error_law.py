@@ -394,19 +394,3 @@ def test_orbits_at_their_saddle_node_are_found_on_both_sides():
         assert np.abs(found.equations.linearized(found.z[np.newaxis]).legs).max() < 1e-14
     values = contact_values(Rigid(0.65), amplitude=node)
     assert values["max_height"] == pytest.approx(np.pi**2 / 2, abs=1e-6)
-
-
-def test_thresholds_say_where_the_orbit_is_unstable():
-    known = {"amplitude": [1.0, 1.2385, 1.6], "quantities": ["max_height", "saddle_node"]}
-    found = error_thresholds(BALL, **known)
-    height = found["max_height"]
-    assert height.unstable.tolist() == ["", "on the contact", "in both models"]
-    assert (found["saddle_node"].unstable == "").all()
-    # The multipliers of the orbits at these ratios.
-    for amplitude, ratio, text in zip(
-        known["amplitude"], height.ratio, height.unstable, strict=True
-    ):
-        one = orbit(BALL.at(frequency_ratio=float(ratio)), amplitude=amplitude)
-        assert one.stable == (text == "")
-    corrected = error_thresholds(BALL, simple=Corrected, **known | {"amplitude": 1.6})
-    assert corrected["max_height"].unstable == "in both models"

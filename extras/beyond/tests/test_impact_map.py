@@ -57,13 +57,12 @@ def test_slopes_are_those_of_the_integration(case):
     # Differentiation of a polynomial of degree n multiplies rounding by up to n².
     allowed = 15**2 * 1e-13 * np.maximum(np.abs(expected).max(axis=2, keepdims=True), 1.0)
     assert np.all(np.abs(slopes - expected) <= allowed)
-    assert not found.knows(u).all()
+    assert u.min() < found.top / 2 ** len(found.pieces)
 
 
 def test_slow_impacts_and_soft_contacts_are_integrated():
     soft = impact_map(bb.tsuji(restitution=0.5, duration=3.0, speed=4.0), 1.2, SINE, 4.0)
     assert soft.pieces == ()
-    assert not soft.knows(np.array([1.0])).any()
 
 
 def test_basins_are_those_of_the_integration(monkeypatch):

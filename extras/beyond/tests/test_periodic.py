@@ -240,7 +240,8 @@ def test_rows_have_an_orbit_or_a_reason_each():
     found = orbit(Rigid([0.85, 0.85, 0.5]), amplitude=[0.1, 0.9, 1.3], n=[1, 2, 1])
     assert isinstance(found[0], OrbitNotFound)
     for each, r, amplitude, n in ((found[1], 0.85, 0.9, 2), (found[2], 0.5, 1.3, 1)):
-        assert each.distance(orbit(Rigid(r), amplitude=amplitude, n=n)) < ROUNDED
+        alone = orbit(Rigid(r), amplitude=amplitude, n=n)
+        assert np.abs(each.z - alone.z).max() < ROUNDED
         assert (each.periods, each.amplitude, each.ball.restitution) == (n, amplitude, r)
 
 

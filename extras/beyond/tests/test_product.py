@@ -41,7 +41,7 @@ PERIOD = 2 * np.pi
 
 
 def bumper(p, v, stiffness, hardening, damping):
-    return stiffness * p * p * (1 + hardening * p) * (1 + damping * v)
+    return stiffness * p * (1 + hardening * p) * (1 + damping * v)
 
 
 def pulling(p, v, stiffness, damping):
@@ -59,9 +59,8 @@ class Kind:
 SPRING = bb.SpringDamper(20.0, 0.6)
 OWN = bb.ForceLaw(
     bumper,
-    {"stiffness": 3000.0, "hardening": 0.2, "damping": 0.25},
-    release="force",
-    units={"stiffness": (0, -1, -2), "hardening": (0, -1, 0), "damping": (0, -1, 1)},
+    {"stiffness": 400.0, "hardening": 0.2, "damping": 0.25},
+    units={"stiffness": (0, 0, -2), "hardening": (0, -1, 0), "damping": (0, -1, 1)},
 )
 PULLING = bb.ForceLaw(
     pulling,
@@ -86,13 +85,13 @@ KINDS = {
         {"stiffness": -2.5},
         {"stiffness": -3, "damping": -1},
     ),
-    "own law whose force pushes at the surface": Kind(
+    "own law": Kind(
         OWN,
         "damping",
-        {"stiffness": -3, "hardening": -1},
-        {"stiffness": -4, "hardening": -2, "damping": -1},
+        {"stiffness": -2, "hardening": -1},
+        {"stiffness": -2, "hardening": -2, "damping": -1},
     ),
-    "own law whose force pulls at the surface": Kind(
+    'own law with release="force"': Kind(
         PULLING, "damping", {"stiffness": -2, "damping": -1}, {"stiffness": -2, "damping": -1}
     ),
 }
@@ -482,12 +481,10 @@ def permanent_contact(pair):
 
 @question
 def threshold_of_permanent_contact(pair):
-    """The weakest grip of the steady motion falls to zero. At zero the integrator may lose it."""
+    """The weakest grip of the steady motion is zero."""
     found = bb.permanent_contact(pair.ball, table=pair.table)
     if pair.ball.has_duration:
-        below = found * (1 - np.array([1e-6, 2e-6]))
-        near, farther = (weakest_grip(pair.ball, each, pair.harmonics) for each in below)
-        assert_close(2 * near - farther, 0.0)
+        assert_close(weakest_grip(pair.ball, found, pair.harmonics), 0.0)
     else:
         tau = np.linspace(0, PERIOD, 20_001)
         assert_close(found * waveform(pair.harmonics, tau, 2).min(), -1.0)

@@ -16,7 +16,6 @@ from bouncing_ball_beyond import (
 )
 from bouncing_ball_beyond.output.pictures import MARKS
 from bouncing_ball_beyond.periodic.equations import KINDS
-from bouncing_ball_beyond.periodic.orbits import orbits
 
 
 @pytest.fixture(scope="module")
@@ -44,17 +43,6 @@ def test_quantities_are_those_of_the_orbits(rigid):
     assert np.all(np.diff(phase) > 0) or np.all(np.diff(phase) < 0)
     modulus = np.hypot(data.multiplier_real, data.multiplier_imag)
     assert modulus.prod("multiplier").values == pytest.approx(0.25, rel=1e-12)
-
-
-def test_what_is_no_list_of_orbits_is_refused():
-    one = orbit(Rigid(0.5), amplitude=1.6)
-    several = orbits(Rigid(0.5), impacts=3, periods=3, amplitude=1.6)
-    with pytest.raises(ValueError, match="the same number of impacts"):
-        to_dataset([one, *several])
-    with pytest.raises(ValueError, match="the same kind of ball"):
-        to_dataset([one, orbit(SpringDamper(10.0, restitution=0.5), amplitude=1.6)])
-    with pytest.raises(ValueError, match="there is no orbit"):
-        to_dataset(orbit(Rigid(0.5), amplitude=[0.1]))
 
 
 # Pictures
@@ -150,7 +138,7 @@ def test_pictures_refuse_what_they_cannot_draw(rigid):
 
 
 def test_a_list_of_branches_has_a_dataset_for_each(rigid):
-    with pytest.raises(ValueError, match="a dataset stores one branch"):
+    with pytest.raises(ValueError, match="a dataset stores one orbit or branch"):
         to_dataset([rigid, rigid])
 
 

@@ -253,18 +253,6 @@ class Ball:
             gap = -self.kappa * speed
         return T, np.where(np.isnan(T), np.inf, duration), gap, speed
 
-    def at_ratio(self, restitution: Values, centroid: Values) -> Callable:
-        """Return a function that maps a frequency ratio ϖ to the ball with this ϖ.
-
-        For a ball without ϖ, the number π r/((1 + r) t_c) replaces ϖ. ``restitution`` and
-        ``centroid`` are r and t_c of its free impact. Raises ValueError if the impacts of the ball
-        have no duration.
-        """
-        raise ValueError(
-            f"contacts = {brief(self)}: must be a SpringDamper, a ForceLaw, or a function that"
-            " returns one of them"
-        )
-
 
 def brief(value: Values) -> str:
     """Text of a wrong argument in an error message: its repr, or its type if the repr is long."""
@@ -816,10 +804,8 @@ class Corrected(Ball):
     below_table: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        if not isinstance(self.of, Ball):
-            raise ValueError(f"of = {self.of!r}: must be a ball")
-        if not np.isfinite(self.of.signature(1.0).restitution).all():
-            raise ValueError(f"of = {brief(self.of)}: {ENDLESS}")
+        check_ball(self.of)
+        check_ends("of", self.of, 1.0)
 
     @property
     def parameters(self) -> dict[str, Values]:

@@ -64,8 +64,6 @@ class Force(Ball):
             self.root != 1 and (self.root < 1 or self.root % 2)
         ):
             raise ValueError(f"root = {self.root!r}: must be 1 or an even number, 2, 4, 6, ...")
-        if not callable(self.force):
-            raise ValueError(f"force = {brief(self.force)}: must be a function")
         if self.lag is not None and not (callable(self.lag) and self.release == "force"):
             raise ValueError(f"lag = {brief(self.lag)}: must be a function, with release='force'")
         for name, each in (("values", self.values), ("units", self.units)):

@@ -369,6 +369,8 @@ class ForceLaw(Force):
                 found.append((push, np.linalg.inv(matrix)))
         return found
 
+    # Multiples of the first speed and load for which the force was judged.
+    _judged = cached_property(lambda self: [1.0])
     _free_impacts = cached_property(lambda self: dict[float, list]())
     _ranges = cached_property(lambda self: dict[float, NDArray | None]())
     _signatures = cached_property(lambda self: dict[float, NDArray]())
@@ -495,11 +497,6 @@ class ForceLaw(Force):
             factor = float(most)
             judge(self._origin, factor * FIRST_SPEED, factor * FIRST_LOAD)
         judged.append(factor)
-
-    @cached_property
-    def _judged(self) -> list[float]:
-        """Multiples of the first speed and load for which the force was judged."""
-        return [1.0]
 
     def _guessed(self, rows: Rows) -> Guess | None:
         """Return free impacts as a guess of contacts with a known end; None if the guess is bad."""

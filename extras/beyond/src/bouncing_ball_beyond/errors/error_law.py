@@ -394,7 +394,7 @@ def ball_at_ratio(
 ) -> Callable:
     """Return a function that maps ϖ, or the number that replaces it, to the ball."""
     one_number("tolerance", tolerance)
-    if isinstance(contacts, Ball):
+    if isinstance(contacts, SpringDamper | ForceLaw):
         impact = free_impact(contacts, n)
         return contacts.at_ratio(impact.restitution, impact.centroid)
     if not callable(contacts):
@@ -577,30 +577,6 @@ def exact_errors(
         return {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
 
 
-def _unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Any, table: Table) -> NDArray:
-    """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
-    if simple is None:
-        values = restitution_values(free_impact(ball, n), amplitude, table)
-        doubles = np.asarray(amplitude) > values["period_doubling"]
-        of_simple = doubles & np.isfinite(values["max_height"])
-    else:
-        of_simple = _are_unstable(simple(ball), amplitude, n, table)
-    return of_simple + 2 * _are_unstable(ball, amplitude, n, table)
-
-
-def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
-    """Whether the n-T orbits on the stable side of the saddle-node are past their doubling.
-
-    False where there are no orbits.
-    """
-    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    equations = OrbitEquations(row, 1, periods, table=table)
-    z = rows_of_orbits(equations, amplitudes)
-    with np.errstate(invalid="ignore"):
-        stable = equations.stable(equations.linearized(z))
-    return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
-
-
 class ErrorThreshold(NamedTuple):
     """Frequency ratios above which an error is within a tolerance, as arrays of the same shape.
 
@@ -614,23 +590,10 @@ class ErrorThreshold(NamedTuple):
         - "exceeded": the error exceeds the tolerance at the largest ratio;
         - "first orbit": it is within the tolerance from the first ratio with an orbit on;
         - "no orbit": there is no orbit at the largest ratio.
-    unstable : array of str
-        Which orbit is unstable: "", "in the simple model", "on the contact" or "in both models".
-        This is the orbit at ``ratio``, or at the largest ratio if ``ratio`` is NaN. The text is ""
-        for bifurcations, and if there is no orbit.
     """
 
     ratio: NDArray
     status: NDArray
-    unstable: NDArray
-
-
-UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
-"""Texts by index.
-
-The index is 1 if the orbit is unstable in the simple model, plus 2 if it is unstable on the
-contact.
-"""
 
 
 def error_thresholds(
@@ -665,7 +628,8 @@ def error_thresholds(
     Returns
     -------
     dict of ErrorThreshold
-        Thresholds by the names in ``quantities``.
+        Thresholds by the names in ``quantities``. Above the period doubling they compare unstable
+        orbits.
 
     Examples
     --------
@@ -674,12 +638,6 @@ def error_thresholds(
     >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '18.054 found']
-
-    Above the period doubling, unstable orbits are compared:
-
-    >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
-    >>> round(float(found.ratio), 2), str(found.unstable)
-    (75.79, 'in both models')
     """
     if not one_number("low", low) < one_number("high", high):
         raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
@@ -693,7 +651,7 @@ def error_thresholds(
     # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
     alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
     together = [name for name in quantities if name not in alone]
-    found = {}
+    found: dict[str, ErrorThreshold] = {}
     for names in filter(None, [together, *([name] for name in alone)]):
 
         def excess(logarithms: Values, places: Values, names: Any = names) -> Values:
@@ -725,12 +683,6 @@ def error_thresholds(
                 tolerances={"fatol": AT_TOLERANCE},
             )
             ratio[places] = np.exp(at.x)
-        for j, name in enumerate(names):
-            of_name = ratio.reshape(len(names), *shape)[j]
-            unstable = np.zeros(shape, int)
-            if name not in alone:
-                there = path(np.where(np.isfinite(of_name), of_name, high))
-                unstable = _unstable(there, **known)
-            states = status.reshape(len(names), *shape)[j]
-            found[name] = ErrorThreshold(of_name, states, UNSTABLE[unstable])
+        of_names = ratio.reshape(-1, *shape), status.reshape(-1, *shape)
+        found |= {name: ErrorThreshold(*each) for name, *each in zip(names, *of_names, strict=True)}
     return {name: found[name] for name in quantities}

@@ -16,6 +16,7 @@ from bouncing_ball_beyond.contacts.balls import (
     SpringDamper,
     checked,
     damping_of,
+    one_number,
     restitution_of,
     whole_number,
 )
@@ -36,18 +37,6 @@ STANDARD_GRAVITY = 9.80665
 
 ELASTIC = 1 - 1e-9
 """Restitution coefficient above which orbits are only marginally stable, for lack of a loss."""
-
-
-def _in_mm(value: float) -> str:
-    return "–" if np.isnan(value) else f"{1e3 * value:.4g}"
-
-
-def positive(name: str, value: Any, unit: str) -> float:
-    """Return a number as float. Raises ValueError unless it is > 0; the message has the unit."""
-    is_number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
-    if not (is_number and 0 < value < np.inf):
-        raise ValueError(f"{name} = {value!r}: must be a positive number{unit and ' in '}{unit}")
-    return float(value)
 
 
 class ByModel(NamedTuple):
@@ -144,7 +133,9 @@ class ShakerAnswer:
             "": ("restitution", "contact", "error law"),
             "bounces from Λ": [f"{value:.4g}" for value in self.saddle_node],
             "stable up to Λ": [f"{value:.4g}" for value in self.period_doubling],
-            "maximum height/mm": [_in_mm(value) for value in self.max_height],
+            "maximum height/mm": [
+                f"{1e3 * value:.4g}".replace("nan", "–") for value in self.max_height
+            ],
         }
         lines = [
             f"{name:<18}{''.join(f'{value:>13}' for value in values)}"
@@ -288,22 +279,20 @@ def on_shaker(
     >>> answer.is_good_enough, round(answer.error, 4)
     (False, -0.0121)
     """
-    rate = 2 * np.pi * positive("frequency", frequency, "Hz")
-    fall = positive("gravity", gravity, "m/s²")
-    tolerance = positive("tolerance", tolerance, "")
+    rate = 2 * np.pi * one_number("frequency", frequency)
+    fall = one_number("gravity", gravity)
+    tolerance = one_number("tolerance", tolerance)
     n = whole_number("n", n)
     measured = None
     if np.ndim(restitution):
         measured = _measured(restitution, fall / rate, n)
-    elif positive("restitution", restitution, "") > 1:
-        raise ValueError(f"restitution = {restitution!r}: must be above 0, up to 1")
+    else:
+        checked("restitution", restitution, 0, 1, low_allowed=False)
     check_table(table)
     if _one_of(displacement=displacement, acceleration=acceleration) == "displacement":
-        amplitude = (
-            positive("displacement", displacement, "m") * rate**2 / fall / _half_range(table)
-        )
+        amplitude = one_number("displacement", displacement) * rate**2 / fall / _half_range(table)
     else:
-        amplitude = positive("acceleration", acceleration, "m/s²") / fall / table.acceleration
+        amplitude = one_number("acceleration", acceleration) / fall / table.acceleration
     contact = _one_of(
         contact_duration=contact_duration, stiffness=stiffness, youngs_modulus=youngs_modulus
     )
@@ -313,8 +302,8 @@ def on_shaker(
         if table_youngs_modulus is not None:
             compliance += _compliance(table_youngs_modulus, table_poissons_ratio, "table_")
         # Hertz: force 4/3 E* √R p^(3/2). Units are g/Ω² for lengths and 1/Ω for times.
-        force = 4 / 3 * np.sqrt(positive("radius", radius, "m")) / compliance
-        force *= np.sqrt(fall) / rate**3 / positive("mass", mass, "kg")
+        force = 4 / 3 * np.sqrt(one_number("radius", radius)) / compliance
+        force *= np.sqrt(fall) / rate**3 / one_number("mass", mass)
         # The duration and the speed are arbitrary, because the damping depends only on r.
         hertz = tsuji(restitution=0.5 if measured else restitution, duration=0.1, speed=1.0)
         if measured:
@@ -336,10 +325,10 @@ def on_shaker(
                 "frequency_ratio",
             )
         if contact == "stiffness":
-            square = positive("stiffness", stiffness, "N/m") / positive("mass", mass, "kg")
+            square = one_number("stiffness", stiffness) / one_number("mass", mass)
             ratio = np.sqrt(square) / rate
         else:
-            contact_time = rate * positive("contact_duration", contact_duration, "s")
+            contact_time = rate * one_number("contact_duration", contact_duration)
             ratio = float(free_impact(spring, n).duration) / contact_time
 
         def contacts(times: Values) -> Any:
@@ -393,7 +382,7 @@ def _one_of(**quantities: float | None) -> str:
 def _compliance(modulus: float | None, ratio: float, body: str) -> float:
     """Return (1 - ν²)/E of a body. ``body`` is the prefix of its arguments: "" or "table_"."""
     checked(f"{body}poissons_ratio", ratio, -1, 0.5, low_allowed=False)
-    return (1 - ratio**2) / positive(f"{body}youngs_modulus", modulus, "Pa")
+    return (1 - ratio**2) / one_number(f"{body}youngs_modulus", modulus)
 
 
 def _answer(

@@ -294,30 +294,6 @@ def bounce_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     return record, going, replace(balls, turns=turns, phase=phase, speed=speed).take(going)
 
 
-def bounce_by_map(
-    balls: Balls, contacts: ImpactMap, impacts: int
-) -> tuple[NDArray, NDArray, Balls]:
-    record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
-    turns, phase, speed = balls.turns.copy(), balls.phase.copy(), balls.speed.copy()
-    done = np.zeros(balls.phase.size, int)
-    bounces = np.ones(balls.phase.size, bool)
-    while (bounces & (done < impacts)).any():
-        (ready,) = (bounces & (done < impacts)).nonzero()
-        quick = contacts.knows(speed[ready])
-        here = ready[quick] if 2 * np.count_nonzero(quick) >= ready.size else ready[~quick]
-        rows = replace(balls.take(here), turns=turns[here], phase=phase[here], speed=speed[here])
-        each, going, after = step(rows)
-        record[done[here], :, here] = each.T
-        done[here] += 1
-        bounces[here] = False
-        here = here[going]
-        bounces[here] = True
-        turns[here], phase[here], speed[here] = after.turns, after.phase, after.speed
-    (todo,) = bounces.nonzero()
-    after = replace(balls, turns=turns, phase=phase, speed=speed).take(todo)
-    return record, todo, after
-
-
 def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     """Follow each ball over a number of impacts.
 
@@ -331,8 +307,6 @@ def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     compile_loops()
     if balls.phase.size < FEW_BALLS and balls.ball.loop_parameters(balls.table):
         return bounce_each(balls, impacts)
-    if balls.map:
-        return bounce_by_map(balls, balls.map, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     todo = np.arange(balls.phase.size)
     for impact in record:

@@ -102,11 +102,6 @@ class ImpactMap:
         number = np.floor(octaves)
         return number, 1 - 2 * (octaves - number)
 
-    def knows(self, u: NDArray) -> NDArray:
-        """Whether contacts with the closing speeds u are in the map and need no integration."""
-        number, _ = self._places(u)
-        return (number >= 0) & (number < len(self.pieces))
-
     def leaves(self, tau: NDArray, u: NDArray) -> tuple[NDArray, ...]:
         """T, D, δ and δ′ at the first release. D is infinite if the ball stays on the table."""
         found = np.empty((4, u.size))

@@ -78,7 +78,9 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
     ValueError
         If ``found`` contains other objects, or if there is no such quantity.
     """
-    branches = [each for group in found for each in _branches(group)]
+    groups = [group if isinstance(group, list | tuple) else [group] for group in found]
+    # An OrbitNotFound is left out.
+    branches = [each for group in groups for each in group if isinstance(each, FollowedBranch)]
     along = {tuple(path.name for path in each.equations.along) for each in branches}
     if len(along) != 1:
         raise ValueError(
@@ -106,12 +108,6 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
             return figure
         axes.legend(entries.values(), entries.keys())
         return axes.get_figure(root=True) or figure
-
-
-def _branches(group: Any) -> list[FollowedBranch]:
-    """Return the branches of a list, or one branch as a list. An OrbitNotFound is left out."""
-    several = group if isinstance(group, list | tuple) else [group]
-    return [each for each in several if isinstance(each, FollowedBranch)]
 
 
 def _draw(axes: Axes, branch: FollowedBranch, quantity: str, colour: str) -> dict[str, Any]:

@@ -1,8 +1,5 @@
 """Convert orbits, branches and curves to labelled datasets."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -11,7 +8,6 @@ from bouncing_ball_beyond.periodic.equations import PeriodicOrbit
 
 OF_IMPACTS = {
     "phase": ("phase of the table as an impact starts", "φ", "rad"),
-    "release_phase": ("phase of the table at the end of the contact", "φ + D", "rad"),
     "contact_duration": ("duration of the contact", "D", "1"),
     "flight_time": ("duration of the flight after the contact", "", "1"),
     "impact_velocity": ("velocity of the ball as an impact starts", "", "1"),
@@ -48,22 +44,13 @@ PARAMETERS = {
 }
 """Parameters. The long name of a parameter of a law is its name."""
 
-Found = PeriodicOrbit | FollowedBranch | Sequence
-"""Objects that datasets store: an orbit, a branch, a curve, or a list of orbits."""
 
-
-# Datasets
-
-
-def to_dataset(found: Found) -> xr.Dataset:
-    """Convert an orbit, a branch, a curve or a list of orbits to a labelled dataset.
+def to_dataset(found: PeriodicOrbit | FollowedBranch) -> xr.Dataset:
+    """Convert an orbit, a branch or a curve to a labelled dataset.
 
     Parameters
     ----------
-    found : PeriodicOrbit, FollowedBranch, SpecialCurve or list of PeriodicOrbit
-        The orbits of a list must vary the same parameter. They must have the same number of
-        impacts, the same kind of ball and the same harmonics of the table. An `OrbitNotFound` is
-        left out.
+    found : PeriodicOrbit, FollowedBranch or SpecialCurve
 
     Returns
     -------
@@ -76,8 +63,7 @@ def to_dataset(found: Found) -> xr.Dataset:
     Raises
     ------
     ValueError
-        If there is no orbit, if ``found`` is a list of branches, or if the orbits of a list differ
-        in kind.
+        If ``found`` is something else, such as a list of branches.
 
     Examples
     --------
@@ -86,7 +72,12 @@ def to_dataset(found: Found) -> xr.Dataset:
     >>> round(data.impact_velocity.item(), 6), dict(data.sizes)
     (-3.141593, {'point': 1, 'impact': 1, 'multiplier': 2})
     """
-    orbits = _listed(found)
+    if not isinstance(found, PeriodicOrbit | FollowedBranch):
+        raise ValueError(
+            "a dataset stores one orbit or branch: write"
+            " [to_dataset(branch) for branch in branches]"
+        )
+    orbits = [found] if isinstance(found, PeriodicOrbit) else found.with_special()
     first = orbits[0]
     along = [path.name for path in first.equations.along]
     of_impacts = {
@@ -122,25 +113,3 @@ def to_dataset(found: Found) -> xr.Dataset:
         text = texts.get(str(label), (str(label).replace("_", " "), "", "1"))
         variable.attrs.update(zip(("long_name", "symbol", "units"), text, strict=True))
     return data.set_coords(along)
-
-
-def _listed(found: Found) -> list[PeriodicOrbit]:
-    """Return all orbits in order, including the special orbits of a branch."""
-    if isinstance(found, PeriodicOrbit):
-        return [found]
-    if isinstance(found, FollowedBranch):
-        return found.with_special()
-    several: list[Any] = list(found) if isinstance(found, Iterable) else [found]
-    if any(isinstance(each, FollowedBranch) for each in several):
-        raise ValueError(
-            "a dataset stores one branch: write [to_dataset(branch) for branch in branches]"
-        )
-    orbits = [each for each in several if isinstance(each, PeriodicOrbit)]
-    if not orbits:
-        raise ValueError("there is no orbit to store: give an orbit, a branch or a list of orbits")
-    if len({(type(each), type(each.ball), each.impacts, *each.parameters) for each in orbits}) > 1:
-        raise ValueError(
-            "the orbits of one dataset must vary the same parameter; they must have the same number"
-            " of impacts, the same kind of ball and the same harmonics of the table"
-        )
-    return orbits

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, NamedTuple
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,8 +49,6 @@ class FollowedBranch:
     special: tuple[PeriodicOrbit, ...]
     start: str
     end: str
-
-    _where = "this branch; its special orbits are"
 
     def __repr__(self) -> str:
         first, last = self.values[[0, -1]]
@@ -140,7 +139,7 @@ class FollowedBranch:
             if each.kind.replace("-", " ") == str(kind).replace("-", " ").lower():
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
-        raise OrbitNotFound(f"no {kind} on {self._where}: {others}")
+        raise OrbitNotFound(f"no {kind} here; special orbits: {others}")
 
     def with_special(self) -> list[PeriodicOrbit]:
         """All orbits and special orbits in order.
@@ -161,8 +160,6 @@ class FollowedBranch:
 class SpecialCurve(FollowedBranch):
     """Curve of special orbits of one kind along two parameters."""
 
-    _where = "this curve; other special orbits on it are"
-
     @property
     def kind(self) -> str:
         """Kind of the special orbits."""
@@ -182,47 +179,6 @@ def joined(back: Any, forth: Any) -> Any:
         special=(*back.special[::-1], *forth.special),
         start=back.end,
     )
-
-
-def both_ways(
-    equations: OrbitEquations,
-    z: NDArray,
-    direction: NDArray,
-    window: NDArray,
-    points: int,
-) -> Any:
-    """Follow the curve through a point z, shape (1, N), in a direction and in its opposite."""
-    both = np.concatenate([-direction, direction])
-    nothing = np.full(2, np.nan), np.full(2, "")
-    start = Start(equations, np.tile(z, (2, 1)), both, *nothing)
-    return joined(*followed(start, np.array([window, window]), [None, None], points, ""))
-
-
-class _Passed(NamedTuple):
-    """Special orbit on a branch.
-
-    Attributes
-    ----------
-    number : int
-        Number of the step that contains it.
-    place : float
-        Distance of the orbit from the start of this step, along the tangent.
-    orbit : PeriodicOrbit
-    """
-
-    number: int
-    place: float
-    orbit: PeriodicOrbit
-
-    @property
-    def order(self) -> tuple:
-        """Sort key along the branch.
-
-        Special orbits at the same point have the order of `OrbitEquations.kinds`. For example, a
-        flight may vanish where an impact grazes and a release is lost.
-        """
-        kinds = [*self.orbit.equations.kinds, self.orbit.kind]
-        return self.number, round(self.place, 6), kinds.index(self.orbit.kind)
 
 
 def followed(
@@ -249,7 +205,7 @@ def followed(
     branches = []
     for i, (path, end) in enumerate(steps):
         equations = single(start.equations, i)
-        passed: list[_Passed] = []
+        passed: list[tuple] = []
         for j in np.flatnonzero(crossings.row == i):
             kind = str(crossings.kind[j])
             number = crossings.number[j]
@@ -258,14 +214,17 @@ def followed(
                 here = None if equations.kind else halved_at(equations, crossings.ends[:, j])
             if here is not None and not (number == 0 and kind == own):
                 place = crossings.slopes[0, j] @ (here - crossings.ends[0, j])
-                passed.append(_Passed(number, place, equations.orbit(here, kind)))
-        passed.sort(key=lambda each: each.order)
+                # Special orbits at the same point have the order of `kinds`. For example, a flight
+                # may vanish where an impact grazes and a release is lost.
+                order = number, round(place, 6), [*equations.kinds, kind].index(kind)
+                passed.append((order, equations.orbit(here, kind)))
+        passed.sort(key=itemgetter(0))
         orbits = path.z
-        ends = [j for j, each in enumerate(passed) if ends_at(each.orbit.kind, until[i])]
+        ends = [j for j, (_, each) in enumerate(passed) if ends_at(each.kind, until[i])]
         if ends:
             passed = passed[: ends[0] + 1]
-            last = passed[-1].orbit
-            orbits = np.vstack([orbits[: passed[-1].number + 1], last.z])
+            (number, *_), last = passed[-1]
+            orbits = np.vstack([orbits[: number + 1], last.z])
             why = KINDS[last.kind].end if last.kind in KINDS else ""
             end = f"{last.kind} at {_place(equations, last.z)}" + (why and f": {why}")
         elif end in KINDS:
@@ -274,10 +233,10 @@ def followed(
             why = KINDS[end].end and f": {KINDS[end].end}"
             end = f"{end} near {_place(equations, orbits[-1], 7)}{why}"
             orbits = orbits[:-1]
-            passed = [each for each in passed if each.number + 1 < len(orbits)]
+            passed = [each for each in passed if each[0][0] + 1 < len(orbits)]
         else:
             end = _in_words(end, equations, orbits[-1], window[i], start.goal[i], passed)
-        special = tuple(each.orbit for each in passed)
+        special = tuple(each for _, each in passed)
         kind_of_branch = SpecialCurve if equations.kind else FollowedBranch
         branches.append(kind_of_branch(equations, orbits, special, "", end))
     return branches
@@ -295,7 +254,7 @@ def _in_words(
     z: NDArray,
     window: NDArray,
     goal: float,
-    passed: list[_Passed],
+    passed: list[tuple],
 ) -> str:
     """Text with the reason why a branch ends at an ordinary orbit."""
     if end == CLOSED:
@@ -308,6 +267,6 @@ def _in_words(
     here = f"{name} = {values[j]:.10g}"
     if len(values) > 1 or abs(values[j] - goal) <= 1e-12 * abs(goal):
         return f"{here} is reached"
-    folds = [each.orbit.z[-1] for each in passed if each.orbit.kind == "saddle-node"]
+    folds = [each.z[-1] for _, each in passed if each.kind == "saddle-node"]
     turned = f": {name} = {goal:.10g} is beyond the saddle-node at {folds[0]:.10g}" if folds else ""
     return f"{here} is reached, on the other side of the start than the goal{turned}"

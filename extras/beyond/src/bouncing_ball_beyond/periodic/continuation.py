@@ -97,34 +97,38 @@ def follow(
     >>> [(each.kind, round(each.amplitude, 6)) for each in branch.special]
     [('period doubling', 1.526824)]
     """
-    orbits = _listed(orbit, "orbit", "a periodic orbit, such as orbit(ball, amplitude=1.0)")
+    orbits = list(orbit) if isinstance(orbit, Iterable) else [orbit]
+    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in orbits):
+        raise ValueError(
+            f"orbit = {brief(orbit)}: must be a periodic orbit, such as orbit(ball, amplitude=1.0),"
+            " or a list of them"
+        )
     points = whole_number("points", points, 2)
     found = _follow_all(orbits, along, to, points, [None] * len(orbits))
     return alone(found[0]) if isinstance(orbit, PeriodicOrbit) else found
 
 
-def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int = 64) -> Any:
+def cascade(doubling: PeriodicOrbit, *, to: float, impacts: int = 64) -> list[FollowedBranch]:
     """Follow a cascade of period doublings, each branch up to the next doubling.
 
     Parameters
     ----------
-    doubling : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
-        First period doubling, or several, from which to start.
-    to : float or array_like
-        Value of the parameter at which branches end, or one value for each doubling.
+    doubling : PeriodicOrbit
+        First period doubling, from which to start.
+    to : float
+        Value of the parameter at which branches end.
     impacts : int
         Maximum number of impacts of the orbits.
 
     Returns
     -------
-    list of FollowedBranch, or a list of such lists and OrbitNotFound
-        Branches of the cascade. A sequence of doublings gives a list of cascades. An OrbitNotFound
-        gives the reason why a cascade is missing.
+    list of FollowedBranch
+        Branches of the cascade. It ends before a doubling whose branch is not found.
 
     Raises
     ------
     OrbitNotFound
-        If a single doubling has no cascade.
+        If the doubling has no cascade.
 
     Examples
     --------
@@ -135,38 +139,22 @@ def cascade(doubling: PeriodicOrbit | Sequence, *, to: ArrayLike, impacts: int =
     [(2, 'period doubling'), (4, 'period doubling')]
     """
     impacts = whole_number("impacts", impacts, 2)
-    wanted = "a period doubling, such as branch.first('period doubling')"
-    latest = _listed(doubling, "doubling", wanted)
-    whole = [[] if isinstance(each, PeriodicOrbit) else each for each in latest]
-    if np.ndim(to) and np.size(to) != len(latest):
+    if not isinstance(doubling, PeriodicOrbit):
         raise ValueError(
-            f"to: has {np.size(to)} values for {len(latest)} orbits: give one value, or one for"
-            " each"
+            f"doubling = {brief(doubling)}: must be a period doubling, such as"
+            " branch.first('period doubling')"
         )
-    to = np.broadcast_to(checked("to", to, -np.inf, np.inf, low_allowed=False), len(latest))
-    going = [i for i, each in enumerate(latest) if isinstance(each, PeriodicOrbit)]
-    while going := [i for i in going if 2 * latest[i].impacts <= impacts]:
-        until = ["period doubling"] * len(going)
-        found = _follow_all([latest[i] for i in going], None, to[going], 500, until)
-        further = []
-        for i, branch in zip(going, found, strict=True):
-            if isinstance(branch, OrbitNotFound):
-                whole[i] = whole[i] or branch
-                continue
-            whole[i].append(branch)
-            if branch.special and branch.special[-1].kind == "period doubling":
-                latest[i] = branch.special[-1]
-                further.append(i)
-        going = further
-    return alone(whole[0]) if isinstance(doubling, PeriodicOrbit) else whole
-
-
-def _listed(given: Any, name: str, wanted: str) -> list:
-    """Return one or more orbits as a list. Raises ValueError for anything else."""
-    found = list(given) if isinstance(given, Iterable) else [given]
-    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in found):
-        raise ValueError(f"{name} = {brief(given)}: must be {wanted}, or a list of them")
-    return found
+    latest = doubling
+    whole: list[FollowedBranch] = []
+    while 2 * latest.impacts <= impacts:
+        (branch,) = _follow_all([latest], None, to, 500, ["period doubling"])
+        if isinstance(branch, OrbitNotFound):
+            return whole or alone(branch)
+        whole.append(branch)
+        if not branch.special or branch.special[-1].kind != "period doubling":
+            break
+        latest = branch.special[-1]
+    return whole
 
 
 def _follow_all(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import brief
-from bouncing_ball_beyond.periodic.branches import SpecialCurve, both_ways
+from bouncing_ball_beyond.periodic.branches import SpecialCurve, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
     OrbitEquations,
@@ -22,7 +22,7 @@ from bouncing_ball_beyond.periodic.equations import (
     PeriodicOrbit,
 )
 from bouncing_ball_beyond.periodic.forms import SUCH
-from bouncing_ball_beyond.periodic.march import newton, unit
+from bouncing_ball_beyond.periodic.march import Start, newton, unit
 from bouncing_ball_beyond.periodic.paths import path_of, usual_range
 
 OTHER = 1e-3
@@ -77,7 +77,10 @@ def special_curve(
         raise OrbitNotFound(
             f"the orbit is not a {equations.kind}: Newton's method finds another orbit"
         )
-    return both_ways(equations, first.z, unit(first.tangent), window, points)
+    directions = unit(first.tangent) * [[-1], [1]]
+    nothing = np.full(2, np.nan), np.full(2, "")
+    both = Start(equations, np.tile(first.z, (2, 1)), directions, *nothing)
+    return joined(*followed(both, np.array([window, window]), [None, None], points, ""))
 
 
 def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:

@@ -773,11 +773,6 @@ class PeriodicOrbit:
         return self._each(np.pi - (np.pi - self.times) % (2 * np.pi))
 
     @property
-    def release_phase(self) -> float | NDArray:
-        """Phase of the table at the end of the contact, in (-π, π]."""
-        return self._each(np.pi - (np.pi - self._release[0]) % (2 * np.pi))
-
-    @property
     def contact_duration(self) -> float | NDArray:
         """Duration of the contact."""
         return self._each(self._release[0] - self.times)
@@ -863,19 +858,6 @@ class PeriodicOrbit:
         first impact.
         """
         return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
-
-    def distance(self, other: "PeriodicOrbit") -> float:
-        """Largest difference between the phases, speeds or T of two orbits.
-
-        The first impact is chosen such that this difference is smallest. The difference is infinite
-        if the numbers of impacts or periods differ.
-        """
-        if (self.impacts, self.periods) != (other.impacts, other.periods):
-            return np.inf
-        shifts = [np.roll(other._impacts, j, axis=0) - self._impacts for j in range(self.impacts)]
-        for shift in shifts:
-            shift[:, 0] = (shift[:, 0] + np.pi) % (2 * np.pi) - np.pi
-        return float(min(np.abs(shift).max() for shift in shifts))
 
 
 def _short(value: Any) -> str:

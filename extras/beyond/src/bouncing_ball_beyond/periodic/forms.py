@@ -111,12 +111,6 @@ def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
     return v, w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
 
 
-def _longest_step(equations: OrbitEquations, z: NDArray, v: NDArray) -> float:
-    """Longest step of the central differences along v."""
-    speeds = z[1 : equations.size : equations.unknowns]
-    return SHARE * min(1.0, np.abs(speeds).min()) / np.abs(v).max()
-
-
 @dataclass(frozen=True)
 class NormalForm:
     """Normal form of a saddle-node or a period doubling, the result of `normal_form`.
@@ -207,7 +201,9 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     q = equations.unknowns
     derivatives = equations.linearized(z[np.newaxis]).derivatives[0]
     v, w = _vectors(derivatives, multiplier)
-    step = _longest_step(equations, z, v)
+    # The longest step of the central differences along v.
+    slowest = np.abs(z[1 : equations.size : q]).min()
+    step = SHARE * min(1.0, slowest) / np.abs(v).max()
     coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
     value = coefficient(fine, v, w, multiplier)
     by_parameter = derivatives[..., q + 2].ravel()

@@ -413,7 +413,9 @@ def march(
         stalled = ahead.max(axis=1) < STALLED
         longer = np.minimum(np.where(easy, 2 * step, step), LONGEST_STEP)
         step = np.where(good, longer, length / 2)
-        away = _from_start(equations, first, here, units)
+        # Distance of each branch from its start, modulo whole turns of the table.
+        turns = np.round((here.z - first.z)[:, 0] / (2 * np.pi))
+        away = np.linalg.norm(equations.later(here.z - first.z, -turns) / units, axis=1)
         back = (away < step / 2) & (farthest > 2 * step)
         if back.any():
             back &= _cosine(here, first, units) > STRAIGHT
@@ -481,13 +483,6 @@ def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None) -> 
 def ends_at(kind: str, until: str | None) -> bool:
     """Whether a branch ends at special orbits of this kind."""
     return kind == until or (kind in KINDS and KINDS[kind].end != "")
-
-
-def _from_start(equations: OrbitEquations, first: Points, here: Points, units: NDArray) -> NDArray:
-    """Distance of each branch from its start, modulo whole turns of the table."""
-    turns = np.round((here.z - first.z)[:, 0] / (2 * np.pi))
-    away = equations.later(here.z - first.z, -turns)
-    return np.linalg.norm(away / units, axis=1)
 
 
 def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDArray) -> Points:

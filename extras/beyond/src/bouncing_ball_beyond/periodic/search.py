@@ -44,11 +44,6 @@ def rows_of(ball: Ball, **others: ArrayLike) -> tuple[Ball, list[NDArray], tuple
     return row, arrays[len(names) :], shape
 
 
-def first_turn(equations: OrbitEquations, z: NDArray) -> NDArray:
-    """Shift orbits by whole periods of the table until the first impact is in [0, 2π)."""
-    return equations.later(z, -np.floor(z[:, 0] / (2 * np.pi)))
-
-
 def guess_of_instants(
     ball: Ball, periods: int | NDArray, amplitude: NDArray, side: int = 1, table: Table = SINE
 ) -> NDArray:
@@ -103,7 +98,9 @@ def near_instants(
     guess = guess_of_instants(equations.ball, equations.periods, amplitude, sign, equations.table)
     solution = newton(equations, guess, iterations=40)
     good = solution.found & (sign * (1 - equations.turn(solution.linear)) > -AT_FOLD)
-    z = first_turn(equations, np.where(good[:, np.newaxis], solution.z, guess))
+    z = np.where(good[:, np.newaxis], solution.z, guess)
+    # The first impact is in the first period of the table.
+    z = equations.later(z, -np.floor(z[:, 0] / (2 * np.pi)))
     good &= (z[:, 1] > 0) & (solution.linear.flights[:, 0] > 0)
     rows = enumerate(zip(good, z, strict=True))
     found = [single(equations, i).orbit(row) if is_good else None for i, (is_good, row) in rows]

@@ -62,25 +62,19 @@ def swing(x: Values) -> tuple[Values, Values]:
     return sine, half * sine
 
 
-FRACTIONS = (
-    "; frequencies in a ratio of whole numbers have a common period: take it as the period of the"
-    " table, such as k = 2 and 3 instead of 1 and 1.5"
-)
-
-
 def checked_harmonic(each: Any) -> tuple[int, float, float]:
     """Return (k, a, p) as numbers. Raises ValueError unless k ≥ 1 is whole and a, p are finite."""
-    fraction = False
     try:
         k, a, p = each
-        fraction = bool(k % 1)
         good = int(k) == k >= 1 and isfinite(a) and isfinite(p)
     except (TypeError, ValueError):
         good = False
     if not good:
         raise ValueError(
             f"harmonics: {each!r}: must be (k, a, p) for a harmonic a · sin(kτ + p), with a whole"
-            " number k from 1 and numbers a, p" + (FRACTIONS if fraction else "")
+            " number k from 1 and numbers a, p; frequencies in a ratio of whole numbers have a"
+            " common period: take it as the period of the table, such as k = 2 and 3 instead of 1"
+            " and 1.5"
         )
     return int(k), float(a), float(p)
 
@@ -364,8 +358,7 @@ class Table:
         return cls((k, a / scale, p) for k, a, p in found.harmonics), scale
 
     def __repr__(self) -> str:
-        harmonics = zip(self.orders, self.sizes, self.phases, strict=True)
-        return f"Table([{', '.join(f'({k}, {a!r}, {p!r})' for k, a, p in harmonics)}])"
+        return f"Table([{', '.join(f'({k}, {a!r}, {p!r})' for k, a, p in self.harmonics)}])"
 
     @property
     def parameters(self) -> dict[str, Values]:

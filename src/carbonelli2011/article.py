@@ -18,7 +18,7 @@ from bouncing_ball import restitution, spring_damper
 from carbonelli2011 import measures, paper
 from paper_replication import origins
 from paper_replication.datasets import Datasets, parameters
-from paper_replication.judgements import counted
+from paper_replication.judgements import claims_of, counted
 from paper_replication.templates import environment
 from paper_replication.texts import fixed, listed
 
@@ -47,6 +47,7 @@ def filled_in(
     It knows the datasets of all figures, tables and claims by their names, and what `more` has.
     """
     judged = counted(datasets["claims"])
+    own = claims_of(datasets["claims"], "own claim")
     template = environment(TEMPLATES, marked).get_template(f"{name}.{kind}.j2")
     return template.render(
         **datasets,
@@ -54,7 +55,7 @@ def filled_in(
         given={key: parameters(data) for key, data in datasets.items()},
         code={key: next(iter(json.loads(data.attrs["code"]))) for key, data in datasets.items()},
         judged=judged,
-        claim={row["claim"]: row for row in judged},
+        claim={row["claim"]: row for row in [*judged, *own]},
         error_limit=paper.LIMIT,
         stiff=paper.STIFF,
         **more,

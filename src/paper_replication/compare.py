@@ -137,8 +137,7 @@ def run_in(folder: Path, label: str) -> Run:
 
 def configuration(project: Project) -> dict:
     """The configuration of the checkout."""
-    with (project.top / "config/config.yaml").open("rb") as file:
-        return yaml.safe_load(file)
+    return yaml.safe_load((project.top / "config/config.yaml").read_bytes())
 
 
 def one_line(error: Exception) -> str:

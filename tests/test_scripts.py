@@ -184,17 +184,6 @@ def test_figures_10_and_13_have_the_limits_of_a_stiff_contact():
             assert off[..., 0].values == pytest.approx(10 * off[..., 1].values, rel=1e-3)
 
 
-def test_figure_13_has_labels_at_round_frequency_ratios_within_its_axis():
-    ratios = {"min": 1.0, "max": 1000.0, "samples": 5}
-    given = registered("apparent_restitution", "fig13", frequency_ratio=ratios)
-    data = apparent_restitution.STAGE["fig13"](given, "displacement")
-    labelled = data.frequency_ratio.values[data.labelled.values]
-    assert labelled.tolist() == [1, 2, 5, 10, 100, 1000]
-    others = data.frequency_ratio.values[~data.labelled.values]
-    # 10^(3/4) and its powers; a fourth of three decades is no decade but at the ends.
-    assert others == pytest.approx(10 ** np.array([0.75, 1.5, 2.25]))
-
-
 # Branches
 
 

@@ -29,8 +29,8 @@ from paper_replication.verdicts import Claim, answer
 ALONG_RATIO = {
     "fig05": apparent_restitution.cases,
     "fig06": apparent_restitution.cases,
-    "fig10": apparent_restitution.fig10,
-    "fig13": apparent_restitution.fig13,
+    "fig10": apparent_restitution.amplitudes,
+    "fig13": apparent_restitution.amplitudes,
     "fig14": error_thresholds.fig14,
 }
 PERMANENT_CONTACT = {"fig11": permanent_contact.fig11, "fig16": permanent_contact.fig16}

@@ -41,13 +41,11 @@ from paper_replication.drawing import (
     COLOURS,
     DASHES,
     GUIDE,
-    POINTS,
     Look,
     colours,
     latex_number,
     legend_below,
     name_at_right,
-    name_beside,
     pale,
     panels,
     sample,
@@ -73,8 +71,8 @@ PERIOD = 2 * np.pi
 
 TIME = r"time $\tau/2\pi$"
 
-CLOSE = 9.0
-"""Distance in points below which marks share a label."""
+LABELLED = [1, 2, 5, 10, 100]
+"""Frequency ratios that Fig. 13 marks. Larger ones would coincide with the restitution model."""
 
 
 # Schematics of both models
@@ -249,16 +247,20 @@ def fig13(data: xr.Dataset) -> Figure:
     end = dot | {"linestyle": "-"}
     star: Look = {"marker": "*", "markersize": 9, "linestyle": "none"}
     limits = np.array([data.restitution_impact_velocity, data.restitution_bounce_velocity])
+    labelled = np.argmax(data.phase.notnull().any("frequency_ratio").values)
     for k, colour in enumerate(shades):
         case = data.isel(case=k)
-        for phase, velocity, look in (
-            (case.phase / np.pi, case.impact_velocity / np.pi, start),
-            (case.release_phase / np.pi, case.bounce_velocity / np.pi, end),
+        marked = case.interp(frequency_ratio=LABELLED)
+        for phase, velocity, look, beyond in (
+            ("phase", "impact_velocity", start, (7, "left")),
+            ("release_phase", "bounce_velocity", end, (-7, "right")),
         ):
             line = {"color": colour, "linestyle": look["linestyle"]}
-            curve(axes, phase, velocity, case.admissible, **line)
-            marked = case.labelled
-            axes.plot(phase[marked], velocity[marked], **look | line | {"linestyle": "none"})
+            curve(axes, case[phase] / np.pi, case[velocity] / np.pi, case.admissible, **line)
+            dots = look | line | {"linestyle": "none"}
+            axes.plot(marked[phase] / np.pi, marked[velocity] / np.pi, **dots)
+            if k == labelled:
+                name_ratios(axes, marked[phase] / np.pi, marked[velocity] / np.pi, beyond)
         phases = [float(case.restitution_phase) / np.pi] * 2
         axes.plot(phases, limits / np.pi, color=colour, zorder=4, **star)
     axes.set(xlabel=r"phase of the table over $\pi$", ylabel=r"velocity of the ball $z'/\pi$")
@@ -277,34 +279,25 @@ def fig13(data: xr.Dataset) -> Figure:
     if (data.phase.notnull() & ~data.admissible).any():
         entries["inadmissible"] = sample(linestyle=KINDS["inadmissible"])
     legend_below(figure, entries, columns=1)
-    figure.draw_without_rendering()
-    name_ratios(axes, data.isel(case=np.argmax(data.phase.notnull().any("frequency_ratio").values)))
     return figure
 
 
-def name_ratios(axes: Axes, case: xr.Dataset) -> None:
-    """Label the marked ϖ at the start and at the end of contact.
+def name_ratios(
+    axes: Axes, phases: xr.DataArray, velocities: xr.DataArray, beyond: tuple[int, str]
+) -> None:
+    """Label the marks of `LABELLED` in turn above and below their curve, which descends.
 
-    A ϖ shares the label of the largest ϖ if its points are closer than `CLOSE` to the points of the
-    largest ϖ, at both ends of contact.
+    The last label is beyond the end of the curve, at an offset in points and an alignment.
     """
-    marked = case.isel(frequency_ratio=np.flatnonzero(case.labelled & case.phase.notnull()))
-    marked = marked.sortby("frequency_ratio")
-    if not marked.sizes["frequency_ratio"]:
-        return
-    starts = np.stack([marked.phase, marked.impact_velocity], axis=1) / np.pi
-    ends = np.stack([marked.release_phase, marked.bounce_velocity], axis=1) / np.pi
-    both = np.stack([starts, ends])
-    points = axes.transData.transform(both.reshape(-1, 2)).reshape(both.shape)
-    distances = np.linalg.norm(points - points[:, -1:], axis=2) * POINTS / axes.figure.dpi
-    beside = (distances < CLOSE).all(axis=0)
-    relation = r"\geq" if beside.sum() > 1 else "="
-    ratios = marked.frequency_ratio.values
-    for places in both:
-        for ratio, place in zip(ratios[~beside], places[~beside], strict=True):
-            name_beside(axes, label(frequency_ratio=ratio), tuple(place))
-        shared = rf"$\varpi{relation}{latex_number(ratios[beside][0])}$"
-        name_beside(axes, shared, tuple(places[beside][0]))
+    above = (5, 1), "left", "bottom"
+    below = (-5, -1), "right", "top"
+    last = (beyond[0], 0), beyond[1], "center"
+    sides = (above, below, above, below, last)
+    for phase, velocity, side in zip(phases, velocities, sides, strict=True):
+        text = label(frequency_ratio=phase.frequency_ratio)
+        offset, horizontal, vertical = side
+        look: Look = {"textcoords": "offset points", "ha": horizontal, "va": vertical}
+        axes.annotate(text, (phase, velocity), offset, **look)
 
 
 # Permanent contact

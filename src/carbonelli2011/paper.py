@@ -143,17 +143,6 @@ TOLERANCES: dict[str, dict] = {
     "validity_map": {"tolerance": LIMIT},
 }
 """The tolerance of the paper, which only thresholds of ϖ need."""
-CURVES = list(
-    dict.fromkeys(
-        [
-            (PARAMETERS[name]["n"], case["restitution"], case["amplitude"])
-            for name in ("fig05", "fig06")
-            for case in PARAMETERS[name]["cases"].values
-        ]
-        + [(2, 0.85, amplitude) for amplitude in PARAMETERS["fig10"]["amplitude"].values]
-    )
-)
-"""n, r and Λ of the curves of Figs. 5, 6 and 10, which the map marks; one is in two figures."""
 AXES = {
     "fig03": {"amplitude_max": 2.0},
     "fig08": {"amplitude_max": 1.5},

@@ -58,7 +58,6 @@ SYMBOLS = {
     "admissible": Variable("whether the orbit has no earlier impact or release"),
     "end_kind": Variable("kind of the end of the branch"),
     "end_reason": Variable("reason for the end of the branch"),
-    "labelled": Variable("whether the figure marks this frequency ratio"),
     # Orbits of the restitution model
     "restitution_amplitude": Variable("excitation amplitude, restitution model", "Λ"),
     "restitution_phase": Variable("phase of impact, restitution model", "φ_CR", "Eq. 6", "rad"),
@@ -173,10 +172,6 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
             tolerance=1e-6,
         ),
         "below_mean": Variable("mean of this fraction over r", tolerance=1e-6),
-        "curve_n": Variable("family of the curve", "n"),
-        "curve_restitution": Variable("restitution coefficient of the curve", "r"),
-        "curve_amplitude": Variable("excitation amplitude of the curve", "Λ"),
-        "curve_place": Variable("relative amplitude of the curve"),
     },
     "lowest_doubling": {
         # At a minimum over ϖ, ϖ is known to the square root of the precision of Λ, about 1e-13.

@@ -19,7 +19,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.text import Annotation
 
 from paper_replication.datasets import whole
 
@@ -148,9 +147,6 @@ POINTS = 72
 LINE_HEIGHT = 10.5
 """Vertical distance of labels that are next to each other, in points."""
 
-MARK_RADIUS = 3
-"""Half the size of a mark, in points."""
-
 
 def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     """Add labels at the right edge of a panel.
@@ -174,48 +170,6 @@ def name_at_right(axes: Axes, names: Sequence[tuple[str, float, str]]) -> None:
     look: Look = {"xycoords": axes.get_yaxis_transform(), "textcoords": "offset points"}
     for (text, height, colour), offset in zip(order, moved, strict=True):
         axes.annotate(text, (1.0, height), (4, offset), color=colour, va="center", **look)
-
-
-def name_beside(axes: Axes, text: str, point: tuple[float, float]) -> None:
-    """Add a label next to a point, given in data coordinates, and a line that joins them.
-
-    The label is at the position where it hides the fewest curves, marks and labels. Among equally
-    good positions the nearest is chosen. Draw the figure without rendering first, because the panel
-    needs its final size.
-    """
-    labels = [other.get_window_extent() for other in axes.texts]
-    note = axes.annotate(text, point, (0, 0), textcoords="offset points")
-    paths = [(line, line.get_transform().transform_path(line.get_path())) for line in axes.lines]
-    curves = [path for line, path in paths if line.get_linestyle() != "None"]
-    marks = [path.vertices for line, path in paths if line.get_linestyle() == "None"]
-    inside = axes.get_window_extent()
-
-    def hidden(place: tuple[float, float]) -> int:
-        move(note, place)
-        box = note.get_window_extent().padded(axes.figure.dpi / POINTS)
-        corners = np.array([box.min, box.max])
-        outside = inside.count_contains(corners) < len(corners)
-        covered = sum(path.intersects_bbox(box, filled=False) for path in curves)
-        covered += sum(
-            box.padded(MARK_RADIUS * axes.figure.dpi / POINTS).count_contains(points)
-            for points in marks
-        )
-        return covered + box.count_overlaps(labels) + outside
-
-    sides = [(1, 1), (-1, -1), (1, -1), (-1, 1), (1, 0), (-1, 0), (0, 1), (0, -1)]
-    places = [(far * x, far * y) for far in (8, 12, 16, 20) for x, y in sides]
-    place = min(places, key=hidden)
-    move(note, place)
-    line: Look = {"arrowstyle": "-", "linewidth": 0.6, "shrinkA": 0, "shrinkB": MARK_RADIUS}
-    axes.annotate("", point, place, textcoords="offset points", arrowprops=line)
-
-
-def move(note: Annotation, place: tuple[float, float]) -> None:
-    """Move a label to an offset in points, with its nearest edge or corner towards its point."""
-    x, y = np.sign(place).astype(int)
-    horizontal = ("center", "left", "right")[x]
-    vertical = ("center", "bottom", "top")[y]
-    note.set(position=place, ha=horizontal, va=vertical)
 
 
 # Files

@@ -56,11 +56,12 @@ def cases(parameters: dict, release: str) -> xr.Dataset:
     return along_frequency_ratio(parameters["n"], r, amplitude, ratios, release)
 
 
-def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset:
-    """One r and several Λ, with the limits of a stiff contact: phase and velocities of the
-    restitution model.
+def amplitudes(parameters: dict, release: str) -> xr.Dataset:
+    """One r and several Λ (Figs. 10 and 13), with the limits of a stiff contact: phase and
+    velocities of the restitution model.
     """
     n = parameters["n"]
+    ratios = grid(parameters["frequency_ratio"])
     amplitude = np.array(parameters["amplitude"])
     r = np.full(amplitude.shape, parameters["restitution"])
     velocity = float(restitution.bounce_velocity(n))
@@ -71,23 +72,4 @@ def amplitudes(parameters: dict, ratios: np.ndarray, release: str) -> xr.Dataset
     )
 
 
-def fig10(parameters: dict, release: str) -> xr.Dataset:
-    """One r and several Λ at the frequency ratios of the grid."""
-    return amplitudes(parameters, grid(parameters["frequency_ratio"]), release)
-
-
-def fig13(parameters: dict, release: str) -> xr.Dataset:
-    """As Fig. 10, with the frequency ratios 2, 5 and the decades added, which are labelled."""
-    ratios = grid(parameters["frequency_ratio"])
-    round_values = np.array([0.1, 1, 2, 5, *10.0 ** np.arange(1, 7)])
-    # The ends of the grid, and decades inside, are round up to rounding errors.
-    inside = round_values >= ratios[0] * (1 - 1e-12)
-    inside &= round_values <= ratios[-1] * (1 + 1e-12)
-    apart = np.abs(ratios[:, np.newaxis] / round_values[inside] - 1)
-    near = apart.min(axis=1, initial=np.inf) < 1e-12
-    merged = np.sort(np.concatenate([ratios[~near], round_values[inside]]))
-    dataset = amplitudes(parameters, merged, release)
-    return dataset.assign(labelled=("frequency_ratio", np.isin(merged, round_values)))
-
-
-STAGE = {"fig05": cases, "fig06": cases, "fig10": fig10, "fig13": fig13}
+STAGE = {"fig05": cases, "fig06": cases, "fig10": amplitudes, "fig13": amplitudes}

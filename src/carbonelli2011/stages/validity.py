@@ -18,7 +18,6 @@ from bouncing_ball.continuation import SPECIAL, bifurcations
 from bouncing_ball.errors import COMPARED, enough_from, errors_of_orbits, orbits_along
 from bouncing_ball.orbits import Family, NoOrbit, contact_of_ball
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, damping_ratio, permanent_contact
-from carbonelli2011.paper import CURVES
 from paper_replication.datasets import grid
 
 FINER = (16, 8)
@@ -72,10 +71,6 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     below = ((np.minimum(first[ends], doubling) - node) / width).reshape(shape[:2])
     below_mean = [mean_share(r, each, np.inf) for each in below]
 
-    n_curve, r_curve, amplitude_curve = map(np.array, zip(*CURVES, strict=True))
-    begin = restitution.saddle_node(n_curve, r_curve)
-    end = restitution.period_doubling(n_curve, r_curve)
-
     over = ("quantity", "n", "restitution", "place")
     share, mean, up_to, largest = failures(errors, r, place, end_place, tolerance)
     return xr.Dataset(
@@ -93,10 +88,6 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
             "doubled_mean": (over[1:2], doubled_mean),
             "below_share": (over[1:3], np.maximum(below, 0)),
             "below_mean": (over[1:2], below_mean),
-            "curve_n": ("curve", n_curve),
-            "curve_restitution": ("curve", r_curve),
-            "curve_amplitude": ("curve", amplitude_curve),
-            "curve_place": ("curve", (amplitude_curve - begin) / (end - begin)),
         },
         {"quantity": list(COMPARED), "n": parameters["n"], "restitution": r, "place": place},
     )

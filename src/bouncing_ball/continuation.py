@@ -522,7 +522,7 @@ def _equal_chords(family: Family, path: NDArray, points: int) -> NDArray:
         places = np.interp(np.linspace(0, passed[-1], points), passed, places)
     else:
         raise NoOrbit(
-            f"the {points} points of a {family.n}-T branch do not become equidistant: "
+            f"could not space the {points} points of a {family.n}-T branch evenly: "
             "give another number of points"
         )
     return orbits

@@ -270,7 +270,7 @@ def test_markdown_leaves_formulas_as_they_are(page):
 
 def test_only_a_formula_and_its_punctuation_are_kept_on_one_line(texts):
     """A longer unit would be cut off on a narrow screen, and shrink the printed page."""
-    one = re.compile(r'<span class="math inline">(?:(?!</?span).)*</span>[.,;:)]+</span>')
+    one = re.compile(r'\(?<span class="math inline">(?:(?!</?span).)*</span>[.,;:)]+</span>')
     for name in ("paper.html", "supplement.html"):
         units = texts[name].split('<span class="whole">')[1:]
         assert units and all(one.match(unit) for unit in units)

@@ -101,8 +101,8 @@ def page_of(
     name_references(tokens)
     name_cells(tokens)
     body = parser().renderer.render(tokens, parser().options, {})
-    # A formula stays with the punctuation after it.
-    inline = r'(<span class="math inline">(?:(?!</span>).)*</span>[.,;:)]+)'
+    # A formula stays with the punctuation after it, and with a bracket before it.
+    inline = r'(\(?<span class="math inline">(?:(?!</span>).)*</span>[.,;:)]+)'
     body = re.sub(inline, r'<span class="whole">\1</span>', body)
     return framed(with_origins(with_links(body), name, origin), name, contents)
 

@@ -216,7 +216,7 @@ rule error_thresholds:
 rule validity:
     """Map of the stable orbits for which the advised frequency ratio is enough"""
     input:
-        code=stage("validity") + MODELS + PAPER,
+        code=stage("validity") + MODELS,
     output:
         **datasets(config["validity"]),
         record="results/records/validity.json",

@@ -99,8 +99,8 @@ wheels:
 
 # What a release consists of, in dist/: the packages, the results, the site, and their hashes.
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)
-BUILD := import sys; from importlib import import_module; \
-	backend = import_module(sys.argv[1]); backend.build_wheel(sys.argv[2]); backend.build_sdist(sys.argv[2])
+BUILD := import sys; from importlib import import_module; _, backend, folder = sys.argv; \
+	backend = import_module(backend); backend.build_wheel(folder); backend.build_sdist(folder)
 release: replication
 	$(MAKE) -C extras/beyond diff docs
 	rm -rf dist && mkdir dist

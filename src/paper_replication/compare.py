@@ -362,6 +362,9 @@ def excerpt(old: object, new: object) -> str:
 
     >>> excerpt(82.177, 83.0), excerpt(1.0, 1.000000001)
     ('82.177 → 83', '1.0 → 1.000000001')
+    >>> long = "The first 80 characters of this sentence are the same in both texts, and it is "
+    >>> excerpt(f"{long}82.", f"{long}83.")
+    'ame in both texts, and it is 82. → ame in both texts, and it is 83.'
     """
     texts = [shown(old), shown(new)]
     if texts[0] == texts[1]:

@@ -11,7 +11,9 @@ from bouncing_ball.spring_damper import permanent_contact as closed_form
 from bouncing_ball_beyond import permanent_contact
 
 HARMONICS = ((1, 1.0, 0.0), (3, 0.05, -1.1))
+# On three tones the weakest grip of Tsuji's law comes at another phase from some Λ on.
 WAVES = {"sine": ((1, 1.0, 0.0),), "two tones": HARMONICS}
+WAVES["three tones"] = ((1, 0.9, 0.2), (2, 0.2, 1.9), (5, 0.01, -0.4))
 TABLES = {name: bb.Table(list(harmonics)) for name, harmonics in WAVES.items()}
 
 
@@ -19,12 +21,19 @@ def own_force(p, v, stiffness, damping):
     return stiffness * p * (1 + 3 * p) + damping * v * (1 + p)
 
 
+def soft_surface(p, v, stiffness, damping):
+    return stiffness * p**2 * np.sqrt(p) + damping * p * v
+
+
 LAWS = {
-    "hunt-crossley": bb.hunt_crossley(stiffness=20.0, damping=0.2),
+    "hunt-crossley": bb.hunt_crossley(stiffness=60.0, damping=0.2),
     "tsuji": bb.tsuji(restitution=0.65, duration=0.5, speed=3.8),
     "own": bb.ForceLaw(own_force, {"stiffness": 30.0, "damping": 2.0}),
     "own without pull": bb.ForceLaw(
         own_force, {"stiffness": 30.0, "damping": 2.0}, release="force"
+    ),
+    "soft surface": bb.ForceLaw(
+        soft_surface, {"stiffness": 2200.0, "damping": 95.0}, root=2, release="force"
     ),
 }
 
@@ -82,7 +91,7 @@ def test_an_integrated_contact_loses_its_grip_at_the_threshold(law, wave):
         def after(y, amplitude=amplitude):
             return follow(law, amplitude, harmonics, y).y[:, -1] - y
 
-        start = fsolve(after, start, xtol=1e-10)
+        start = fsolve(after, start, xtol=1e-8, epsfcn=1e-10)
     phase, p, v = weakest(law, follow(law, amplitude, harmonics, start))
     assert p > 0
 
@@ -99,6 +108,12 @@ def test_an_integrated_contact_loses_its_grip_at_the_threshold(law, wave):
 
     *_, own = fsolve(touching, [p, v, phase, amplitude], xtol=1e-11)
     assert found == pytest.approx(own, rel=1e-7)
+
+
+def test_a_steady_motion_that_ends_before_it_loses_its_grip_is_refused():
+    """By arclength, Λ rises to 0.3283, and the grip vanishes at 0.3279 on the way back."""
+    with pytest.raises(ValueError, match="steady motion in contact ends, or is not the only one"):
+        permanent_contact(bb.hunt_crossley(20.0, 0.2), table=TABLES["two tones"])
 
 
 def test_what_has_no_threshold_is_refused():

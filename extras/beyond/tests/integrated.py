@@ -102,8 +102,9 @@ def weakest_grip(ball, amplitude, harmonics=SINE):
             pull = 1 + share * amplitude * waveform(harmonics, t, 2)
             return [y[1], acceleration(ball, *y) - pull]
 
-        tight = {"rtol": 1e-12, "atol": 1e-15, "dense_output": True}
-        return solve_ivp(motion, (0, 2 * np.pi), deep * y, "DOP853", **tight)
+        return solve_ivp(
+            motion, (0, 2 * np.pi), deep * y, "DOP853", rtol=1e-12, atol=1e-15, dense_output=True
+        )
 
     def after(y, share):
         return moved(y, share).y[:, -1] / deep - y

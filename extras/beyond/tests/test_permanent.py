@@ -12,8 +12,11 @@ from bouncing_ball_beyond import permanent_contact
 
 HARMONICS = ((1, 1.0, 0.0), (3, 0.05, -1.1))
 # On three tones the weakest grip of Tsuji's law comes at another phase from some Λ on.
-WAVES = {"sine": ((1, 1.0, 0.0),), "two tones": HARMONICS}
-WAVES["three tones"] = ((1, 0.9, 0.2), (2, 0.2, 1.9), (5, 0.01, -0.4))
+WAVES = {
+    "sine": ((1, 1.0, 0.0),),
+    "two tones": HARMONICS,
+    "three tones": ((1, 0.9, 0.2), (2, 0.2, 1.9), (5, 0.01, -0.4)),
+}
 TABLES = {name: bb.Table(list(harmonics)) for name, harmonics in WAVES.items()}
 
 

@@ -441,7 +441,7 @@ def contact_values(
     check_table(table)
     check_whole_numbers("n", n)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    check_ends("ball", row, 1.5 * np.pi * periods)
+    check_ends("ball", ball, 1.5 * np.pi * np.asarray(n))
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
         if name in found:

@@ -14,6 +14,7 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, brief, check_one_ball
+from bouncing_ball_beyond.contacts.forces import SURFACE
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear
 from bouncing_ball_beyond.tables.table import PERIOD, SINE, Table, Values, check_table
@@ -56,9 +57,9 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     Raises
     ------
     ValueError
-        If the force depends on the speed at the start of the contact. If the steady motion is not
-        found. If Λ reaches a maximum before the grip is zero: the steady motion then ends in a
-        saddle-node, and the ball jumps to another motion.
+        If the force depends on the speed at the start of the contact, or begins with a power below
+        1. If the steady motion is not found. If Λ reaches a maximum before the grip is zero: the
+        steady motion then ends in a saddle-node, and the ball jumps to another motion.
 
     Examples
     --------
@@ -82,6 +83,9 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     if "start_speed" in law.needs:
         raise ValueError(f"{law}: the force depends on the start of a contact that has no start")
     steady = _Steady(law, table)
+    # At twice the depth forces of powers from 1 are at least twice as large, within rounding.
+    if steady.force(2 * SURFACE, 0.0, 0.0) < 1.99 * steady.force(SURFACE, 0.0, 0.0):
+        raise ValueError(f"{law}: the force begins with a power below 1, too steep at the surface")
     x, y, unknown = steady.guess(1 - LEVELS[0])
     before = 0.0
     for level in LEVELS:
@@ -98,8 +102,7 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
             )
             if not found.success:
                 raise ValueError(
-                    f"{law}: no steady motion in contact is found near Λ = {found.p[1]:.4g}; forces"
-                    " that begin with a power below 1 are too steep at the surface"
+                    f"{law}: no steady motion in contact is found near Λ = {found.p[1]:.4g}"
                 )
             p, v = found.sol(x)
             later = x[steady.grip(p, v, steady.load(x, found.p)).argmin()]
@@ -177,6 +180,5 @@ class _Steady:
         grip = self.grip(self.static + 1j * H * p, 1j * H * v, 1.0).imag
         weakest = grip.argmin()
         amplitude = -share * self.held * H / grip[weakest]
-        y = np.roll([p, v], -weakest, axis=1)[:, [*range(NODES), 0]]
-        y = amplitude * y + [[self.static], [0.0]]
-        return np.append(s, 2 * np.pi), y, np.array([s[weakest], amplitude])
+        y = amplitude * np.roll([p, v], -weakest, axis=1) + [[self.static], [0.0]]
+        return np.append(s, 2 * np.pi), y[:, [*range(NODES), 0]], np.array([s[weakest], amplitude])

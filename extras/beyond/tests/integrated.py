@@ -93,26 +93,28 @@ def free_impact(ball, u):
 def weakest_grip(ball, amplitude, harmonics=SINE):
     """The smallest depth, or force, of the steady motion in contact, divided by its value at rest.
 
-    The amplitude grows in four periods from 0, and the state after them is the first guess.
+    It is followed from rest. A ball that the amplitude reaches in one step may begin to bounce.
     """
     deep = brentq(lambda p: acceleration(ball, -p, 0.0) - 1, 0.0, 1.0, xtol=1e-16)
 
-    def moved(y, grown=1e-9, periods=1):
+    def moved(y, share):
         def motion(t, y):
-            share = np.sin(np.pi / 2 * min(t / grown, 1.0)) ** 4
             pull = 1 + share * amplitude * waveform(harmonics, t, 2)
             return [y[1], acceleration(ball, *y) - pull]
 
-        end = 2 * np.pi * periods
         return solve_ivp(
-            motion, (0, end), deep * y, "DOP853", rtol=1e-12, atol=1e-15, dense_output=True
+            motion, (0, 2 * np.pi), deep * y, "DOP853", rtol=1e-12, atol=1e-15, dense_output=True
         )
+
+    def after(y, share):
+        return moved(y, share).y[:, -1] / deep - y
 
     # A force that pushes at the surface ends contacts there.
     surface = ball.release == "displacement" or acceleration(ball, -1e-12, 1e-6) > 0
-    start = moved(np.array([-1.0, 0.0]), 8 * np.pi, 4).y[:, -1] / deep
-    steady = fsolve(lambda y: moved(y).y[:, -1] / deep - y, start, xtol=1e-10)
-    motion = moved(steady).sol
+    steady = np.array([-1.0, 0.0])
+    for share in (0.5, 0.9, 0.99, 1.0):
+        steady = fsolve(after, steady, (share,), xtol=1e-8, epsfcn=1e-12)
+    motion = moved(steady, 1.0).sol
 
     def grip(t):
         gap, rate = motion(t)

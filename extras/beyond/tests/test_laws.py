@@ -124,6 +124,12 @@ def test_a_law_without_a_rebound_is_followed():
     assert abs(ball.contact(tau, u, T, amplitude).duration - duration) < 1e-8
 
 
+def test_a_corrected_ball_needs_no_rebound_of_slow_impacts():
+    law = ForceLaw(lambda p, v, k, c: k * p * p + c * v, {"k": 900.0, "c": 9.0})
+    corrected, exact = (orbit(ball, amplitude=2.4) for ball in (Corrected(law), law))
+    assert np.isnan(law.free(1.0)) and abs(corrected.max_height / exact.max_height - 1) < 1e-3
+
+
 class TestPermanentContact:
     """Contacts in which balls are shaken for some periods before they leave, or stay."""
 

@@ -48,6 +48,10 @@ def pulling(p, v, stiffness, damping):
     return stiffness * p + damping * v
 
 
+def quadratic(p, v, stiffness, damping):
+    return stiffness * p * p * (1 + damping * v)
+
+
 class Kind:
     """A ball, a parameter to follow, and the exponents of its parameters if all lengths and times
     are stretched, and if the frequency of the table changes (from f = F/mg and p = Ω²x/g)."""
@@ -67,6 +71,12 @@ PULLING = bb.ForceLaw(
     {"stiffness": 400.0, "damping": 8.0},
     release="force",
     units={"stiffness": (0, 0, -2), "damping": (0, 0, -1)},
+)
+QUADRATIC = bb.ForceLaw(
+    quadratic,
+    {"stiffness": 3000.0, "damping": 0.25},
+    release="force",
+    units={"stiffness": (0, -1, -2), "damping": (0, -1, 1)},
 )
 KINDS = {
     "Rigid": Kind(bb.Rigid(0.6), "restitution", {}, {}),
@@ -93,6 +103,9 @@ KINDS = {
     ),
     'own law with release="force"': Kind(
         PULLING, "damping", {"stiffness": -2, "damping": -1}, {"stiffness": -2, "damping": -1}
+    ),
+    'own law that begins as p², with release="force"': Kind(
+        QUADRATIC, "damping", {"stiffness": -3}, {"stiffness": -4, "damping": -1}
     ),
 }
 
@@ -287,7 +300,9 @@ def orbit(pair):
 def orbits(pair):
     """The restitution model has two orbits: its W′ is large enough once in a period."""
     found = bb.orbits(pair.ball, **pair.given)
-    assert sorted(each.stable for each in found) == [False, True]
+    # A soft contact has a further orbit, on which the ball lies on the table for most of a period.
+    short = [each for each in found if each.contact_duration < np.pi]
+    assert sorted(each.stable for each in short) == [False, True]
     for each in found:
         closes(each)
 

@@ -805,7 +805,7 @@ class Corrected(Ball):
 
     def __post_init__(self) -> None:
         check_ball(self.of)
-        check_ends("of", self.of, 1.0)
+        check_ends("of", self.of, 1.5 * np.pi)
 
     @property
     def parameters(self) -> dict[str, Values]:

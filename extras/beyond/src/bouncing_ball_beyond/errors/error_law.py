@@ -435,13 +435,14 @@ def contact_values(
         before these impacts and end D - t_c after them.
     """
     if isinstance(quantities, str) or not set(quantities) <= set(QUANTITIES):
-        allowed = ", ".join(QUANTITIES)
-        raise ValueError(f"quantities = {quantities!r}: must be a list of names from {allowed}")
+        raise ValueError(
+            f"quantities = {quantities!r}: must be a list of names from {', '.join(QUANTITIES)}"
+        )
     checked("amplitude", amplitude, 0, np.inf, low_allowed=False)
     check_table(table)
     check_whole_numbers("n", n)
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    check_ends("ball", row, 1.5 * np.pi * periods)
+    check_ends("ball", ball, 1.5 * np.pi * np.asarray(n))
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
     for name in ("saddle_node", "period_doubling"):
         if name in found:
@@ -468,8 +469,11 @@ def rows_of_orbits(equations: OrbitEquations, amplitude: NDArray) -> NDArray:
     solution = newton(equations, guess, iterations=30)
     good = solution.found & (equations.turn(solution.linear) < 1 + AT_FOLD)
     # On compliant contacts Newton's method may find a solution that is not an orbit.
-    leaves = equations.ends(solution.z).speed[:, 0] > 0
-    good &= leaves & (solution.z[:, 1] > 0) & (np.abs(solution.z - guess)[:, 0] < np.pi)
+    good &= (
+        (equations.ends(solution.z).speed[:, 0] > 0)
+        & (solution.z[:, 1] > 0)
+        & (np.abs(solution.z - guess)[:, 0] < np.pi)
+    )
     return np.where(good[:, np.newaxis], solution.z, np.nan)
 
 

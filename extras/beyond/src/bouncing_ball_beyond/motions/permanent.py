@@ -14,12 +14,16 @@ from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 
 from bouncing_ball_beyond.contacts.balls import Ball, H, SpringDamper, brief, check_one_ball
+from bouncing_ball_beyond.contacts.forces import SURFACE
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear
-from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
+from bouncing_ball_beyond.tables.table import PERIOD, SINE, Table, Values, check_table
 
-LEVELS = np.linspace(0.875, 0.0, 8)
-"""Minima of the grip, divided by the grip at rest, through which the steady motion is followed."""
+LEVELS = np.append(np.linspace(0.875, 0.125, 7), [1e-3, 0.0])
+"""Minima of the grip, divided by the grip at rest, through which the steady motion is followed.
+
+The last two tell whether Λ still rises where the grip vanishes.
+"""
 
 RESIDUAL, MOST_NODES = 1e-8, 100_000
 """Largest relative residual of the steady motion, and maximum number of its nodes.
@@ -53,9 +57,9 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
     Raises
     ------
     ValueError
-        If the force depends on the speed at the start of the contact. If the steady motion is not
-        found. If Λ reaches a maximum before the grip is zero: the steady motion then ends in a
-        saddle-node, and the ball jumps to another motion.
+        If the force depends on the speed at the start of the contact, or begins with a power below
+        1. If the steady motion is not found. If Λ reaches a maximum before the grip is zero: the
+        steady motion then ends in a saddle-node, and the ball jumps to another motion.
 
     Examples
     --------
@@ -71,30 +75,39 @@ def permanent_contact(ball: Ball, *, table: Table = SINE) -> float:
         )
     if not ball.has_duration:
         return 1 / table.lift
-    law: Any = ball
-    if isinstance(ball, SpringDamper):
-        law = linear(ball.frequency_ratio, ball.zeta, release=ball.release)
+    law: Any = (
+        linear(ball.frequency_ratio, ball.zeta, release=ball.release)
+        if isinstance(ball, SpringDamper)
+        else ball
+    )
     if "start_speed" in law.needs:
         raise ValueError(f"{law}: the force depends on the start of a contact that has no start")
     steady = _Steady(law, table)
+    # At twice the depth forces of powers from 1 are at least twice as large, within rounding.
+    if steady.force(2 * SURFACE, 0.0, 0.0) < 1.99 * steady.force(SURFACE, 0.0, 0.0):
+        raise ValueError(f"{law}: the force begins with a power below 1, too steep at the surface")
     x, y, unknown = steady.guess(1 - LEVELS[0])
     before = 0.0
     for level in LEVELS:
-        found = solve_bvp(
-            steady.rates,
-            lambda start, end, unknown, level=level: steady.ends(start, end, unknown, level),
-            x,
-            y,
-            unknown,
-            tol=RESIDUAL,
-            max_nodes=MOST_NODES,
-        )
-        x, y, unknown = found.x, found.y, found.p
-        if not found.success:
-            raise ValueError(
-                f"{law}: no steady motion in contact is found near Λ = {unknown[1]:.4g}; forces"
-                " that begin with a power below 1 are too steep at the surface"
+        # The grip may have become weaker at another instant, and has the level there at a lower Λ.
+        for _ in range(2):
+            found = solve_bvp(
+                steady.rates,
+                lambda start, end, unknown, level=level: steady.ends(start, end, unknown, level),
+                x,
+                y,
+                unknown,
+                tol=RESIDUAL,
+                max_nodes=MOST_NODES,
             )
+            if not found.success:
+                raise ValueError(
+                    f"{law}: no steady motion in contact is found near Λ = {found.p[1]:.4g}"
+                )
+            p, v = found.sol(x)
+            later = x[steady.grip(p, v, steady.load(x, found.p)).argmin()]
+            # Nodes that are kept from level to level become so many that they only round.
+            y, unknown = found.sol((x + later) % PERIOD), found.p + np.array([later, 0.0])
         if unknown[1] < before:
             raise ValueError(
                 f"{law}: the steady motion in contact ends, or is not the only one, near"
@@ -125,8 +138,9 @@ class _Steady:
         self.law, self.table = law, table
         self.given = {**law.values, "u": 1.0}
         # At this depth a ball of the speed 1 is stopped under its weight, so f > 1.
-        deep = float(law.depth(1.0, 1.0))
-        self.static = float(brentq(lambda p: self.force(p, 0.0, 1.0) - 1, 0.0, deep, xtol=1e-300))
+        self.static = float(
+            brentq(lambda p: self.force(p, 0.0, 1.0) - 1, 0.0, law.depth(1.0, 1.0), xtol=1e-300)
+        )
         self.held = float(self.grip(self.static, 0.0, 1.0))
 
     def force(self, p: Values, v: Values, load: Values) -> Values:
@@ -166,6 +180,5 @@ class _Steady:
         grip = self.grip(self.static + 1j * H * p, 1j * H * v, 1.0).imag
         weakest = grip.argmin()
         amplitude = -share * self.held * H / grip[weakest]
-        y = np.roll([p, v], -weakest, axis=1)[:, [*range(NODES), 0]]
-        y = amplitude * y + [[self.static], [0.0]]
-        return np.append(s, 2 * np.pi), y, np.array([s[weakest], amplitude])
+        y = amplitude * np.roll([p, v], -weakest, axis=1) + [[self.static], [0.0]]
+        return np.append(s, 2 * np.pi), y[:, [*range(NODES), 0]], np.array([s[weakest], amplitude])

@@ -392,10 +392,11 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
 def test_one_figure_is_compared_and_a_missing_one_is_named(project):
     for folder in (project.top, project.top / "results"):
         (folder / "figures/fig14.png").unlink()
-    (project.top / "results/figures/claims.nc").write_text("damaged", "utf-8")
+    (project.top / "results/paper.md").write_bytes(b"\xff")
     missing = "figures/fig14.png in the reference, figures/fig14.png in the results"
     assert lines(project, names=["fig14"]) == [f"fig14: missing: {missing}"]
-    assert lines(project)[0].startswith("claims: cannot be compared: figures/claims.nc in the res")
+    # What is missing comes last.
+    assert lines(project)[0].startswith("paper: cannot be compared: paper.md in the results: ")
     # Rules make two pictures that nobody made.
     pictures = ("figures/fig18.png", "figures/fig18.svg")
     found = report(project, names=["fig18"], made=pictures)

@@ -614,9 +614,16 @@ def compare(
     differing = [
         file for file, pair in datasets.items() if finding(*pair, checkout, ()).verdict != "agrees"
     ]
-    # Datasets that are made of others come behind them, and what is made of datasets is last.
+    # Datasets that are made of others come behind them, then what is made of datasets. What one run
+    # does not have is last.
     order = sorted(
-        sides, key=lambda file: (file not in datasets, bool(sides[file][1].record["data"]), file)
+        sides,
+        key=lambda file: (
+            any(MISSING in each.wrong for each in sides[file]),
+            file not in datasets,
+            bool(sides[file][1].record["data"]),
+            file,
+        ),
     )
     found = {file: finding(*sides[file], checkout, differing) for file in order}
     return Report(old, new, sides, found)

@@ -131,6 +131,7 @@ def test_versions_agree(folder):
     assert f"## {cited['version']} ({date})\n" in text(f"{folder}CHANGELOG.md")
     if not folder:
         assert bouncing_ball.__version__ == cited["version"]
+        assert ("There is no release" in text("README.md")) == (date == "unreleased")
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -377,8 +377,7 @@ def excerpt(old: object, new: object) -> str:
 
 def common(one: Sequence, other: Sequence) -> int:
     """How many elements two sequences have in common before the first difference."""
-    pairs = zip(one, other, strict=False)
-    return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])
+    return len([*takewhile(lambda pair: pair[0] == pair[1], zip(one, other, strict=False))])
 
 
 def shown(value: object) -> str:
@@ -600,8 +599,7 @@ def compare(
     Two runs are judged by their records: today's code and configuration do not matter. If a
     checkout is given, the old run is its reference, and the new one must be what it makes today.
     """
-    made = checkout.made if checkout else ()
-    files = old.named().union(made or new.named())
+    files = old.named().union((checkout and checkout.made) or new.named())
     for run in (old, new):
         files |= {f"figures/{path.name}" for path in run.folder.glob("figures/[!.]*")}
     sides = {
@@ -682,8 +680,9 @@ def refusals(
 
     Stop at the first: the later ones read records that exist only if no result is wrong.
     """
-    status = ("status", "--porcelain", "--untracked-files=all", "--", *project.code)
-    if edited := git(project.checkout, *status):
+    if edited := git(
+        project.checkout, "status", "--porcelain", "--untracked-files=all", "--", *project.code
+    ):
         yield f"commit first: {edited}"
     wrong = [
         f"{kind}: {', '.join(details)}"
@@ -764,8 +763,7 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
     checkout = Checkout(project, main_branch(project.checkout), snakemake.params.config, made)
     reference, run = run_in(project.top, "the reference"), run_in(results, "the results")
     report = compare(project, reference, run, checkout, snakemake.params.names)
-    stream = sys.stderr if report.status else sys.stdout
-    return written(project, report, results / "diff", stream)
+    return written(project, report, results / "diff", sys.stderr if report.status else sys.stdout)
 
 
 def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:

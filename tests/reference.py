@@ -37,7 +37,7 @@ def reference() -> dict[str, xr.Dataset]:
 
 
 if differences := unlike_the_paper(reference()):
-    why = f"of another run than paper.py: {differences[0]}. Change one, and run make accept"
+    why = f"not of the run of paper.py: {differences[0]}. Change one of them, and run make accept"
     pytest.skip(why, allow_module_level=True)
 
 

@@ -224,7 +224,8 @@ def test_an_error_is_infinite_where_the_contact_has_no_stable_orbit():
 @pytest.mark.parametrize("ratio", [3.0, 4.0, 10.0, 100.0, 1000.0])
 def test_the_error_by_hand_is_that_of_the_stable_orbits_of_its_domain(release, ratio):
     """docs/your-ball.md: r ≥ 0.5, n ≤ 6, ϖ ≥ 3, positions from 0.1 to 1 - 1.1 n/ϖ."""
-    sizes, parts = [1, 2, 3, 4, 5, 6], np.linspace(0, 1, 7)
+    sizes = [1, 2, 3, 4, 5, 6]
+    parts = np.linspace(0, 1, 7)
     n, r, part = (each.reshape(-1, 1) for each in np.meshgrid(sizes, 0.5 + 0.499 * parts, parts))
     last = 1 - 1.1 * n / ratio
     n, r, part, last = (each[last > 0.1].reshape(-1, 1) for each in (n, r, part, last))

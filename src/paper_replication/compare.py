@@ -532,11 +532,11 @@ def what_differs(
         code = code | contents_in(checkout.project.checkout, checkout.project.described_in)
     main = checkout.main if checkout else {}
     marks = {file: " (also on main)" * (main.get(file) == code[file]) for file in code}
-    given, before = new.record["parameters"], old.record["parameters"]
+    parameters = [each.record["parameters"] for each in (old, new)]
     versions = [{key: each.record["versions"].get(key) for key in PACKAGES} for each in (old, new)]
     found = {
         "follows from": [Path(file).stem for file in new.record["data"] if file in differing],
-        "changed parameter": changes(before, given) if before and given else [],
+        "changed parameter": changes(parameters[0], parameters[1]) if all(parameters) else [],
         "changed code": [
             file + marks[file] for file in code if old.record["code"].get(file) != code[file]
         ],
@@ -641,8 +641,12 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     committed = tree(project.checkout, "HEAD", "--", *project.code)
     code = contents_in(project.checkout, committed)
     made = [relative(results, file) for file in inputs]
-    old, new = run_in(project.top, "the reference"), run_in(results, "the results")
-    report = compare(project, old, new, Checkout(project, {}, configuration(project), made))
+    report = compare(
+        project,
+        run_in(project.top, "the reference"),
+        run_in(results, "the results"),
+        Checkout(project, {}, configuration(project), made),
+    )
     for reason in refusals(project, report, made, committed):
         raise ValueError(f"nothing is accepted, {reason}")
     accepted = {file: report.sides[file] for file in report.found if file in made}
@@ -654,14 +658,14 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     ]
     removed = [
         file
-        for file in old.records
+        for file in report.old.records
         if file not in made and git(project.checkout, "ls-files", str(project.top / file))
     ]
     for file in written:
         write(project.top / file, (results / file).read_bytes())
     for file in removed:
         (project.top / file).unlink(missing_ok=True)
-    text = new.records[project.texts[0]]
+    text = report.new.records[project.texts[0]]
     record = {
         "made": contents_in(project.top, accepted),
         "code": code,
@@ -761,9 +765,15 @@ def report_of_run(project: Project, results: Path, snakemake: Any) -> int:
     """
     made = [relative(results, file) for file in snakemake.input]
     checkout = Checkout(project, main_branch(project.checkout), snakemake.params.config, made)
-    reference, run = run_in(project.top, "the reference"), run_in(results, "the results")
-    report = compare(project, reference, run, checkout, snakemake.params.names)
-    return written(project, report, results / "diff", sys.stderr if report.status else sys.stdout)
+    report = compare(
+        project,
+        run_in(project.top, "the reference"),
+        run_in(results, "the results"),
+        checkout,
+        snakemake.params.names,
+    )
+    stream = sys.stderr if report.status else sys.stdout
+    return written(project, report, results / "diff", stream)
 
 
 def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:

@@ -60,7 +60,7 @@ diff: setup
 JUDGES := $(shell grep -l 'tests.reference import.*\breference\b' tests/test_*.py)
 accept: develop
 	@$(SNAKEMAKE)
-	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2 --quiet $(filter-out tests/test_edges.py,$(JUDGES))
+	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet $(filter-out tests/test_edges.py,$(JUDGES))
 	@$(SNAKEMAKE) $@
 
 replication: clean diff

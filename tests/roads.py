@@ -109,6 +109,7 @@ def follow_recipes() -> int:
         accepted = "figures/fig17.png figures/fig17.svg figures/fig17.nc"
         lines = [
             f"{commit} 'A figure, a claim and other authors'",
+            f"{ROOT}/.venv/bin/python -m pytest --collect-only -qq",
             f"{make} accept",
             f"git add {accepted}",
             f"{commit} 'Reference: a figure, a claim and other authors'",

@@ -57,6 +57,11 @@ def table_with_another_row() -> xr.Dataset:
     )
 
 
+def with_parameters(data: xr.Dataset, **others) -> xr.Dataset:
+    """A dataset as if it were computed with other parameters."""
+    return data.assign_attrs(parameters=json.dumps(parameters(data) | others))
+
+
 def with_more(data: xr.Dataset, needed: Mapping, place: int) -> xr.Dataset:
     """A dataset with a further curve or row at a place, where a list may have more than is needed.
 

@@ -1,6 +1,5 @@
 """The article, its supplement and the list of figures, written from the reference's datasets."""
 
-import json
 import re
 from decimal import Decimal
 from functools import cache
@@ -10,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests import independent
-from tests.reference import reference, with_more
+from tests.reference import reference, with_more, with_parameters
 
 from bouncing_ball import spring_damper
 from carbonelli2011 import article, claims, measures, paper
@@ -184,11 +183,6 @@ def test_expressions_of_templates_have_no_typed_numbers(name):
     # Digits of names, places in lists and numbers of decimals are no results.
     rest = re.sub(r"\(\d(?:, )?\)|\[[-:\d\]\[]+\]", "", "\n".join(bare))
     assert set(re.findall(r"(?<![\w.])\d[\d.]*", rest)) <= {"0", "1", "2"}
-
-
-def with_parameters(data: xr.Dataset, **others) -> xr.Dataset:
-    """A dataset as if it were computed with other parameters."""
-    return data.assign_attrs(parameters=json.dumps(parameters(data) | others))
 
 
 def test_the_article_of_a_run_with_other_parameters_names_them(data):

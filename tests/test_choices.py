@@ -1,10 +1,8 @@
 """The study of the choices: how it judges, and what its result has."""
 
-import json
-
 import numpy as np
 import pytest
-from tests.reference import reference
+from tests.reference import reference, with_parameters
 
 from carbonelli2011 import choices as study
 from carbonelli2011.claims import CLAIMS
@@ -62,8 +60,6 @@ def test_what_the_supplement_says_of_the_choices_is_in_the_result():
 
 
 def test_a_run_with_other_parameters_has_no_choices():
-    other = reference()["fig12"]
-    given = json.loads(other.attrs["parameters"]) | {"n": 2}
-    other = other.assign_attrs(parameters=json.dumps(given))
+    other = with_parameters(reference()["fig12"], n=2)
     found = study.changed_verdicts(reference() | {"fig12": other})
     assert {*found} == {"choice", "instead", "changes"} and found.sizes["alternative"] == 0

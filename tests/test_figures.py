@@ -24,10 +24,11 @@ PHASES = ("phase", "release_phase")
 
 @cache
 def reference(name):
+    """A dataset of the reference, with the curves of the paper."""
     path = REFERENCE / f"{name}.nc"
     if not path.exists():
         pytest.skip(f"{name} is not in the reference yet: snakemake --cores 2 {name} accept")
-    return datasets.read(path)
+    return paper.of_paper({name: datasets.read(path)})[name]
 
 
 def data_of(name):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from markdown_it import MarkdownIt
-from tests.reference import ENTRIES, FIGURES, TOP, reference
+from tests.reference import ENTRIES, FIGURES, TOP, reference, with_parameters
 
 from carbonelli2011 import article, index, tables
 from carbonelli2011 import pages as text_pages
@@ -200,8 +200,7 @@ def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
 
 
 def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
-    other = data["fig14"].attrs["parameters"].replace('"n": 1', '"n": 2')
-    changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
+    changed = data | {"fig14": with_parameters(data["fig14"], n=2)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     unasked = sum(by["not asked"] for by in judgements.counts(changed["claims"]).values())
     reason = "other parameters: fig14.n is 2 instead of 1"
@@ -216,8 +215,7 @@ def test_a_claim_that_this_run_cannot_judge_says_why(data, read):
 def test_the_answer_is_not_given_for_other_orbits(data, read):
     answer = "If the natural frequency of the contact is 100 times the frequency of the table"
     assert any(text.startswith(answer) for text in read["index.html"].texts)
-    other = data["validity_map"].attrs["parameters"].replace('"advised": 100.0', '"advised": 9.0')
-    changed = data | {"validity_map": data["validity_map"].assign_attrs(parameters=other)}
+    changed = data | {"validity_map": with_parameters(data["validity_map"], advised=9.0)}
     changed["claims"] = judge(changed).assign_attrs(data["claims"].attrs)
     page = Page(index.filled_in("html", changed, ENTRIES))
     assert "This run has other parameters than the paper" in page.texts
@@ -228,10 +226,8 @@ def test_the_answer_is_not_given_for_other_orbits(data, read):
 
 
 def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
-    other = data["fig14"].attrs["parameters"].replace('"n": 1', '"n": 2')
-    changed = data | {"fig14": data["fig14"].assign_attrs(parameters=other)}
-    other = data["fig03"].attrs["parameters"].replace("[1, 2, 3, 4, 5]", "[7]")
-    changed["fig03"] = data["fig03"].assign_attrs(parameters=other)
+    changed = data | {"fig14": with_parameters(data["fig14"], n=2)}
+    changed["fig03"] = with_parameters(data["fig03"], n=[7])
     for name in ("paper", "supplement"):
         page = Page(text_pages.page_of(article.written(name, changed), name, CAPTIONS))
         assert "fig03: n lacks 1, 2, 3, 4, 5" in page.texts

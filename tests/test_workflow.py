@@ -19,6 +19,7 @@ from paper_replication.configuration import entries, stages
 COMPUTED = stages(CONFIG).keys() - {"schematics"}
 ENTRIES = entries(CONFIG)
 FIGURES = {name for name, entry in ENTRIES.items() if "caption" in entry}
+IMPACTS = CONFIG["restitution_model"]["three_balls"]["impacts"]
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}
 NO_NUMBER = {"carbonelli2011/variables.py", "paper_replication/provenance.py"}
@@ -104,18 +105,18 @@ def test_the_page_of_an_earlier_comparison_is_removed(fresh):
     [
         (
             "config/config.yaml",
-            "impacts: 1024",
-            "impacts: 1000",
+            f"impacts: {IMPACTS}",
+            f"impacts: {IMPACTS + 1}",
             {"restitution_model", "fig02", "fig03", *TEXTS},
         ),
         # A whole number may be written as a float.
-        ("config/config.yaml", "impacts: 1024", "impacts: 1.024e+3", set()),
+        ("config/config.yaml", f"impacts: {IMPACTS}", f"impacts: {IMPACTS / 1e3}e+3", set()),
         # Which limit a claim has decides which choices change its verdict.
         ("src/carbonelli2011/claims.py", "LINE = 0.01", "LINE = 0.02", {*TABLES, *TEXTS}),
         (
             "config/config.yaml",
-            "step: 0.2",
-            "step: 0.1",
+            f"step: {CONFIG['largest_step']}",
+            f"step: {CONFIG['largest_step'] / 2}",
             {"continuation", "fig08", "fig09", "fig15", "table1", *TEXTS},
         ),
         ("src/carbonelli2011/figures.py", "import", "import  ", FIGURES),

@@ -177,7 +177,8 @@ def enlarge_doublings(axes: Axes, branch: xr.Dataset, family: xr.Dataset, colour
     inset = axes.inset_axes((0.74, 0.4, 0.25, 0.22))
     draw_branch(inset, branch, "phase", colour, width=1.2)
     mark_special(inset, branch, "phase", colour)
-    amplitudes, phases = family.period_doubling_amplitude, family.period_doubling_phase / np.pi
+    amplitudes = family.period_doubling_amplitude
+    phases = family.period_doubling_phase / np.pi
     for values, limit in ((amplitudes, inset.set_xlim), (phases, inset.set_ylim)):
         margin = 0.5 * np.ptp(values.values)
         limit(values.min() - margin, values.max() + margin)

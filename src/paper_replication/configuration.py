@@ -48,6 +48,9 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
     ["release: 'sticky' is not one of ['displacement', 'force']"]
     >>> list(mistakes({"relese": "force"}, schema))
     ['relese: unknown key, did you mean release?']
+    >>> schema |= {"$defs": {"described": {"properties": {"title": {}}}}}
+    >>> list(mistakes({"stage": {}}, schema))
+    ['stage: unknown key, allowed: release']
     """
     if missing := [name for name in schema.get("required", []) if name not in config]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
@@ -67,7 +70,8 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
     for error in Draft202012Validator(schema).iter_errors(config):
         where = ".".join(str(key) for key in error.absolute_path)
         if error.validator in ("additionalProperties", "unevaluatedProperties"):
-            known = [*error.schema["properties"], *described]
+            more = described if error.validator == "unevaluatedProperties" else ()
+            known = [*error.schema["properties"], *more]
             for key in error.instance.keys() - {*known}:
                 path = ".".join(filter(None, (where, str(key))))
                 if path not in settings_in_entries:

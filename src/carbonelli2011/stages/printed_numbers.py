@@ -140,8 +140,8 @@ def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:
 # The other printed numbers
 
 
-def other_numbers(impact: Impact) -> list[float]:
-    """The numbers `PRINTED` for a contact."""
+def other_numbers(impact: Impact) -> dict[str, float]:
+    """The numbers of `PRINTED` that a contact decides, by their names."""
     r = np.array([[R_OF_THRESHOLDS]])
     amplitude = np.ones((1, 1))
     family = Family(np.ones((1, 1)), impact.contact(R_OF_THRESHOLDS, SCAN))
@@ -153,7 +153,13 @@ def other_numbers(impact: Impact) -> list[float]:
     from_rest = resting.ratio if impact.weight else np.nan
     compliant = Family(1, impact.contact(R_OF_THRESHOLDS, np.ones(1)))
     bounce = compliant.apparent_restitution(orbits_along(compliant, 1.2 * amplitude))
-    return [enough[0, 0], from_rest, bounce[0, 0], float(impact.damping(R_OF_TABLE_1)), zeta]
+    return {
+        "height threshold": enough[0, 0],
+        "permanent contact threshold": from_rest,
+        "compliant end of 1.2": bounce[0, 0],
+        "damping of 0.85": float(impact.damping(R_OF_TABLE_1)),
+        "damping of 0.65": zeta,
+    }
 
 
 def damping_of_82() -> NDArray:
@@ -186,7 +192,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
     first = restitution.saddle_node(n, R_OF_TABLE_1)
     last = restitution.holmes_period_doubling(n, R_OF_TABLE_1)
     formulas = np.broadcast_to(np.stack([first, last], axis=-1), plain.shape)
-    known = others[AS_THEY_STAND]
+    known = [*others[AS_THEY_STAND].values()]
     further: dict[str, tuple[NDArray, ArrayLike]] = {
         "high-bounce stability": (approximate, known),
         "high-bounce stability of the stiff row": (
@@ -195,7 +201,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
         ),
         "Eqs. 7 and 8 in all rows": (formulas, np.full(len(known), np.nan)),
     }
-    found = {name: np.append(table[name], others[name]) for name in IMPACTS}
+    found = {name: np.append(table[name], [*others[name].values()]) for name in IMPACTS}
     found |= {name: np.append(*both) for name, both in further.items()}
     contact_of = dict.fromkeys([*further, CUT_OFF], AS_THEY_STAND) | {
         name: name for name in IMPACTS
@@ -203,9 +209,10 @@ def hypotheses(parameters: dict) -> xr.Dataset:
     contact_of["Eqs. 7 and 8 in all rows"] = ""
 
     places = printed.stack(number=printed.dims).number.values
+    decided = others[AS_THEY_STAND].keys()
     names = [f"Table 1: {ratio:g}, {family}, {bound}" for ratio, family, bound in places]
-    row = [*(ratio for ratio, _, _ in places), *[np.nan] * len(PRINTED)]
-    texts = [*printed.values.ravel().tolist(), *PRINTED.values()]
+    row = [*(ratio for ratio, _, _ in places), *[np.nan] * len(decided)]
+    texts = [*printed.values.ravel().tolist(), *(PRINTED[name] for name in decided)]
     digits = np.array([10.0 ** -len(text.partition(".")[2]) for text in texts])
     found[CUT_OFF] = np.floor(found[AS_THEY_STAND] / digits) * digits
     computed = np.stack(list(found.values()))
@@ -227,7 +234,7 @@ def hypotheses(parameters: dict) -> xr.Dataset:
             "contact_of": ("hypothesis", [contact_of[name] for name in found]),
             "damping_of_82": ("end", damping_of_82()),
         },
-        {"hypothesis": list(found), "number": [*names, *PRINTED]},
+        {"hypothesis": list(found), "number": [*names, *decided]},
     )
     data["stiff_reproduced"] = "exponent", stiff_reproduced(n, printed.values[0].astype(float))
     data["exponent"] = list(EXPONENTS)

@@ -207,10 +207,12 @@ def regimes(parameters: dict, release: str) -> xr.Dataset:
     amplitudes over ϖ between which its contact has the stable orbit, and a ball at rest stays.
     """
     ratios = grid(parameters["frequency_ratio"])
-    n, r = parameters["n"], parameters["restitution"]
+    n = parameters["n"]
+    r = parameters["restitution"]
     contact = contact_of_ball(ratios, r, release)
     place = np.linspace(0, 1, parameters["places"]) ** 3
-    first, last = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
+    first = restitution.saddle_node(n, r)
+    last = restitution.period_doubling(n, r)
     amplitude = (first + place * (last - first)).reshape(-1, 1)
     column = np.ones_like(amplitude)
     family = Family(n * column, Contact.of_restitution(ratios, r * column, release))

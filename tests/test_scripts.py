@@ -508,7 +508,8 @@ def test_the_numbers_of_a_hypothesis_are_those_of_its_contact(hypotheses):
     """The equations as they stand, and damping to first order by orbits of the closed form."""
     every = [*claims.CLAIMS, *claims.table1_ends()]
     printed = {claim.name: claim.printed for claim in every if claim.printed}
-    assert hypotheses.printed_text.to_series().to_dict() == printed
+    # A claim of one's own may have a printed number that no hypothesis is asked for.
+    assert hypotheses.printed_text.to_series().to_dict().items() <= printed.items()
     judged = reference()["claims"].set_index(claim="claim")
     plain = hypotheses.sel(hypothesis="equations as they stand")
     for name in hypotheses.number.values:

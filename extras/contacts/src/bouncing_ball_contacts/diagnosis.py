@@ -568,17 +568,20 @@ def _nearest(contact: Contact) -> Answer:
     # The least damping is as good as none, but no ratio is 0.
     is_some = place > 0 or contact.is_ratio
     found = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
-    value = found.one[contact.damper]
+    engine = contact.problem.engine
+    # Beside a spring in N/m nothing is given: both parameters replace it.
+    changed = {
+        name: found.one[name] for name in (engine.spring and engine.names) or engine.names[1:]
+    }
     outcome = found.outcome()
     return Answer(
-        engine=contact.problem.engine.name,
-        ran=ran_in(contact.problem.engine),
+        engine=engine.name,
+        ran=ran_in(engine),
         bounce=bounce,
         time_step=contact.step,
-        parameters={contact.damper: value},
+        parameters=changed,
         outcome=outcome,
-        gives=f"{_assigned({contact.damper: value})} at {show(contact.step, 's')} gives r = "
-        f"{outcome.restitution}",
+        gives=f"{_assigned(changed)} at {show(contact.step, 's')} gives r = {outcome.restitution}",
     )
 
 

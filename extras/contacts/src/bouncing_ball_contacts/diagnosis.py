@@ -26,6 +26,7 @@ from bouncing_ball_contacts.bounces import Bounce, Quantity
 from bouncing_ball_contacts.designs import LEAST_RESTITUTION, Problem
 from bouncing_ball_contacts.engines import (
     MODES,
+    OF_PAIR,
     PAIR,
     Engine,
     Parameters,
@@ -180,18 +181,22 @@ def diagnose_spring(
     problem = Problem(bounce, engine)
     has_friction = bounce.friction is not None and "friction" in engine.rules
     rubs = {"friction": bounce.friction} if has_friction else {}
-    given = _given(engine, {**rubs, **parameters})
-    differs = None if other is None else _given(engine, other)
     refuse(
         [
             (
                 other is not None and all(rule is PAIR for rule in engine.rules.values()),
-                f"{engine.name} sets the contact of a pair of bodies, and not of one body",
-            ),
+                f"{engine.name} {OF_PAIR}",
+            )
+        ]
+    )
+    given = _given(engine, {**rubs, **parameters})
+    differs = None if other is None else _given(engine, other, is_other=True)
+    refuse(
+        [
             (
                 time_step is None,
                 "the time step is missing: --time-step '2 ms' or time_step='2 ms'",
-            ),
+            )
         ]
     )
     given = _converted(engine, given, problem.setting(bounce.step(time_step)))
@@ -287,16 +292,26 @@ def _remarks(
     )
 
 
-def _given(engine: Engine, typed: Mapping[str, Any]) -> dict[str, Any]:
+def _given(engine: Engine, typed: Mapping[str, Any], is_other: bool = False) -> dict[str, Any]:
     """Return the parameters that were typed for a body as numbers, by their names in the engine.
+
+    The other body has none of the pair.
 
     Raises
     ------
     Refused
         If a name is unknown, missing or given twice, or a value is no number or out of its range.
     """
-    known = [*engine.rules, *engine.spring]
-    raw = parameters_of(engine.name, {as_compared(name): name for name in known}, known, typed)
+    known = [
+        *(name for name, rule in engine.rules.items() if not (is_other and rule is PAIR)),
+        *engine.spring,
+    ]
+    raw = parameters_of(
+        engine.name + is_other * ", the other body",
+        {as_compared(name): name for name in known},
+        known,
+        typed,
+    )
     found = {name: _value(engine, name, value) for name, value in raw.items()}
     body = {**engine.defaults, **found}
     missing = [name for name in engine.rules if name not in body]
@@ -568,15 +583,16 @@ def _nearest(contact: Contact) -> Answer:
     # The least damping is as good as none, but no ratio is 0.
     is_some = place > 0 or contact.is_ratio
     found = contact.damped(float(f"{low * _FINE**place:.4g}") if is_some else 0.0)
-    engine = contact.problem.engine
-    # Beside a spring in N/m nothing is given: both parameters replace it.
+    # A spring in N/m is replaced by both parameters, because nothing is given beside it.
     changed = {
-        name: found.one[name] for name in (engine.spring and engine.names) or engine.names[1:]
+        name: found.one[name]
+        for name in contact.problem.engine.names
+        if name == contact.damper or contact.problem.engine.spring
     }
     outcome = found.outcome()
     return Answer(
-        engine=engine.name,
-        ran=ran_in(engine),
+        engine=contact.problem.engine.name,
+        ran=ran_in(contact.problem.engine),
         bounce=bounce,
         time_step=contact.step,
         parameters=changed,

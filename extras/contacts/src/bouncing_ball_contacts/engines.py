@@ -66,6 +66,8 @@ PRODUCT = Rule("multiplied", lambda a, b: a * b, math.sqrt)
 LEAST = Rule("the least of both", min, lambda x: x)
 LARGER = Rule("the larger of both counts", max, lambda x: x)
 PAIR = Rule("of the pair", lambda a, b: a, lambda x: x)
+OF_PAIR = "sets the contact of a pair of bodies, and not of one body"
+"""Why an engine whose rules are all of the pair has no other body."""
 
 
 class Sliding(NamedTuple):
@@ -298,7 +300,7 @@ class ByNumber:
             "pixels": ("pixels",) if self.pixels else (),
             **{name: (name,) for name in self.settings},
         }
-        return {as_compared(name): what for what, names in typed.items() for name in names}
+        return {as_compared(name): what for what, names in typed.items() for name in names if name}
 
     @property
     def unit(self) -> float:
@@ -329,12 +331,16 @@ _TIME_STEPS = ("timestep", "dt", "fixedtimestep", "fixeddeltatime", "maxstepsize
 
 
 def parameters_of(
-    engine: str, known: Mapping[str, str], names: Sequence[str], typed: Parameters
+    engine: str,
+    known: Mapping[str, str],
+    names: Sequence[str],
+    typed: Parameters,
+    springs: Sequence[str] = (),
 ) -> dict[str, Any]:
     """Return typed values by their names in the engine.
 
     ``known`` maps names as they are compared to names of the engine; ``names`` are listed in
-    messages.
+    messages, and the names of ``springs``, which are computed in place of a number.
 
     Raises
     ------
@@ -345,14 +351,19 @@ def parameters_of(
     for each, value in typed.items():
         name = known.get(as_compared(str(each)))
         if name is None:
-            near = [f"; did you mean {one}?" for one in difflib.get_close_matches(each, names, 1)]
+            near = [
+                f"; did you mean {one}?"
+                for one in difflib.get_close_matches(each, [*names, *springs], 1, 0.7)
+                if one != each
+            ]
             said = ["; the time step is --time-step, or time_step= in Python"]
             same = _SAME.get(as_compared(str(each)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
             hint = "".join(said * (as_compared(str(each)) in _TIME_STEPS) or meant or near)
-            known_here = ", ".join(names)
+            known_here = ", ".join(names) + "; without a restitution " * bool(springs)
             raise Refused(
-                f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
+                f"{engine}: {each!r} is not computed here; computed are {known_here}"
+                f"{', '.join(springs)}{hint}"
             )
         if name in found:
             raise Refused(f"{each!r} gives {name} twice")

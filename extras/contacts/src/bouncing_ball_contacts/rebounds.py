@@ -24,13 +24,16 @@ from bouncing_ball_contacts.engines import (
     LARGER,
     MEAN,
     MODES,
+    OF_PAIR,
+    PAIR,
     ByNumber,
     Rule,
+    as_compared,
     one_of,
     parameters_of,
     ran_in,
 )
-from bouncing_ball_contacts.rows import BY_NUMBER
+from bouncing_ball_contacts.rows import BY_NUMBER, ENGINES
 from bouncing_ball_contacts.schemes import Array
 from bouncing_ball_contacts.step_rules import Fall, Steps
 from bouncing_ball_contacts.units import (
@@ -495,8 +498,8 @@ def _causes(case: Case, written: float, r: float) -> Iterator[str]:
         r = less
 
 
-def _refuse_springs(bounce: Bounce, engine: ByNumber) -> None:
-    """Refuse quantities of springs."""
+def _refuse_ignored(bounce: Bounce, engine: ByNumber, is_other: bool = False) -> None:
+    """Refuse quantities of springs, and another body of an engine that has one number of both."""
     springs = ("penetration", "stiffness", "contact_time")
     place = f"has no place in {engine.name}, where the restitution is a number"
     refuse(
@@ -507,6 +510,7 @@ def _refuse_springs(bounce: Bounce, engine: ByNumber) -> None:
             ),
             # Boxes were run where the engine has springs as well.
             (bounce.points != 1 and not engine.springs, f"--points {place}: a ball is dropped"),
+            (is_other and engine.pair is PAIR, f"{engine.name} {OF_PAIR}"),
         ]
     )
 
@@ -519,7 +523,7 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     Refused
         If the step is missing, or no number bounces.
     """
-    _refuse_springs(bounce, engine)
+    _refuse_ignored(bounce, engine)
     engine = engine.scaled(bounce.gravity)
     if time_step is None and engine.springs:
         # The body moves by less than it may sink, and gravity adds less than the tolerance.
@@ -607,14 +611,15 @@ def diagnose_number(
     Refused
         If a parameter or the step is missing, unknown or out of its range.
     """
-    _refuse_springs(bounce, engine)
+    _refuse_ignored(bounce, engine, other is not None)
     given = _given(engine, parameters)
+    differs = _given(engine, other or {}, is_other=True)
     step = _step(time_step)
     if "number" not in given and not engine.springs:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
     engine = replace(
         engine.scaled(bounce.gravity, given.get("pixels")),
-        pair=_later(engine, [given, {} if other is None else _given(engine, other)]),
+        pair=_later(engine, [given, differs]),
     )
     if "threshold in pixels" in given:
         given["threshold"] = engine.unit * given["threshold in pixels"]
@@ -625,7 +630,7 @@ def diagnose_number(
         step=step,
         threshold=given.get("threshold", engine.threshold),
         settings=settings,
-        other=None if other is None else _given(engine, other).get("number", engine.default),
+        other=None if other is None else differs.get("number", engine.default),
     )
     number = given.get("number", engine.default)
     found = case.tried(number).answer()
@@ -679,11 +684,32 @@ _READ: Mapping[str, Callable[[str, Any], Any]] = {
 """How a number that is typed is read; others are not negative."""
 
 
-def _given(engine: ByNumber, typed: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what was typed: the number, the threshold, settings, and how numbers are combined."""
-    combine = "combine" if engine.is_physx else ""
-    names = filter(None, [engine.parameter, engine.set_by, combine, *engine.settings])
-    found = parameters_of(engine.name, engine.names, list(names), typed)
+def _given(engine: ByNumber, typed: Mapping[str, Any], is_other: bool = False) -> dict[str, Any]:
+    """Return what was typed: the number, the threshold, settings, and how numbers are combined.
+
+    The other body has the number and how it is combined; all else is of the pair or of the world.
+    """
+    known = {
+        name: what
+        for name, what in engine.names.items()
+        if not is_other or what in ("number", "combine")
+    }
+    row = ENGINES.get(engine.springs)
+    found = parameters_of(
+        engine.name + is_other * ", the other body",
+        known,
+        [
+            name
+            for name in (engine.parameter, engine.set_by, "combine", *engine.settings)
+            if as_compared(name) in known
+        ],
+        typed,
+        [
+            name
+            for name in ((*row.rules, *row.spring) if row and not is_other else ())
+            if as_compared(name) not in known
+        ],
+    )
     return {
         what: _READ.get(what, lambda name, value: within(name, value, 0, math.inf))(
             engine.parameter if what == "number" else what, value

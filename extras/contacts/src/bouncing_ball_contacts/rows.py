@@ -67,16 +67,15 @@ class DrakeDissipation(Engine):
 
 @dataclass(frozen=True)
 class PhysX(Engine):
-    """PhysX combines stiffnesses and dampings by the mode of the restitutions.
+    """PhysX combines stiffnesses and dampings by the later mode of the restitutions.
 
     A stiffness is a negative restitution there, so that "min" takes the larger one. Of a compliant
     and a rigid material the stiffness is that of the former, and the damping the larger one.
     """
 
     def combined(self, one: Parameters, other: Parameters) -> dict[str, Any]:
-        modes = [body["restitutionCombineMode"] for body in (one, other)]
-        of_mode = MODES[max(modes, key=list(MODES).index)].of
         found = super().combined(one, other)
+        of_mode = MODES[found["restitutionCombineMode"]].of
         stiffness, damping = self.names
         if min(one[stiffness], other[stiffness]) > 0:
             return found | {stiffness: abs(of_mode(-one[stiffness], -other[stiffness]))}
@@ -371,6 +370,7 @@ _MUJOCO = Engine(
     sliding=_PUSHED_UP,
     not_for=_NOT_MUJOCO,
 )
+_LATER = Rule("the later of both", lambda a, b: max(a, b, key=list(MODES).index), lambda x: x)
 _BY_MODE = replace(MEAN, text="averaged, or by the mode")
 _COMPLIANT = PhysX(
     name="physx",
@@ -385,7 +385,7 @@ _COMPLIANT = PhysX(
     rules={
         "compliantContactStiffness": _BY_MODE,
         "compliantContactDamping": _BY_MODE,
-        "restitutionCombineMode": PAIR,
+        "restitutionCombineMode": _LATER,
     },
     defaults={
         "compliantContactStiffness": 0.0,

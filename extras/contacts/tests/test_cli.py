@@ -37,8 +37,16 @@ def test_everything_in_json(typed):
     assert len(found["interval"]) == 2 and "changeDynamics" in found["design"]["snippet"]
 
 
-def test_a_fit_names_its_own_options(typed):
-    text = typed("fit croquet --engine mujoco --explain")[1]
+@pytest.mark.parametrize(
+    "asked",
+    [
+        "croquet --engine mujoco",
+        "golf_ball --engine drake --time-step 1ms",
+        f"1.8 1.2 0.8 m {RAPIER}",
+    ],
+)
+def test_a_fit_names_its_own_options(typed, asked):
+    text = typed(f"fit {asked} --explain")[1]
     named = set(re.findall(r"--[a-z-]+", text))
     options = set(re.findall(r"--[a-z-]+", typed("fit --help")[1]))
     assert named <= options
@@ -141,6 +149,7 @@ MISTAKES = {
     f'{BALL} --radius "2 mm" --penetration "5 mm"': "is deeper than the radius of 2 mm",
     f"{BALL} --gravity 0": "give the speed, --speed '2 m/s'",
     f"{BALL} --gravity -1": "not positive",
+    f"{BALL} --gravity -9.81 --speed 2": "is not positive\n",
     f"{BALL} --time-step 240": "or '240 Hz' for a rate",
     "diagnose --engine mujoco --mass 1 --time-step 2s": "time step = 2 s is longer than 100 ms",
     f"{BALL} --time-step 0Hz": "not positive",
@@ -191,10 +200,13 @@ MISTAKES = {
     "fit croquet --leave-out one": "is not a valid integer",
     "fit croquet --time-step 1ms": "--time-step needs an engine",
     "fit /": "/ is a folder: give a file in it",
+    "fit ''": ". is a folder: give a file in it",
+    "fit croquet --ball golf": "has no column of balls: leave out --ball",
+    "fit croquet --from 2s": "--from and --to are of a sound in a file",
     "fit 1.8m 1.21cm": "are no heights or times with one unit",
     "fit croquet --penetration 1mm": "No such option",
     "engines mujocco": "did you mean mujoco",
-    "fit bouncy_ball --engine mujoco": "mass is missing",
+    "fit bouncy_ball --engine mujoco": "--mass '50 g' or mass='50 g'\n",
     "fit croquet --resolution 1ms": "resolution",
     'fit croquet --mass "a lot"': "does not begin",
     "engines --all": "No such option",

@@ -258,7 +258,7 @@ def test_a_sound_is_a_recording_in_python_and_in_a_pipe(typed, drop):
     of_file = typed(f"fit {drop}")[1]
     found = fit(drop)
     assert found.result.split(": ")[1] in of_file
-    assert any(note.startswith("heard: ") and "another fall" in note for note in found.notes)
+    assert any(note.startswith("heard: ") and "another fall: from " in note for note in found.notes)
     code = "from bouncing_ball_contacts.cli import run; run()"
     piped = subprocess.run(
         [sys.executable, "-c", code, "fit", "-"],

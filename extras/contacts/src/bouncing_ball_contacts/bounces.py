@@ -148,8 +148,8 @@ class Bounce:
                 *((True, text) for text in both),
                 (
                     self.gravity < 0 or (self.gravity == 0 and self.speed is None),
-                    f"gravity = {show(self.gravity, 'm/s^2')} is not positive; without any, give "
-                    "the speed, --speed '2 m/s'",
+                    f"gravity = {show(self.gravity, 'm/s^2')} is not positive"
+                    + "; without any, give the speed, --speed '2 m/s'" * (self.speed is None),
                 ),
                 (
                     self.penetration is not None and self.penetration > self.size,
@@ -223,7 +223,7 @@ class Bounce:
                 ),
                 (
                     self.radius is self.mass is None,
-                    f"a {self.size_name} of {show(self.size, 'm')} (--radius)",
+                    f"a {self.size_name} of {show(self.size, 'm')} (give its size)",
                 ),
             ]
         )

@@ -272,7 +272,7 @@ def fit_command(
         source = str(labels)
         of_fit["resolution"] = of_fit["resolution"] or f"{heard.resolution:.2g} s"
     elif (begin, end) != (None, None):
-        raise Refused("--from and --to are of a sound: give a file drop.wav")
+        raise Refused("--from and --to are of a sound in a file, such as drop.wav")
     balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     if engine is None:

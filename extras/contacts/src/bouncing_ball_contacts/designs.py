@@ -104,7 +104,7 @@ class Problem:
     tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
-        missing = "the mass is missing: --mass '50 g' or mass='50 g', or radius and density"
+        missing = "the mass is missing: --mass '50 g' or mass='50 g'"
         refuse([(self.bounce.mass is None, missing)])
 
     @property
@@ -526,7 +526,7 @@ def _remarks(
         given.append(f"time step {show(asked, 's', 4)}")
     is_tenth = bounce.limit == bounce.size / 10
     share = f"a tenth of the {bounce.size_name}" if is_tenth else "a fifth of the drop height"
-    depth = f"it may sink {show(bounce.limit, 'm')}, {share} (--penetration)"
+    depth = f"it may sink {show(bounce.limit, 'm')}, {share}, unless a penetration is given"
     assumed = bounce.assumed + holding([(not bounce.gives_contact, depth)])
     rests, hops = problem.at_rest(law, step, outcome)
     ranges = [

@@ -652,5 +652,6 @@ def read(
     for name, part in balls.items():
         if name.lower() == ball.lower():
             return {name: _recording(part, leave_out)}
-    known = ", ".join(filter(None, balls)) or "no column of balls"
-    raise Refused(f"{table.name} has {known}: name one, --ball")
+    known = ", ".join(filter(None, balls))
+    said = f"{known}: name one, --ball" if known else "no column of balls: leave out --ball"
+    raise Refused(f"{table.name} has {said}")

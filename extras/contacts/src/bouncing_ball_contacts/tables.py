@@ -263,7 +263,7 @@ def _text_of(source: Any) -> tuple[str, str]:
                 not path.exists(),
                 f"the file {source} does not exist, and the experiments are {known}",
             ),
-            (path.is_dir(), f"{source} is a folder: give a file in it"),
+            (path.is_dir(), f"{path} is a folder: give a file in it"),
         ]
     )
     data = path.read_bytes()
@@ -293,7 +293,8 @@ def _heard(data: bytes) -> str:
     from bouncing_ball_contacts.sounds import listen, sound_of
 
     heard = listen(sound_of(io.BytesIO(data)))
-    said = "; ".join([str(heard), *heard.notes])
+    # What is piped, or read in Python, has times without options.
+    said = "; ".join([str(heard), *heard.notes]).replace("--", "")
     return f"{heard.labels}# resolution: {heard.resolution:.2g} s\n# heard: {said}"
 
 

@@ -772,7 +772,7 @@ def test_a_ball_that_hops_for_ever_is_said_to(name, number, step, hops):
 
 def test_what_is_assumed_of_a_ball_is_listed(typed):
     said = "diagnose --engine rapier restitution=0.8 --time-step 1/60 --explain"
-    assert "a radius of 100 mm (give its size)" in typed(said)[1]
+    assert "a radius of 100 mm, as none is given" in typed(said)[1]
     out = typed(f"{said} --drop-height 1m --radius '10 cm'")[1]
     assert "Assumed" not in out and "radius 100 mm" in out
 

@@ -223,7 +223,7 @@ class Bounce:
                 ),
                 (
                     self.radius is self.mass is None,
-                    f"a {self.size_name} of {show(self.size, 'm')} (give its size)",
+                    f"a {self.size_name} of {show(self.size, 'm')}, as none is given",
                 ),
             ]
         )

@@ -105,7 +105,9 @@ def shown_as(entry: Mapping) -> list[str]:
     >>> shown_as({"caption": "Height over time", "table": True})
     ['png', 'svg', 'md', 'csv']
     """
-    return ["png", "svg"] * ("caption" in entry) + ["md", "csv"] * bool(entry.get("table"))
+    picture = ["png", "svg"] if "caption" in entry else []
+    table = ["md", "csv"] if entry.get("table") else []
+    return picture + table
 
 
 def names(section: Mapping) -> list[str]:

@@ -149,7 +149,11 @@ class Bounce:
                 (
                     self.gravity < 0 or (self.gravity == 0 and self.speed is None),
                     f"gravity = {show(self.gravity, 'm/s^2')} is not positive"
-                    + "; without any, give the speed, --speed '2 m/s'" * (self.speed is None),
+                    + (
+                        "; without any, give the speed, --speed '2 m/s'"
+                        if self.speed is None
+                        else ""
+                    ),
                 ),
                 (
                     self.penetration is not None and self.penetration > self.size,

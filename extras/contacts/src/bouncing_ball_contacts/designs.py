@@ -391,11 +391,12 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
             chosen = problem.between(asked, short)
     found = answer(problem, chosen, asked)
     # A row for what is given, or one that is not deeper than permitted.
-    is_deep = not problem.keeps(found.outcome, problem.permitted) and short.step < chosen.step
-    # Its step alone is typed, which asks for the whole depth that is permitted.
-    less = problem.keeping(lambda _: short.step) if is_deep else short
-    is_less = problem.keeps(less.outcome, min(problem.permitted, 0.9 * found.outcome.depth[1]))
-    also = (answer(problem, less, asked),) * (is_deep and is_less)
+    also: tuple[Answer, ...] = ()
+    if short.step < chosen.step and not problem.keeps(found.outcome, problem.permitted):
+        # Its step alone is typed, which asks for the whole depth that is permitted.
+        less = problem.keeping(lambda _: short.step)
+        if problem.keeps(less.outcome, min(problem.permitted, 0.9 * found.outcome.depth[1])):
+            also = (answer(problem, less, asked),)
     if asked is not None and bounce.gives_contact and chosen is short:
         stiffest = problem.stiffest(asked, problem.deepest)
         if problem.keeps(stiffest.outcome, problem.deepest):

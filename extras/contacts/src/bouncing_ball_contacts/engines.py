@@ -360,10 +360,11 @@ def parameters_of(
             same = _SAME.get(as_compared(str(each)), "")
             meant = [f"; did you mean {same}?"] * (same in known)
             hint = "".join(said * (as_compared(str(each)) in _TIME_STEPS) or meant or near)
-            known_here = ", ".join(names) + "; without a restitution " * bool(springs)
+            known_here = ", ".join(names)
+            if springs:
+                known_here += f"; without a restitution {', '.join(springs)}"
             raise Refused(
-                f"{engine}: {each!r} is not computed here; computed are {known_here}"
-                f"{', '.join(springs)}{hint}"
+                f"{engine}: {each!r} is not computed here; computed are {known_here}{hint}"
             )
         if name in found:
             raise Refused(f"{each!r} gives {name} twice")

@@ -8,13 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from jinja2 import TemplateSyntaxError
 from tests import independent
 from tests.reference import reference, with_more, with_parameters
 
 from bouncing_ball import spring_damper
 from carbonelli2011 import article, claims, measures, paper
 from carbonelli2011.paper import LIMIT, STIFF, printed_table
-from paper_replication import judgements, origins, texts
+from paper_replication import judgements, origins, templates, texts
 from paper_replication.datasets import parameters
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -120,6 +121,69 @@ def test_numbers_follow_no_dataset_that_their_expressions_do_not_name(name, data
         moved += [(pair, n) for n in before if n in after and before[n] != after[n]]
     assert len(moved) > 10
     assert [(pair, n) for pair, n in moved if not {*pair} & {*origin[n].datasets}] == []
+
+
+SPELLED = {
+    "{{ fig14.n }}": {"fig14"},
+    "{{ fig14.n|abs }}": {"fig14"},
+    "{{ 'fig14 }}' ~ fig15.n }}": {"fig15"},
+    '{{ "\\"" ~ fig14.n ~ "\\"" }}': {"fig14"},
+    "{{ given.fig14.n }}": {"fig14"},
+    "{{ given['fig14'].n }}": {"fig14", "fig15"},
+    "{{ 1 | abs(fig14=2) ~ other.fig14 }}": set(),
+    "{# {{ fig14.n }} #}{% raw %}{{fig14}}{% endraw %}{{ fig15.n }}": {"fig15"},
+    "{% set x = fig14.n -%}\n{% if fig15 %}{{ x }}{% endif %}": {"fig14"},
+    "{% for x, y in fig14.n if y %}{{ x }}{% endfor %}": {"fig14"},
+    "{% for fig14 in [1] %}{% endfor %}{{ fig14.n }}": {"fig14"},
+    "{% macro f(fig15) -%}{% endmacro %}{{ fig15.n }}": {"fig15"},
+}
+
+
+@pytest.mark.parametrize("source", SPELLED)
+def test_the_last_number_has_its_origin(source):
+    last = origins.origins(source, ["fig14", "fig15"])[-1]
+    assert {*last.datasets} == SPELLED[source]
+
+
+def test_a_macro_prints_what_its_body_and_its_arguments_name():
+    source = "{% macro f(y) -%}{{ y }}{{ fig14.n }}{%- endmacro %}{{ f(fig15.n) }}"
+    found = origins.origins(source, ["fig14", "fig15"])
+    assert [{*each.datasets} for each in found] == [set(), {"fig14"}, {"fig14", "fig15"}]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "{{x}}",
+        "{{- x }}",
+        "{{ x -}}",
+        "{{ x\n}}",
+        "{%- set a = x %}",
+        "{% set a=x %}",
+        "{% set a, b = x %}",
+        "{% set a.b = x %}",
+        "{% set a %}{{ x }}{% endset %}",
+        "{% with a = x %}{% endwith %}",
+        "{% for (a, b) in x %}{% endfor %}",
+        "{% macro f(a=x) %}{% endmacro %}",
+        "{% call f() %}{% endcall %}",
+        '{% include "a.j2" %}',
+        '{% from "a.j2" import x %}',
+        # A name that has another meaning in between.
+        "{% if a %}{% set a = x %}{% endif %}{% set a = 1 %}",
+        "{% for a in x %}{% set a = 1 %}{% endfor %}",
+        "{% macro f() %}{{ a }}{% endmacro %}{% set a = x %}",
+        "{% macro f() %}{% endmacro %}{% macro f() %}{% endmacro %}",
+    ],
+)
+def test_a_statement_that_would_lose_a_source_is_refused(statement):
+    """The marks of any paper are refused, with the line and the statement."""
+    marking = templates.environment(Path(), marked=True)
+    with pytest.raises(TemplateSyntaxError, match=r"write|another name") as error:
+        marking.from_string("{% set y = x %}\n" + statement)
+    assert error.value.lineno > 1
+    spelling = str(error.value).partition(": ")[0]
+    assert spelling.startswith("{") and spelling in statement
 
 
 def test_counts_follow_a_dataset(data):

@@ -58,6 +58,7 @@ def filled_in(
         claim={row["claim"]: row for row in [*judged, *own]},
         error_limit=paper.LIMIT,
         stiff=paper.STIFF,
+        verdicts=environment(TEMPLATES).get_template("verdicts.md.j2").render().rstrip(),
         **more,
     )
 

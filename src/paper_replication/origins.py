@@ -2,26 +2,36 @@
 
 The text is filled in with marks around what each expression of its template prints. `bare` removes
 the marks, and the pages turn them into links. One pass over the template finds the datasets that an
-expression names, itself or through the names that it uses.
+expression names, itself or through the names that it uses. A statement in which this pass would
+miss a name is refused.
 """
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import count
 
+import jinja2
 from jinja2.ext import Extension
+from jinja2.lexer import Token, TokenStream
 
-PART = re.compile(
-    r"\{\{ (?P<printed>.+?) \}\}"
+STATEMENT = re.compile(
+    r"\{\{ (?P<printed>.+) \}\}"
     r"|\{% set (?P<set>\w+) = (?P<value>.+?) -?%\}"
-    r"|\{% for (?P<each>[\w, ]+) in (?P<values>.+?) %\}"
-    r"|\{% macro (?P<macro>\w+)\((?P<arguments>.*?)\)"
-    r"|\{%-? (?P<end>endmacro)"
+    r"|\{% for (?P<each>[\w, ]+) in (?P<values>.+) %\}"
+    r"|\{% macro (?P<macro>\w+)\((?P<arguments>[\w, ]*)\) -?%\}"
+    r"|\{%-? (?P<end>endmacro|endfor) %\}"
+    r"|\{% (?:if .+|elif .+|else|endif) %\}"
 )
-"""A part of a template that prints an expression, or that defines a name."""
+"""A statement of a template, on one line."""
 
-WORD = re.compile(r'"[^"]*"|(?<![\w.])(?<!\| )(?:given\.)?(\w+)\b(?!=[^=])')
+SPELLINGS = "{{ x }}, {% set a = x %}, {% for a, b in x %}, {% macro f(a, b) -%} and {% if x %}"
+
+WORD = re.compile(
+    r"'(?:[^'\\]|\\.)*'"
+    r'|"(?:[^"\\]|\\.)*"'
+    r"|(?<![\w.])(?<!\| )(?:given\.)?(\w+)\b(?!=[^=])"
+)
 """A name in an expression, or a text in quotation marks, which has no group. Attributes, filters
 and keywords do not match."""
 
@@ -31,19 +41,25 @@ characters around them are of the private use area of Unicode."""
 
 
 class Marks(Extension):
-    """Mark what the expressions of a template print."""
+    """Mark what the expressions of a template print: `{{ x }}` is `{{ (x) | mark("0") }}`."""
 
     def preprocess(self, source: str, name: str | None, filename: str | None = None) -> str:
+        origins(source, (), name=name, filename=filename)
+        return source
+
+    def filter_stream(self, stream: TokenStream) -> Iterator[Token]:
         place = count()
+        for token in stream:
+            if token.type == "variable_end":
+                end = [("rparen", ")"), ("pipe", "|"), ("name", "mark")]
+                end += [("lparen", "("), ("string", str(next(place))), ("rparen", ")")]
+                yield from (Token(token.lineno, *each) for each in end)
+            yield token
+            if token.type == "variable_begin":
+                yield Token(token.lineno, "lparen", "(")
 
-        def marked(part: re.Match) -> str:
-            text = part["printed"]
-            return f"{{{{ ({text}) | mark({next(place)}) }}}}" if text else part[0]
 
-        return PART.sub(marked, source)
-
-
-def mark(value: object, number: int) -> str:
+def mark(value: object, number: str) -> str:
     """Mark a text, or each number that begins a cell if the text is a table. Marks do not nest."""
     text = bare(str(value))
     part = r"(?<=\| )[^|\w\n]*\d[^|\n]*?(?= \|)" if "\n" in text else "^.+$"
@@ -86,34 +102,66 @@ def origins(
     source: str,
     datasets: Collection[str],
     behind: Mapping[str, Collection[str]] = {},
+    name: str | None = None,
+    filename: str | None = None,
 ) -> list[Origin]:
     """Return the origin of each printed expression of a template, in their order.
+
+    `behind` are the datasets behind further names; `name` and `filename` of the template are for
+    messages. Raises TemplateSyntaxError for a statement in which a name could be missed: another
+    spelling than those of `STATEMENT`, or a second definition of a name.
 
     >>> each, = origins("{% set far = fig14.n %}{{ far.max() | fixed(2) }}", ["fig14"])
     >>> each.names, [*each.datasets]
     ({'far': 'far = fig14.n'}, ['fig14'])
     """
-    known = {name: Origin("", {}, {name: 0}) for name in datasets}
-    known |= {name: Origin("", {}, dict.fromkeys(sources)) for name, sources in behind.items()}
+    known = {"given": Origin("", {}, datasets)}
+    known |= {each: Origin("", {}, [each]) for each in datasets}
+    known |= {each: Origin("", {}, sources) for each, sources in behind.items()}
     found: list[Origin] = []
-    outside = 0
-    for part in PART.finditer(source):
-        text = part["printed"] or part["value"] or part["values"] or ""
-        used = {word: known[word] for word in WORD.findall(text) if word in known}
+    free: set[str] = set()
+    outside: list[tuple[str, int, dict[str, Origin]]] = []
+    for line, text in statements(source, name, filename):
+        part = STATEMENT.fullmatch(text)
+        if part is None:
+            message = f"{text}: write {SPELLINGS}, each on one line"
+            raise jinja2.TemplateSyntaxError(message, line, name, filename)
+        expression = part["printed"] or part["value"] or part["values"] or ""
+        words = WORD.findall(expression)
+        used = {word: known[word] for word in words if word in known}
+        free |= {*words} - known.keys()
+        if (defined := part["set"] or part["macro"]) in free | known.keys():
+            message = f"{text}: {defined} has another meaning before: give this another name"
+            raise jinja2.TemplateSyntaxError(message, line, name, filename)
         if part["printed"]:
-            found.append(together(text, used))
+            found.append(together(expression, used))
         elif part["set"]:
-            known[part["set"]] = together(f"{part['set']} = {text}", used)
+            known[part["set"]] = together(f"{part['set']} = {expression}", used)
         elif part["each"]:
-            each = together(f"{part['each']} in {text}", used)
-            known |= dict.fromkeys(WORD.findall(part["each"]), each)
+            outside.append(("", 0, known))
+            each = together(f"{part['each']} in {expression}", used)
+            known = known | dict.fromkeys(WORD.findall(part["each"]), each)
         elif part["macro"]:
-            macro = part["macro"]
-            outside = len(found)
-            known |= dict.fromkeys(WORD.findall(part["arguments"]), Origin("", {}, []))
-        else:
-            known[macro] = together("", {each.expression: each for each in found[outside:]})
+            outside.append((part["macro"], len(found), known))
+            known = known | dict.fromkeys(WORD.findall(part["arguments"]), Origin("", {}, []))
+        elif part["end"]:
+            macro, first, known = outside.pop()
+            if macro:
+                known[macro] = together("", {each.expression: each for each in found[first:]})
     return found
+
+
+def statements(
+    source: str, name: str | None = None, filename: str | None = None
+) -> Iterator[tuple[int, str]]:
+    """Yield the line and the text of each statement and expression, as Jinja's lexer finds them."""
+    jinja = jinja2.Environment()
+    jinja.parse(source, name, filename)
+    text = ""
+    for line, kind, part in jinja.lex(source):
+        text = part if kind in ("variable_begin", "block_begin") else text + part
+        if kind in ("variable_end", "block_end"):
+            yield line, text.rstrip()
 
 
 def together(text: str, used: Mapping[str, Origin]) -> Origin:

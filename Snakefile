@@ -83,8 +83,8 @@ def checkout(*paths):
 
 
 def modules(*names):
-    """Modules of the packages, as paths from the folder of the run."""
-    return checkout(*(path for name in names for path in sorted(TOP.glob(f"src/*/{name}.py"))))
+    """Modules of the packages with their templates, as paths from the folder of the run."""
+    return checkout(*(path for name in names for path in sorted(TOP.glob(f"src/*/{name}.*"))))
 
 
 def stage(name):

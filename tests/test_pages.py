@@ -10,9 +10,9 @@ from markdown_it import MarkdownIt
 from tests.reference import ENTRIES, FIGURES, TOP, reference, with_parameters
 
 from carbonelli2011 import article, index, tables
-from carbonelli2011 import pages as text_pages
 from carbonelli2011.claims import judge
 from paper_replication import judgements, origins
+from paper_replication import pages as text_pages
 
 CAPTIONS = {name: entry["caption"] for name, entry in ENTRIES.items() if "caption" in entry}
 

@@ -1,5 +1,6 @@
 """Another paper in a folder of its own: `tests/pendulum` uses `paper_replication` from there."""
 
+import re
 import shutil
 import subprocess
 
@@ -33,7 +34,13 @@ def test_a_dataset_a_claim_and_a_sentence(accepted):
     fig1, claims = (read(accepted.path / f"figures/{name}.nc") for name in ("fig1", "claims"))
     assert parameters(fig1) == {"length": 1.0, "gravity": 9.81}
     assert (claims.verdict == "reproduced").all()
-    assert (accepted.path / "paper.md").read_text("utf-8") == "At 60° a swing takes 2.15 s."
+    assert "\nAt 60° a swing takes 2.15 s." in (accepted.path / "paper.md").read_text("utf-8")
+
+
+def test_the_page_of_its_text_has_no_links_to_pages_that_it_lacks(accepted):
+    page = (accepted.path / "results/paper.html").read_text("utf-8")
+    assert re.findall('href="(.*?)"', page) == ["paper.html"]
+    assert 'src="figures/fig1.svg" alt="Period by angle."' in page and "<math" in page
 
 
 def test_a_changed_parameter_is_red_and_named_until_it_is_accepted(accepted):

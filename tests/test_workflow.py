@@ -23,7 +23,8 @@ IMPACTS = CONFIG["restitution_model"]["three_balls"]["impacts"]
 TABLES = {name for name, entry in ENTRIES.items() if entry.get("table")}
 TEXTS = {"claims", "choices", "article"}
 NO_NUMBER = {"carbonelli2011/variables.py", "paper_replication/provenance.py"}
-"""Modules that decide no number: they are in no list of code."""
+NO_NUMBER |= {f"paper_replication/{name}.j2" for name in ("diff.html", "diff.txt", "verdict")}
+"""Modules and templates that decide no number: they are in no list of code."""
 MODELS = {f"bouncing_ball/{path.name}" for path in (ROOT / "src/bouncing_ball").iterdir()}
 MODELS |= {"paper_replication/datasets.py", "scripts/stage.py"}
 
@@ -173,7 +174,7 @@ def in_folder(path: Path) -> str:
     return f"{path.parent.name}/{path.name}"
 
 
-def test_rules_list_the_modules_that_their_scripts_import(stubs):
+def test_rules_list_the_modules_and_templates_that_their_scripts_read(stubs):
     _, printed = stubs.run("--dry-run", "--cores", "1")
     scripts = dict.fromkeys(FIGURES, "draw") | dict.fromkeys(TABLES, "tables")
     inputs = {}
@@ -190,6 +191,8 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         assert found <= files, name
         # All models count for all that computes.
         assert {file for file in files - found - MODELS if file.endswith(".py")} == set(), name
+    templates = {in_folder(path) for path in (ROOT / "src").rglob("*.j2")} - NO_NUMBER
+    assert {file for file in inputs["article"] if file.endswith(".j2")} == templates
 
 
 def test_a_failed_figure_does_not_stop_others(fresh):

@@ -10,6 +10,6 @@
     the figures and tables
 `measures`, `claims`, `choices`
     numbers that follow from datasets, the claims that they decide, and what they depend on
-`article`, `index`, `pages`
-    the article, its supplement and the page of the results, as texts and as pages for a browser
+`article`, `index`
+    the article, its supplement and the page of the results
 """

@@ -4,6 +4,7 @@ Templates show the same parts: a part is a figure, a table or a dataset, with th
 shown next to it.
 """
 
+import re
 from collections.abc import Mapping
 from functools import partial
 
@@ -12,20 +13,12 @@ import xarray as xr
 
 from carbonelli2011 import article
 from carbonelli2011.claims import CLAIMS, TABLE
-from carbonelli2011.pages import (
-    Part,
-    framed,
-    numbers,
-    page_of,
-    rows_beside,
-    unbroken,
-    with_subscripts,
-)
 from carbonelli2011.paper import QUANTITIES
 from carbonelli2011.tables import TABLES
 from paper_replication import judgements, texts
 from paper_replication.datasets import Datasets, parameters
 from paper_replication.origins import bare
+from paper_replication.pages import Part, framed, numbers, page_of, rows_beside, unbroken
 
 SEVERAL = {"several": "Several figures", "": "Statements that no figure shows"}
 """Parts with claims that belong to no single figure or table."""
@@ -45,7 +38,7 @@ def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = Fal
         "figures/README.md": filled_in("md", datasets, entries),
         "index.html": filled_in("html", datasets, entries, site=site),
         "claims.html": framed(evidence, "claims", [("", "The claims and the evidence")]),
-        "numbers.html": numbers(marked, origin, datasets),
+        "numbers.html": numbers(marked, origin, datasets, article.TEMPLATES),
     }
     for name, text in marked.items():
         found[f"{name}.md"] = bare(text)
@@ -87,6 +80,15 @@ def filled_in(
         site=site,
     )
     return with_subscripts(unbroken(text)) if kind == "html" else text
+
+
+def with_subscripts(page: str) -> str:
+    """Set the indices of symbols below the line, in texts and not in tags.
+
+    >>> with_subscripts('<td title="τ_b">φ + τ_b, r_a</td>')
+    '<td title="τ_b">φ + τ<sub>b</sub>, r<sub>a</sub></td>'
+    """
+    return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
 
 
 def parts(datasets: Datasets, entries: Mapping[str, Mapping]) -> list[Part]:

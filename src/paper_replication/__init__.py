@@ -11,8 +11,8 @@
     how a claim of the paper is judged; the verdicts on all claims as a dataset and as tables
 `texts`, `templates`
     numbers and tables as texts, and the templates that print them
-`origins`
-    the expression and the dataset behind each number of a text
+`origins`, `pages`
+    the expression and the dataset behind each number of a text; texts as pages for a browser
 `compare`
     comparison of results with a reference, or of two runs
 """

@@ -20,7 +20,15 @@ VARIABLES = {
     "period": Variable("period", "T", "Eq. 1", "s"),
     **{name: Variable(name) for name in NOTHING},
 }
-SENTENCE = "At 60° a swing takes {{ fig1.period.sel(angle=60).item() | fixed(2) }} s."
+TEXT = """# The period of a pendulum
+
+At 60° a swing takes {{ fig1.period.sel(angle=60).item() | fixed(2) }} s. The period is
+
+$$T = \\frac{2\\pi\\sqrt{l/g}}{\\mathrm{agm}(1, \\cos(\\theta/2))}. \\qquad (1)$$
+
+![Figure 1](figures/fig1.png)
+**Figure 1.** Period by angle.
+"""
 
 
 def period(given, gravity):

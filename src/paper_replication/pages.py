@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from functools import cache
 from html import escape
 from itertools import pairwise
+from pathlib import Path
 
 from latex2mathml.converter import convert
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
-from carbonelli2011.article import TEMPLATES
 from paper_replication import origins
 from paper_replication.datasets import Datasets
 from paper_replication.judgements import claims_of, counted
@@ -46,15 +46,6 @@ class Part:
     elsewhere: Sequence[str] = ()
 
 
-def with_subscripts(page: str) -> str:
-    """Set the indices of symbols below the line, in texts and not in tags.
-
-    >>> with_subscripts('<td title="τ_b">φ + τ_b, r_a</td>')
-    '<td title="τ_b">φ + τ<sub>b</sub>, r<sub>a</sub></td>'
-    """
-    return re.sub(r"([τφδϖΛζ′]|\br)_(\w+)(?=[^<>]*<)", r"\1<sub>\2</sub>", page)
-
-
 def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
     """Return the claims next to a figure or table, without those of the table `elsewhere`."""
     return [
@@ -68,12 +59,14 @@ def rows_beside(name: str, datasets: Datasets, elsewhere: str) -> list[dict]:
 
 
 PAGES = {
-    "paper.md": "paper.html",
-    "supplement.md": "supplement.html",
-    "figures/README.md": "index.html",
-    "figures/claims.md": "claims.html",
+    "index.html": "Results",
+    "paper.html": "Article",
+    "supplement.html": "Supplement",
+    "claims.html": "Evidence",
+    "numbers.html": "Numbers",
 }
-"""The page for each text; the page of a table is a part of claims.html."""
+"""The pages of a replication, with their names in the bar at the top. A smaller one has fewer, and
+no links to the others."""
 
 
 def page_of(
@@ -81,8 +74,9 @@ def page_of(
     name: str,
     captions: Mapping[str, str],
     origin: Sequence[origins.Origin] = (),
+    pages: Mapping[str, str] = PAGES,
 ) -> str:
-    """The page of a text in Markdown: "paper" or "supplement".
+    """Return the page of a text in Markdown. `name` is its name in `pages`, such as "paper".
 
     Formulas become MathML. Links to texts lead to their pages, and citations to the references.
     What an expression printed leads to its origin on the page of numbers; `origin` has the origins
@@ -96,22 +90,28 @@ def page_of(
             token.attrs["src"] = f"figures/{figure}.svg"
             token.children = [Token("text", "", 0, content=captions[figure])]
         elif token.type == "link_open":
-            token.attrs["href"] = link(token.attrs["href"])
-    contents = name_headings(tokens)
+            token.attrs["href"] = link(token.attrs["href"], pages)
+    contents = name_headings(tokens) or [("", name.title())]
     name_references(tokens)
     name_cells(tokens)
     body = parser().renderer.render(tokens, parser().options, {})
     # A formula stays with the punctuation after it, and with a bracket before it.
     inline = r'(\(?<span class="math inline">(?:(?!</span>).)*</span>[.,;:)]+)'
     body = re.sub(inline, r'<span class="whole">\1</span>', body)
-    return framed(with_origins(with_links(body), name, origin), name, contents)
+    return framed(with_origins(with_links(body, pages), name, origin), name, contents, pages)
 
 
-def framed(body: str, name: str, contents: Sequence[tuple[str, str]]) -> str:
+def framed(
+    body: str,
+    name: str,
+    contents: Sequence[tuple[str, str]],
+    pages: Mapping[str, str] = PAGES,
+) -> str:
     """Return a page of text. `contents` are anchors and texts of its headings, the title first."""
-    template = environment(TEMPLATES).get_template("article.html.j2")
+    template = environment(Path(__file__).parent).get_template("pages.html.j2")
+    (_, title), *headings = contents
     return unbroken(
-        template.render(name=name, title=contents[0][1], contents=contents[1:], body=body)
+        template.render(name=name, title=title, contents=headings, body=body, pages=pages)
     )
 
 
@@ -147,14 +147,18 @@ def formula(tex: str, options: Mapping) -> str:
     return "".join(convert(each, display="block") for each in re.split(r"\\q?quad", tex))
 
 
-def link(target: str) -> str:
-    """Where a link of a text leads in a browser.
+def link(target: str, pages: Mapping[str, str] = PAGES) -> str:
+    """Where a link of a text leads in a browser. The page of a table is a part of claims.html.
 
     >>> link("supplement.md"), link("figures/table1.md"), link("figures/claims.csv")
     ('supplement.html', 'claims.html#table1', 'figures/claims.csv')
     """
+    special = {"figures/README.md": "index.html", "figures/claims.md": "claims.html"}
+    page = special.get(target, target.replace(".md", ".html"))
+    if page in pages:
+        return page
     table = re.fullmatch(r"figures/(\w+)\.md", target)
-    return PAGES.get(target) or (f"claims.html#{table[1]}" if table else target)
+    return f"claims.html#{table[1]}" if table and "claims.html" in pages else target
 
 
 def name_headings(tokens: Sequence[Token]) -> list[tuple[str, str]]:
@@ -194,18 +198,21 @@ def name_cells(tokens: Sequence[Token]) -> None:
             column += 1
 
 
-def with_links(body: str) -> str:
+def with_links(body: str, pages: Mapping[str, str] = PAGES) -> str:
     """Link figures, citations, sections and identifiers of documents in a text in HTML."""
 
+    def linked(text: str, page: str, anchor: str) -> str:
+        return f'<a href="{page}#{anchor}">{text}</a>' if page in pages else text
+
     def figures(found: re.Match) -> str:
-        return f'<a href="index.html#fig{found[1]:0>2}">{found[0]}</a>'
+        return linked(found[0], "index.html", f"fig{found[1]:0>2}")
 
     def sections(found: re.Match) -> str:
         page = "supplement.html" if found[1].startswith("S") else "paper.html"
-        return f'<a href="{page}#section-{found[1]}">{found[0]}</a>'
+        return linked(found[0], page, f"section-{found[1]}")
 
     def citations(found: re.Match) -> str:
-        return re.sub(r"\d+", r'<a href="paper.html#reference-\g<0>">\g<0></a>', found[0])
+        return re.sub(r"\d+", lambda n: linked(n[0], "paper.html", f"reference-{n[0]}"), found[0])
 
     body = re.sub(r"<strong>Figure (\d+)\.</strong>", figures, body)
     body = re.sub(r"\bSection (S?\d(?:\.\d)?)", sections, body)
@@ -217,15 +224,19 @@ def with_links(body: str) -> str:
 
 
 def numbers(
-    texts: Mapping[str, str], origin: Mapping[str, Sequence[origins.Origin]], datasets: Datasets
+    texts: Mapping[str, str],
+    origin: Mapping[str, Sequence[origins.Origin]],
+    datasets: Datasets,
+    templates: Path,
 ) -> str:
     """Return the page of what the texts print: sentences, expressions, datasets and claims.
 
-    `texts` have marks, and `origin` has the origins of their expressions.
+    `texts` have marks, and `origin` has the origins of their expressions. The folder of `templates`
+    has numbers.html.j2.
     """
     judged = counted(datasets["claims"])
     sentences = {name: sentences_of(text, origin[name], judged) for name, text in texts.items()}
-    template = environment(TEMPLATES).get_template("numbers.html.j2")
+    template = environment(templates).get_template("numbers.html.j2")
     contents = [
         ("", "Where the numbers come from"),
         *((name, name.title()) for name in texts),

@@ -3,12 +3,14 @@
 import doctest
 import re
 
+import numpy as np
 import pytest
 import yaml
 from tests.checkout import ROOT
 from tests.reference import TOP, reference
 
 import bouncing_ball
+from bouncing_ball.spring_damper import contact_of_duration
 from paper_replication import judgements, texts
 
 WRITTEN = ["paper.md", "supplement.md", "figures/README.md"]
@@ -97,13 +99,32 @@ def test_counts_of_readme_are_those_of_the_datasets():
     assert f"a grid of {stable} n-T orbits that are stable in both models" in readme
 
 
-def test_the_contact_times_of_your_ball_were_measured():
+def two_digits(values) -> list[float]:
+    return sorted(float(f"{value:.2g}") for value in values)
+
+
+def test_the_table_of_your_ball_has_measured_times_where_the_ball_arrives_with_their_speeds():
+    """By Newton's impact, the ball of the 1-T orbit arrives with g/((1 + r) · frequency)."""
+    page = text("docs/your-ball.md")
     row = re.compile(r"\((\S+/experiments/\w+\.csv)\).* ([\d.]+) ± ([\d.]+) ms")
-    balls = row.findall(text("docs/your-ball.md"))
-    assert len(balls) == 2
-    for file, *typed in balls:
-        measured = re.findall(r"# contact time.*: (\S+) s", text(f"docs/{file}"))
-        assert [f"{1e3 * float(each):.3g}" for each in measured] == typed
+    measured = row.findall(page)
+    for file, *typed in measured:
+        times = re.findall(r"# contact time.*: (\S+) s", text(f"docs/{file}"))
+        assert [f"{1e3 * float(each):.3g}" for each in times] == typed
+    rows = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
+    assert (len(measured), len(rows)) == (2, 3)
+    for ball, *cells in rows:
+        numbers = [[float(each) for each in re.findall(r"\d[\d.]*", cell)] for cell in cells]
+        (r, *_), (milliseconds, *_), frequency, ratio = numbers
+        speeds = [float(each) for each in re.findall(r"[\d.]+", ball.rpartition(" at ")[2])]
+        found = np.array([9.80665 / ((1 + r) * speed) for speed in speeds])
+        assert two_digits(found) == sorted(frequency)
+        contact = contact_of_duration(2e-3 * np.pi * found * milliseconds, r, "force")
+        assert two_digits(contact.frequency_ratio) == sorted(ratio)
+    compliance = 2 * (1 - 0.3**2) / 210e9
+    mass = 7800 * np.pi / 6 * 0.01**3
+    hertz = 2.87 * (mass**2 * compliance**2 / (0.005 * 0.072)) ** 0.2
+    assert two_digits([1e3 * hertz]) == [milliseconds]
 
 
 def test_the_journal_accepts_the_metadata():

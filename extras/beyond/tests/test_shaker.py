@@ -1,16 +1,24 @@
 """The question of an engineer with a shaker: units, limits and the answer."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
+import yaml
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond.errors import shaker
 from bouncing_ball_beyond.errors.error_law import contact_values
 from bouncing_ball_beyond.errors.shaker import on_shaker
+from studies.stages.impacts import ext_contact_time
 
 G = 9.80665
 TABLE = {"frequency": 50.0, "acceleration": 0.8 * G, "restitution": 0.85}
 CONTACT = {"mass": 0.02, "stiffness": 1e7}
+BEYOND = Path(__file__).resolve().parents[1]
 STEEL = {"radius": 5e-3, "mass": 4e-3, "youngs_modulus": 210e9}
 
 
@@ -43,6 +51,56 @@ def test_duration_of_a_contact_of_hertz():
     lasts = 2.94327507 * (1.25 * 0.004 / stiffness * speed**2) ** 0.4 / speed
     # A loss changes the speed and the duration in proportion to 1 - r.
     assert answer.contact_duration == pytest.approx(lasts, rel=1e-4)
+
+
+def hertz_factor(r):
+    """T (k/m)^(2/5) v^(1/5) of m ẍ + α √(mk) x^(1/4) ẋ + k x^(3/2) = 0, by integration."""
+    damping = np.sqrt(5) * -np.log(r) / np.hypot(np.pi, np.log(r))
+
+    def motion(_, state):
+        depth = max(state[0], 0.0)
+        return state[1], -(depth**1.5) - damping * depth**0.25 * state[1]
+
+    def release(_, state):
+        return state[0]
+
+    release.terminal = True
+    release.direction = -1
+    found = solve_ivp(motion, (0, 9), (0, 1), events=release, rtol=1e-10, atol=1e-13)
+    assert -found.y[1, -1] == pytest.approx(r, abs=1e-6)
+    return found.t[-1]
+
+
+def test_the_contact_times_of_the_picture_are_those_of_hertz_at_the_impact_speed():
+    given = yaml.safe_load((BEYOND / "config/config.yaml").read_text("utf-8"))
+    given = given["impacts"]["ext_contact_time"]
+    found = ext_contact_time(given)
+    assert len(given["balls"]) == 5
+    for (name, ball), speeds in zip(given["balls"].items(), found.impact_speed, strict=True):
+        r = ball["restitution"]
+        factor = hertz_factor(r)
+        bodies = ball, given["table_material"]
+        soft = sum((1 - body["poissons_ratio"] ** 2) / body["youngs_modulus"] for body in bodies)
+        mass = ball["density"] * np.pi / 6 * ball["diameter"] ** 3
+        stiffness = 4 / 3 / soft * np.sqrt(ball["diameter"] / 2)
+
+        def time(frequency, r=r, scale=factor * (mass / stiffness) ** 0.4):
+            return scale * (G / ((1 + r) * frequency)) ** -0.2
+
+        one = found.sel(ball_name=name)
+        np.testing.assert_allclose(speeds, G / ((1 + r) * found.frequency), rtol=1e-12)
+        np.testing.assert_allclose(one.contact_time, time(found.frequency), rtol=1e-6)
+        stiff = brentq(lambda f, time=time: f * time(f) - 1 / 200, 0.1, 1e4)
+        assert one.stiff_frequency == pytest.approx(stiff, rel=1e-6)
+    np.testing.assert_allclose(found.longest_contact_time * found.frequency, 1 / 200)
+
+
+def test_the_ball_of_the_replication_by_hand_is_answered_here(capsys):
+    """docs/your-ball.md: the example that needs this package prints what the page shows."""
+    page = (BEYOND / "../../docs/your-ball.md").read_text("utf-8")
+    ((example, printed),) = re.findall(r"```python\n(from.*?)```\n+```text\n(.*?)```", page, re.S)
+    exec(example, {})
+    assert capsys.readouterr().out == printed
 
 
 def test_answers_in_sentences():

@@ -65,7 +65,7 @@ def test_a_name_needs_its_stage_only(stubs):
     assert stubs.planned("ext_map") == {"stiffness_map", "ext_map"}
     assert stubs.planned("impacts") == {"impacts"}
     assert stubs.planned("ext_map", "diff") == {"stiffness_map", "ext_map", "diff"}
-    stage = {"impacts", "ext_impact", "ext_instant", "diff"}
+    stage = {"impacts", "ext_impact", "ext_instant", "ext_contact_time", "diff"}
     assert stubs.planned("impacts", "diff") == stage
 
 
@@ -82,7 +82,7 @@ def test_a_name_needs_its_stage_only(stubs):
             "config/config.yaml",
             "release: displacement",
             "release: force",
-            {"impacts", "ext_impact", "ext_instant"}
+            {"impacts", "ext_impact", "ext_instant", "ext_contact_time"}
             | {"error_law", "ext_orders", "table_ext_orders", "article"},
         ),
         ("workflow/studies/figures.py", "import", "import  ", FIGURES),

@@ -236,6 +236,32 @@ def ext_instant(data: xr.Dataset) -> Figure:
     return figure
 
 
+def ext_contact_time(data: xr.Dataset) -> Figure:
+    """Contact times of balls along the table's frequency, and the longest one that is stiff."""
+    figure, axes = panels(3.4)
+    given = parameters(data)
+    ratio = f"{given['frequency_ratio']:g}"
+    limit = rf"$\varpi={ratio}$: 1/{2 * given['frequency_ratio']:g} of a period"
+    balls = data.ball_name.values
+    for name, colour, dashes in zip(balls, COLOURS, DASHES, strict=False):
+        one = data.sel(ball_name=name)
+        look: Look = {"color": colour, "linestyle": dashes}
+        look["label"] = f"{name}, {label(restitution=one.restitution)}"
+        axes.plot(data.frequency, 1e3 * one.contact_time, **look)
+        place = float(one.stiff_frequency), 5e2 / given["frequency_ratio"] / one.stiff_frequency
+        axes.plot(*place, "o", color=colour, markersize=4, zorder=5)
+        note: Look = {"xytext": (0, 7), "textcoords": "offset points", "color": colour}
+        axes.annotate(f"{place[0]:.3g} Hz", place, **note)
+    axes.plot(data.frequency, 1e3 * data.longest_contact_time, label=limit, **GUIDE)
+    axes.set(xscale="log", yscale="log", xlim=data.frequency[[0, -1]])
+    axes.set(xlabel="frequency of the table in Hz", ylabel="contact time in ms")
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.yaxis.set_major_formatter("{x:g}")
+    axes.set_title(label(n=given["n"]))
+    legend_below(figure, columns=2)
+    return figure
+
+
 # Errors of both models
 
 QUANTILES = (0.05, 0.5, 0.95)
@@ -529,6 +555,7 @@ FIGURES: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "ext_answers": ext_answers,
     "ext_impact": ext_impact,
     "ext_instant": ext_instant,
+    "ext_contact_time": ext_contact_time,
     "ext_orders": ext_orders,
     "ext_map": ext_map,
     "ext_laws": ext_laws,

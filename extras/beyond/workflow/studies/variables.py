@@ -75,6 +75,17 @@ VARIABLES = SYMBOLS | {
     "meeting_time": Variable("time at which the continued flights meet", "ψ"),
     "meeting_height": Variable("height at which the continued flights meet", "z"),
     "delay": Variable("delay of the instant by the signature of the contact", "t_c"),
+    # The time of contacts
+    "ball_name": Variable("material and diameter of a ball"),
+    "frequency": Variable("frequency of the table", "Ω/2π", units="Hz"),
+    "impact_speed": Variable("impact speed of the orbit, relative to the table", units="m/s"),
+    "contact_time": Variable("contact time at the impact speed", "D", units="s", floor=1e-6),
+    "longest_contact_time": Variable(
+        "contact time at which π/D is the given frequency ratio", "D", units="s", floor=1e-6
+    ),
+    "stiff_frequency": Variable(
+        "frequency of the table below which π/D exceeds the given frequency ratio", units="Hz"
+    ),
     # Errors along the frequency ratio. What the corrected model and the error law leave is a small
     # difference of numbers of the size of 1 that are known to some 1e-13.
     "relative_error": Variable("relative error of a simple model", "", "Eqs. 37-38", floor=1e-2),

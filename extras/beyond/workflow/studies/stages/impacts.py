@@ -1,10 +1,14 @@
-"""Stage: one contact, its force, its ends, and the flights before and after it."""
+"""Stage: one contact, its force, its ends, the flights before and after it, and its time in s."""
 
 import numpy as np
 import xarray as xr
 
-from bouncing_ball_beyond.contacts.balls import Impact, SpringDamper, damping_of
+from bouncing_ball_beyond.contacts.balls import Impact, Rigid, SpringDamper, damping_of
+from bouncing_ball_beyond.contacts.named_laws import tsuji
+from bouncing_ball_beyond.errors.error_law import free_impact
+from bouncing_ball_beyond.errors.shaker import STANDARD_GRAVITY
 from bouncing_ball_beyond.periodic.orbits import orbit
+from paper_replication.datasets import grid
 
 RELEASES = ["displacement", "force"]
 
@@ -82,4 +86,56 @@ def ext_instant(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {"ext_impact": ext_impact, "ext_instant": ext_instant}
+def compliance(body: dict) -> float:
+    """(1 - ν²)/E of a ball or of a table, in 1/Pa."""
+    return (1 - body["poissons_ratio"] ** 2) / body["youngs_modulus"]
+
+
+def hertz_time(ball: dict, table: dict, speed: np.ndarray) -> np.ndarray:
+    """Durations in s of free impacts at speeds in m/s, by the law of Hertz with Tsuji's damping.
+
+    A law without units takes them all: here its units are those of the SI.
+    """
+    radius = ball["diameter"] / 2
+    mass = ball["density"] * 4 / 3 * np.pi * radius**3
+    modulus = 1 / (compliance(ball) + compliance(table))
+    law = tsuji(restitution=ball["restitution"], duration=1.0, speed=1.0)
+    stiff = law.at(stiffness=4 / 3 * modulus * np.sqrt(radius) / mass)
+    return stiff.signature(speed).duration
+
+
+def ext_contact_time(parameters: dict) -> xr.Dataset:
+    """Contact times of balls at the impact speed of their orbit, along the table's frequency.
+
+    The time is in proportion to v^(-1/5), and v to 1/Ω. The part of the period that the contact
+    lasts is therefore in proportion to Ω^(6/5), which gives the frequency at which it is 1/(2ϖ).
+    """
+    frequency = grid(parameters["frequency"])
+    balls = parameters["balls"]
+    r = np.array([ball["restitution"] for ball in balls.values()])
+    unit = STANDARD_GRAVITY / (2 * np.pi * frequency)
+    speeds = unit * free_impact(Rigid(r), parameters["n"]).speed[:, np.newaxis]
+    times = np.stack(
+        [
+            hertz_time(ball, parameters["table_material"], speed)
+            for ball, speed in zip(balls.values(), speeds, strict=True)
+        ]
+    )
+    longest = 1 / (2 * parameters["frequency_ratio"])
+    part = times[:, 0] * frequency[0]
+    return xr.Dataset(
+        {
+            "impact_speed": (("ball_name", "frequency"), speeds),
+            "contact_time": (("ball_name", "frequency"), times),
+            "longest_contact_time": ("frequency", longest / frequency),
+            "stiff_frequency": ("ball_name", frequency[0] * (longest / part) ** (5 / 6)),
+        },
+        {"ball_name": list(balls), "frequency": frequency, "restitution": ("ball_name", r)},
+    )
+
+
+STAGE = {
+    "ext_impact": ext_impact,
+    "ext_instant": ext_instant,
+    "ext_contact_time": ext_contact_time,
+}

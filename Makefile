@@ -3,11 +3,15 @@
 # make replication  the same from nothing, and the comparison with the reference
 # make diff         the comparison alone; `snakemake --cores 2 fig14 diff` compares one figure
 
-VENV ?= .venv
+# A VENV of the shell does not count: make VENV=/another/path
+VENV := .venv
 RUN := $(VENV)/bin/python -m
 SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
-PIP := $(RUN) pip install --quiet --disable-pip-version-check --require-hashes
-BUILT := --only-binary :all: --no-build-isolation --no-binary "$$(./python.sh --builds $$(ls $(VENV)/lib))"
+ENVIRONMENT := sh ./environment.sh
+# Errors only: pip's notices on options that it will change are not for users.
+PIP := $(RUN) pip --quiet --quiet --disable-pip-version-check
+LOCKED := $(PIP) install --require-hashes
+BUILT := --only-binary :all: --no-build-isolation --no-binary "$$(sh ./python.sh --builds $$(ls $(VENV)/lib))"
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
@@ -20,28 +24,32 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
+.PHONY: all environment setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
 	@$(SNAKEMAKE)
 	@echo "Open results/index.html"
 
+# One line says what is wrong with an environment that was installed, and which command cures it.
+environment:
+	@$(ENVIRONMENT) check $(VENV)
+
 setup: $(VENV)/.installed
-$(VENV)/.installed: requirements-build.lock requirements.lock
-	@./python.sh -m venv --clear $(VENV)
+$(VENV)/.installed: | environment
+	@$(ENVIRONMENT) new $(VENV)
 	@echo "Setting up $(VENV) from requirements.lock, in about a minute."
-	@$(PIP) --only-binary :all: --requirement requirements-build.lock
-	@$(PIP) $(BUILT) --requirement requirements.lock
-	@$(RUN) pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
-	@touch $@
+	@$(LOCKED) --only-binary :all: --requirement requirements-build.lock
+	@$(LOCKED) $(BUILT) --requirement requirements.lock
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@$(ENVIRONMENT) note $@ requirements-build.lock requirements.lock
 
 # Tools that only developers need.
 develop: $(VENV)/.developing
-$(VENV)/.developing: $(VENV)/.installed requirements-develop.lock
+$(VENV)/.developing: | $(VENV)/.installed
 	@echo "Adding the tools for tests and style from requirements-develop.lock."
-	@$(PIP) $(BUILT) --requirement requirements-develop.lock
-	@touch $@
+	@$(LOCKED) $(BUILT) --requirement requirements-develop.lock
+	@$(ENVIRONMENT) note $@ requirements-develop.lock
 
 test: develop
 	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2
@@ -72,18 +80,18 @@ test-processors: develop
 
 # The newest versions that pyproject.toml allows, instead of those of the lock file.
 newest:
-	./python.sh -m venv --clear .venv-newest
+	$(ENVIRONMENT) new .venv-newest
 	.venv-newest/bin/python -m pip install --quiet --editable '.[pipeline,test]'
-	touch .venv-newest/.installed .venv-newest/.developing
+	$(ENVIRONMENT) note .venv-newest/.installed && touch .venv-newest/.developing
 	$(MAKE) --keep-going replication test VENV=.venv-newest
 
 # The lowest versions that it allows of what numbers and pictures depend on.
 LOWEST := numpy scipy xarray netCDF4 matplotlib
 lowest:
-	./python.sh -m venv --clear .venv-lowest
+	$(ENVIRONMENT) new .venv-lowest
 	.venv-lowest/bin/python -m pip install --quiet --editable '.[pipeline]' \
 	  $(foreach name,$(LOWEST),"$(shell sed -n 's/^ *"\($(name)\)>=\([0-9.]*\).*/\1==\2/p' pyproject.toml)")
-	touch .venv-lowest/.installed
+	$(ENVIRONMENT) note .venv-lowest/.installed
 	$(MAKE) replication VENV=.venv-lowest
 
 # For maintainers, with uv; `make lock UPGRADE=--upgrade` takes the newest versions.
@@ -102,8 +110,8 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)
 BUILD := import sys; from importlib import import_module; _, backend, folder = sys.argv; \
 	backend = import_module(backend); backend.build_wheel(folder); backend.build_sdist(folder)
 release: replication
-	$(MAKE) -C extras/beyond diff docs
-	rm -rf dist && mkdir dist
+	$(MAKE) -C extras/beyond diff docs VENV=.venv
+	mkdir -p dist && rm -f dist/bouncing* dist/SHA256SUMS
 	$(VENV)/bin/python -c '$(BUILD)' setuptools.build_meta dist
 	for package in beyond contacts; do \
 	  (cd extras/$$package && ../beyond/.venv/bin/python -c '$(BUILD)' flit_core.buildapi ../../dist) || exit 1; done
@@ -112,11 +120,11 @@ release: replication
 	  $(CURDIR)/dist/bouncing-ball-beyond-$(VERSION)-results.zip figures records *.md
 	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
 	  $(CURDIR)/dist/bouncing-ball-$(VERSION)-site.zip site
-	cd dist && sha256sum * > SHA256SUMS
+	cd dist && sha256sum bouncing* > SHA256SUMS
 
 # The packages of the lock files, for a machine without an index: docs/on-a-cluster.md.
 wheelhouse: setup
-	$(RUN) pip download --quiet --disable-pip-version-check --require-hashes $(BUILT) --dest wheelhouse \
+	$(PIP) download --require-hashes $(BUILT) --dest wheelhouse \
 	  --requirement requirements-build.lock --requirement requirements.lock
 
 clean:

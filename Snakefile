@@ -19,20 +19,23 @@ min_version("9.5")
 # The folder of this file. A run may have another folder (--directory), which gets its results.
 TOP = Path(workflow.current_basedir)
 sys.path.insert(0, str(TOP / "src"))
-from paper_replication.configuration import (
-    captions,
-    checked,
-    datasets,
-    entries,
-    named,
-    names,
-    parameters,
-    shown_as,
-    stages,
-    stop,
-    unreadable,
-    without_function,
-)
+from paper_replication.provenance import from_source
+
+with from_source(TOP / "src"):
+    from paper_replication.configuration import (
+        captions,
+        checked,
+        datasets,
+        entries,
+        named,
+        names,
+        parameters,
+        shown_as,
+        stages,
+        stop,
+        unreadable,
+        without_function,
+    )
 
 # Scripts import the package of this checkout, whatever else is installed. A workflow that has this
 # one as a module may have folders of its own.

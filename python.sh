@@ -19,7 +19,7 @@ newest=$(($(sed -n 's/^requires-python = .*<3\.\([0-9]*\)"/\1/p' pyproject.toml)
 
 # immutables is written in C; connection-pool is not.
 must_compile() {
-    grep -q '^immutables==' requirements.lock && "$0" --builds "$1" | grep -q immutables
+    grep -q '^immutables==' requirements.lock && sh "$0" --builds "$1" | grep -q immutables
 }
 
 can_compile() {

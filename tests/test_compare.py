@@ -129,14 +129,17 @@ def edit(project, *files):
             opened.write("\n")
 
 
-def run(project, height=(1.0, 2.0), verdict="reproduced", text="82", entries=ENTRIES, **given):
+def run(
+    project, height=(1.0, 2.0), verdict="reproduced", text="82", reason="", entries=ENTRIES, **given
+):
     """Make results with these numbers, as the code of today would."""
     folder = project.top / "results"
     shutil.rmtree(folder, ignore_errors=True)
     data = xr.Dataset(
         {"max_height": ("frequency_ratio", list(height))}, {"frequency_ratio": [1.0, 2.0]}
     )
-    judged = xr.Dataset({"verdict": ("claim", [verdict])}, {"claim": ["high"]})
+    decided = {"verdict": ("claim", [verdict]), "reason": ("claim", [reason])}
+    judged = xr.Dataset(decided, {"claim": ["high"]})
     sources = read_by(project, "src/model.py")
     given = {"n": 1, "release": "force"} | given
     title = entries["fig14"]["title"]
@@ -210,6 +213,19 @@ def test_equal_results_agree_and_so_do_results_within_the_tolerance(project):
     assert printed(report(project)) == ["All 8 files agree with the reference."]
     run(project, height=(1.0, 2.0 + 1e-9))
     assert lines(project) == []
+
+
+def test_a_page_that_the_reference_does_not_have_is_as_its_record_says(project):
+    page = project.top / "results/index.html"
+    page.write_text("the threshold is 83\n", "utf-8")
+    assert lines(project) == ["index: edited by hand: index.html of the results"]
+    with pytest.raises(ValueError, match="edited by hand"):
+        accept(project)
+    page.unlink()
+    assert lines(project) == ["index: missing: index.html in the results"]
+    assert report(project).status == 1
+    # A figure was asked for.
+    assert lines(project, names=["fig14"]) == []
 
 
 def test_a_changed_parameter_is_named_with_what_follows_from_it(project):
@@ -604,6 +620,18 @@ def reference(project):
     return {path.relative_to(project.top): path.read_bytes() for path in paths}
 
 
+def test_another_python_alone_changes_no_record(project, monkeypatch):
+    before = reference(project)
+    monkeypatch.setattr(provenance.platform, "python_version", lambda: "3.99.0")
+    run(project)
+    assert accept(project) == [] and reference(project) == before
+    edit(project, "src/model.py")
+    commit(project.top)
+    run(project)
+    assert accept(project) == []
+    assert "3.99.0" in (project.top / compare.ACCEPTED).read_text("utf-8")
+
+
 def test_an_interrupted_acceptance_is_completed_by_the_next_one(project, tmp_path):
     """Each attempt is killed within its second write, until one has nothing more to write."""
     run(project, (1.0, 2.5), text="83")
@@ -647,14 +675,25 @@ def mixed(project):
     path.write_text(path.read_text("utf-8").replace(np.__version__, "9.9"), "utf-8")
 
 
+def hidden(project, how):
+    git(project.top, "update-index", how, "src/model.py")
+    edit(project, "src/model.py")
+    run(project)
+
+
+def with_a_slip(project):
+    run(project, reason="its function high raises NameError('below')")
+
+
 @pytest.mark.parametrize(
     "change, line",
     [
         (lambda project: edit(project, "src/model.py"), "commit first: M src/model.py"),
-        (
-            lambda project: shutil.rmtree(project.top / ".git"),
-            "git does not know src/drawing.py",
-        ),
+        (lambda project: shutil.rmtree(project.top / ".git"), "`git status` does not answer"),
+        (lambda project: (project.top / ".git/index").write_bytes(b"DIRC"), "does not answer"),
+        (lambda project: hidden(project, "--skip-worktree"), "commit first: src/model.py"),
+        (lambda project: hidden(project, "--assume-unchanged"), "commit first: src/model.py"),
+        (with_a_slip, "correct first: high is not asked, its function high raises NameError"),
         (untracked, r"commit first: \?\? src/new.py"),
         (ignored, "git does not know src/new.py"),
         (mixed, "run from nothing first: .*9.9"),

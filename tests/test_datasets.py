@@ -3,7 +3,10 @@
 import json
 import os
 import platform
+import py_compile
+import sys
 from dataclasses import replace
+from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
@@ -98,3 +101,21 @@ def test_two_processes_that_write_the_same_file_do_not_meet(tmp_path, monkeypatc
             other.write_text("other", "utf-8")
         one.write_text("one", "utf-8")
     assert path.read_text("utf-8") == "one"
+
+
+def test_a_job_runs_the_source_that_it_records_whatever_byte_code_there_is(tmp_path, monkeypatch):
+    """An edit that leaves size and time, as a copy that keeps times does."""
+    file = tmp_path / "a_stage.py"
+    file.write_text("NUMBER = 1\n")
+    before = file.stat()
+    py_compile.compile(file, invalidation_mode=py_compile.PycInvalidationMode.TIMESTAMP)
+    file.write_text("NUMBER = 2\n")
+    os.utime(file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    monkeypatch.syspath_prepend(tmp_path)
+    hooks = [*sys.path_hooks]
+    with provenance.reading(SimpleNamespace(code=[str(file)])):
+        assert import_module("a_stage").NUMBER == 2
+    assert sys.path_hooks == hooks
+    del sys.modules["a_stage"]
+    assert import_module("a_stage").NUMBER == 1  # That is what Python does.
+    del sys.modules["a_stage"]

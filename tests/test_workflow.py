@@ -149,6 +149,14 @@ def test_the_models_and_what_any_replication_needs_import_no_other_package():
     assert not imports("paper_replication") & {"bouncing_ball", "carbonelli2011"}
 
 
+def test_no_package_has_code_of_its_own():
+    """The lists of the rules leave them out: they have a docstring, and perhaps a version."""
+    for file in (ROOT / "src").rglob("__init__.py"):
+        documentation, *others = ast.parse(file.read_text("utf-8")).body
+        assert isinstance(documentation, ast.Expr), file
+        assert [ast.unparse(each).partition(" = ")[0] for each in others] in ([], ["__version__"])
+
+
 def test_a_wheel_has_every_file_of_its_packages():
     setuptools = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["tool"]["setuptools"]
     patterns = ["*.py", *setuptools["package-data"]["*"]]

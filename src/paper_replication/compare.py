@@ -26,7 +26,7 @@ import shutil
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import SequenceMatcher
 from functools import cache
 from itertools import takewhile, zip_longest
@@ -42,6 +42,7 @@ from PIL import Image
 
 from paper_replication.configuration import SHOWN_BY, entries
 from paper_replication.datasets import Project, attributes, plain, read, write
+from paper_replication.judgements import raised
 from paper_replication.provenance import (
     PACKAGES,
     content,
@@ -50,6 +51,7 @@ from paper_replication.provenance import (
     main_branch,
     relative,
     tree,
+    uncommitted,
 )
 from paper_replication.templates import environment
 
@@ -608,6 +610,12 @@ def compare(
         if (file.startswith("figures/") or file in project.texts)
         and (not names or Path(file).stem in names)
     }
+    # The reference has no pages. Those of a run must be as its records say.
+    for run in (old, new):
+        for file in () if names else sorted(run.records.keys() - sides.keys()):
+            page = side(run, file)
+            if page.wrong:
+                sides[file] = (replace(page, wrong={}), page)
     datasets = {file: pair for file, pair in sides.items() if file.endswith(".nc")}
     differing = [
         file for file, pair in datasets.items() if finding(*pair, checkout, ()).verdict != "agrees"
@@ -633,9 +641,9 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     `inputs` are the files that the rules make, in the folder of the results. If one file of a
     figure or a table is written, all its files are, with its dataset: then the reference agrees on
     processors that round numbers differently. If all agree, they stay as they are, and only the
-    code that gave them again is noted. Files that no rule makes any more are removed if git tracks
-    them and the record of the reference names them. Raises ValueError if a result may not be
-    accepted.
+    code and the libraries that gave them again are noted. Files that no rule makes any more are
+    removed if git tracks them and the record of the reference names them. Raises ValueError if a
+    result may not be accepted.
     """
     # Read before git says that it is committed, and before results are compared with it.
     committed = tree(project.checkout, "HEAD", "--", *project.code)
@@ -672,22 +680,26 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
         "versions": text["versions"],
         "entries": text["entries"],
     }
-    write(project.top / ACCEPTED, f"{json.dumps(record, indent=0)}\n".encode())
+    # Another Python alone is not noted.
+    then = next(iter(report.old.records.values()), {})
+    python = {"python": then.get("versions", {}).get("python")}
+    now = record | {"versions": record["versions"] | python}
+    if any(then.get(key) != now[key] for key in now):
+        write(project.top / ACCEPTED, f"{json.dumps(record, indent=0)}\n".encode())
     return [*written, *removed]
 
 
 def refusals(
     project: Project, report: Report, made: Collection[str], committed: Mapping[str, str]
 ) -> Iterator[str]:
-    """Yield why results may not be accepted: the code is not committed, a result is not fresh and
-    as recorded, or they were made with several versions of libraries.
+    """Yield why results may not be accepted: the code is not committed, a claim's function raised
+    an exception, a result is not fresh and as recorded, or they were made with several versions of
+    libraries.
 
     Stop at the first: the later ones read records that exist only if no result is wrong.
     """
-    if edited := git(
-        project.checkout, "status", "--porcelain", "--untracked-files=all", "--", *project.code
-    ):
-        yield f"commit first: {edited}"
+    if edited := uncommitted(project.checkout, *project.code):
+        yield f"commit first: {', '.join(edited)}"
     wrong = [
         f"{kind}: {', '.join(details)}"
         for file, (_, new) in report.sides.items()
@@ -696,6 +708,10 @@ def refusals(
     ]
     if wrong:
         yield f"run again or remove first: {'; '.join(dict.fromkeys(wrong))}"
+    contents = [new.contents for _, new in report.sides.values()]
+    datasets = [data for data in contents if isinstance(data, xr.Dataset)]
+    if slips := [line for data in datasets for line in raised(data)]:
+        yield f"correct first: {'; '.join(slips)}"
     records = [report.new.records[file] for file in report.found if file in made]
     if unknown := {file for record in records for file in record["code"]} - committed.keys():
         yield f"commit first: git does not know {min(unknown)}"

@@ -8,7 +8,7 @@ import xarray as xr
 
 from paper_replication.datasets import Datasets
 from paper_replication.texts import markdown
-from paper_replication.verdicts import ROUNDING, VERDICTS, Claim, answer
+from paper_replication.verdicts import RAISED, ROUNDING, VERDICTS, Claim, answer
 
 NOTHING = {
     "claim": "",
@@ -80,6 +80,14 @@ def judged(
     columns = {name: ("claim", [row[name] for row in rows]) for name in names}
     dataset = xr.Dataset(columns).assign(condition=(("claim", "sense"), padded))
     return dataset.set_coords("claim")
+
+
+def raised(data: xr.Dataset) -> list[str]:
+    """The claims of a dataset whose functions raised an exception, each with the reason."""
+    if "claim" not in data.dims or "reason" not in data:
+        return []
+    reasons = zip(data["claim"].values, data["reason"].values, strict=True)
+    return [f"{claim} is not asked, {why}" for claim, why in reasons if why.startswith(RAISED)]
 
 
 def group_of(claim: Claim) -> str:

@@ -12,7 +12,9 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from importlib import metadata
+from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "matplotlib")
@@ -31,16 +33,49 @@ def sources(inputs: Any) -> dict[str, dict[str, str]]:
     }
 
 
+class FromSource(SourceFileLoader):
+    """Compiles a module from its source, and neither reads nor writes byte code."""
+
+    def get_code(self, fullname: str) -> CodeType:
+        path = self.get_filename(fullname)
+        return self.source_to_code(self.get_data(path), path)
+
+
+@contextmanager
+def from_source(*folders: Path) -> Iterator[None]:
+    """Compile modules below these folders that are imported in this context from their sources.
+
+    Python runs its byte code as long as the source has the same size and time. A copy that keeps
+    times, or a second edit within a second, leaves both.
+    """
+    finder = FileFinder.path_hook((FromSource, SOURCE_SUFFIXES))
+
+    def hook(folder: str) -> Any:
+        if not any(Path(folder).resolve().is_relative_to(each.resolve()) for each in folders):
+            raise ImportError(f"{folder} is not one of them")
+        return finder(folder)
+
+    sys.path_hooks.insert(0, hook)
+    sys.path_importer_cache.clear()
+    try:
+        yield
+    finally:
+        sys.path_hooks.remove(hook)
+        sys.path_importer_cache.clear()
+
+
 @contextmanager
 def reading(inputs: Any) -> Iterator[dict[str, dict[str, str]]]:
     """Yield what a job with these inputs reads; end the job if it has changed at the end.
 
     A script imports within this context what decides its results, because Python reads a module
-    once, when it is imported. The job fails, and Snakemake removes its files.
+    once, when it is imported. It is compiled from its source then. The job fails, and Snakemake
+    removes its files.
     """
     before = sources(inputs)
     try:
-        yield before
+        with from_source(*{Path(file).parent for file in inputs.code}):
+            yield before
     finally:
         now = sources(inputs)
         changed = {key for kind in now for key, _ in before[kind].items() - now[kind].items()}
@@ -96,6 +131,25 @@ def tree(checkout: Path, commit: str, *paths: str) -> dict[str, str]:
     """The hashes of the files of a commit; empty if git does not know it."""
     lines = git(checkout, "ls-tree", "-r", commit, *paths).splitlines()
     return {line.partition("\t")[2]: line.split()[2] for line in lines}
+
+
+def uncommitted(checkout: Path, *paths: str) -> list[str]:
+    """What git does not have of these files and folders as they are now.
+
+    Files of which git was told to look away (`skip-worktree`) are read all the same. Git that does
+    not answer is no proof.
+    """
+    asked = ("status", "--porcelain", "--branch", "--untracked-files=all", "--", *paths)
+    status = git(checkout, *asked).splitlines()
+    committed = tree(checkout, "HEAD", "--", *paths)
+    present = [file for file in committed if (checkout / file).is_file()]
+    hashes = git(checkout, "hash-object", "--", *present).split()
+    if not status or len(hashes) != len(present):
+        return ["`git status` does not answer"]
+    now = dict(zip(present, hashes, strict=True))
+    # The first line is the branch.
+    listed = [line.strip() for line in status[1:]]
+    return listed or [file for file, made in committed.items() if now.get(file) != made]
 
 
 def main_branch(checkout: Path) -> dict[str, str]:

@@ -31,6 +31,8 @@ from paper_replication.datasets import Datasets, other_parameters, selected
 ROUNDING = 1e-9
 """Relative difference below which numbers are equal: rounding errors of the datasets are 1e-12."""
 
+RAISED = "its function "
+"""How the reason begins if the function of a claim raised an exception."""
 VERDICTS = ("reproduced", "partly", "not reproduced", "not testable", "not asked")
 
 
@@ -218,7 +220,7 @@ def answer(claim: Claim, datasets: Datasets) -> dict:
         decided = claim.decide(*chosen)
         return of_number(claim, decided) if claim.printed else of_readings(claim, decided)
     except Exception as error:  # Whatever the function of a claim raises.
-        return not_asked(f"its function {claim.decide.__name__} raises {error!r}")
+        return not_asked(f"{RAISED}{claim.decide.__name__} raises {error!r}")
 
 
 def missing_numbers(claim: Claim) -> str:

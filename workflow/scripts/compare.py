@@ -16,12 +16,15 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP / "src"))
 
-from project import PROJECT  # noqa: E402
+from paper_replication.provenance import from_source  # noqa: E402
 
-from paper_replication.compare import main, report_of_run  # noqa: E402
+with from_source(TOP / "src", TOP / "workflow"):
+    from project import PROJECT
 
-if "snakemake" not in globals():
-    sys.exit(main(PROJECT, sys.argv[1:]))
+    from paper_replication.compare import main, report_of_run
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], snakemake))
+    if "snakemake" not in globals():
+        sys.exit(main(PROJECT, sys.argv[1:]))
+
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    sys.exit(report_of_run(PROJECT, Path(snakemake.log[0]).parents[1], snakemake))

@@ -3,6 +3,7 @@
 The scripts only write their outputs here: the rules are tested, and no numbers.
 """
 
+import ast
 import re
 import shutil
 from modulefinder import ModuleFinder
@@ -118,6 +119,9 @@ def test_rules_list_the_modules_that_their_scripts_import(stubs):
         found.run_script(f"{folder}/{name}.py")
         modules = {Path(each.__file__).name for each in found.modules.values() if each.__file__}
         assert modules - NO_NUMBER <= files, name
+    # The lists have the __init__.py of the library. Those of the studies have a docstring only.
+    for file in (BEYOND / "workflow").rglob("__init__.py"):
+        assert len(ast.parse(file.read_text("utf-8")).body) == 1, file
 
 
 @pytest.mark.parametrize(

@@ -3,13 +3,18 @@
 import sys
 from pathlib import Path
 
-from project import PROJECT
+from paper_replication.provenance import from_source
 
-from paper_replication.compare import accept
+TOP = Path(__file__).resolve().parents[2]
 
 sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-try:
-    written = accept(PROJECT, Path("results"), snakemake.input)
-except ValueError as error:
-    sys.exit(str(error))
+with from_source(TOP / "src", TOP / "workflow", TOP / "../../src"):
+    from project import PROJECT
+
+    from paper_replication.compare import accept
+
+    try:
+        written = accept(PROJECT, Path("results"), snakemake.input)
+    except (OSError, ValueError) as error:
+        sys.exit(str(error))
 print(*written, f"{len(written)} files of the reference changed.", sep="\n")

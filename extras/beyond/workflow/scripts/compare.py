@@ -11,14 +11,18 @@ import sys
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path[:0] = [str(TOP / folder) for folder in ("src", "workflow", "../../src")]
+PACKAGES = [TOP / folder for folder in ("src", "workflow", "../../src")]
+sys.path[:0] = map(str, PACKAGES)
 
-from project import PROJECT  # noqa: E402
+from paper_replication.provenance import from_source  # noqa: E402
 
-from paper_replication.compare import main, report_of_run  # noqa: E402
+with from_source(*PACKAGES):
+    from project import PROJECT
 
-if "snakemake" not in globals():
-    sys.exit(main(PROJECT, sys.argv[1:]))
+    from paper_replication.compare import main, report_of_run
 
-sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
-sys.exit(report_of_run(PROJECT, Path("results"), snakemake))
+    if "snakemake" not in globals():
+        sys.exit(main(PROJECT, sys.argv[1:]))
+
+    sys.stderr = open(snakemake.log[0], "w", encoding="utf-8")
+    sys.exit(report_of_run(PROJECT, Path("results"), snakemake))

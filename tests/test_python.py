@@ -30,7 +30,7 @@ def run(tmp_path):
             script = PYTHON.format(version=version, venv=venv, compiler=compiler)
             (tmp_path / name).write_text(script)
             (tmp_path / name).chmod(0o755)
-        for tool in "sed", "seq", "grep":
+        for tool in "sed", "seq", "grep", "sh":
             (tmp_path / tool).symlink_to(shutil.which(tool))
         done = subprocess.run(
             [ROOT / "python.sh", "-m", "venv"],

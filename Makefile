@@ -1,6 +1,6 @@
 # make              sets up .venv, and computes every figure, table and text into results/
 # make test         the tests
-# make replication  the same from nothing, and the comparison with the reference
+# make replication  removes results/, computes everything, and compares it with the reference
 # make diff         the comparison alone; `snakemake --cores 2 fig14 diff` compares one figure
 
 # A VENV of the shell does not count: make VENV=/another/path

@@ -99,9 +99,7 @@ def change(clone: Path) -> None:
 def follow_recipes() -> int:
     """Change a clone, and accept its results as CONTRIBUTING.md says."""
     commit = "git -c user.name=A -c user.email=a@example.org commit --quiet --all --message"
-    # The environment of this checkout serves, although files of a clone are newer.
-    locks = " ".join(f"--old-file={path.name}" for path in ROOT.glob("*.lock"))
-    make = f"make VENV={ROOT}/.venv {locks}"
+    make = f"make VENV={ROOT}/.venv"
     with TemporaryDirectory() as folder:
         clone = Path(folder, "clone")
         subprocess.run(["git", "clone", "--quiet", ROOT, clone], check=True)

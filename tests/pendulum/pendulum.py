@@ -38,6 +38,7 @@ def period(given, gravity):
     return xr.Dataset({"period": small / agm(1, np.cos(np.radians(angle) / 2)), "angle": angle})
 
 
+@drawing.style()
 def draw(data):
     """The figure."""
     figure, axes = drawing.panels(2.0)

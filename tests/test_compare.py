@@ -384,8 +384,9 @@ def test_ends_of_lines_and_of_texts_are_compared(project, text, line):
 
 
 def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
-    project, monkeypatch
+    project, monkeypatch, tmp_path
 ):
+    first = compare.run_in(shutil.copytree(project.top / "results", tmp_path / "first"), "first")
     other = provenance.versions() | {"matplotlib": "9.9"}
     monkeypatch.setattr(provenance, "versions", lambda: other)
     drawn = replace(project, make=partial(make, form="height {:.3g}"))
@@ -395,6 +396,13 @@ def test_pictures_of_another_matplotlib_are_counted_if_the_same_code_drew_them(
         f"{agree} 2 pictures of another matplotlib were not compared."
     ]
     assert report(project).status == 0
+    # So they are between two runs.
+    second = compare.run_in(project.top / "results", "second")
+    found = compare.compare(project, first, second)
+    assert (found.status, found.those("drawn elsewhere").keys()) == (
+        0,
+        {"figures/fig14.png", "figures/fig14.svg"},
+    )
     edit(project, "src/drawing.py")
     run(drawn)
     cause = f"other versions: matplotlib {matplotlib.__version__} → 9.9"

@@ -225,12 +225,11 @@ class Family:
         matrix[2, 2] -= 1
         return matrix
 
-    def return_map(self, y: NDArray) -> NDArray:
-        """Linearised map from one start of contact to the next, shape (2, 2, ...).
+    def release_map(self, y: NDArray) -> NDArray:
+        """Linearised map from the start of contact to the release, shape (3, 2, ...).
 
-        Rows: phase and velocity at the next start. Columns: phase and velocity at this start. The
-        release condition gives the change of the duration of the contact. The landing condition
-        gives the change of the duration of the flight.
+        Rows: time of the release, height and velocity of the ball. Columns: phase and velocity at
+        the start. The release condition gives the change of the duration of the contact.
         """
         x, impact_height, u = self.start(y)
         end = self.contact_end(y)
@@ -247,9 +246,20 @@ class Family:
             later = phase + longer
             height = end.table_velocity * later + gap + end.gap_velocity * longer
             velocity = rate + end.gap_acceleration * longer - end.table_height * later
-            flight = -(height + end.flight * velocity - x * later) / u
-            columns.append([later + flight, velocity - flight])
+            columns.append([later, height, velocity])
         return np.moveaxis(np.array(columns), 0, 1)
+
+    def return_map(self, y: NDArray) -> NDArray:
+        """Linearised map from one start of contact to the next, shape (2, 2, ...).
+
+        Rows: phase and velocity at the next start. Columns: phase and velocity at this start. The
+        landing condition gives the change of the duration of the flight.
+        """
+        x, _, u = self.start(y)
+        later, height, velocity = self.release_map(y)
+        flight = self.period - self.contact_duration(y)
+        longer = -(height + flight * velocity - x * later) / u
+        return np.stack([later + longer, velocity - longer])
 
     def trace_and_determinant(self, y: NDArray) -> tuple[NDArray, NDArray]:
         """Trace and determinant of the linearised return map.

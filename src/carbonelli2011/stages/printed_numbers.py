@@ -108,22 +108,12 @@ def high_bounce_test(family: Family, y: NDArray) -> NDArray:
     This is the neglect of Holmes' map: a flight of duration L obeys z′_b L - L²/2 = 0 in place of
     Eq. 25, so that L changes by -L/z′_i times the change of z′_b.
     """
-    x, impact_height, _ = family.start(y)
-    end = family.contact_end(y)
-    rows = []
-    for phase, change in ((1, (-impact_height, x, impact_height)), (0, (0 * x, 0 * x, 1 + 0 * x))):
-        gap = sum(one * other for one, other in zip(end.gap_by, change, strict=True))
-        rate = sum(one * other for one, other in zip(end.gap_velocity_by, change, strict=True))
-        longer = -gap / end.gap_velocity
-        later = phase + longer
-        velocity = rate + end.gap_acceleration * longer - end.table_height * later
-        flight = -end.flight / y[2] * velocity
-        rows.append((later + flight, velocity - flight))
-    # The map is from phase and relative velocity to these; in flight the velocity of the table
-    # changes by -Y times the phase.
-    (phase_by_phase, velocity_by_phase), (phase_by_velocity, velocity_by_velocity) = rows
-    determinant = phase_by_phase * velocity_by_velocity - phase_by_velocity * velocity_by_phase
-    return 1 + phase_by_phase + velocity_by_velocity + determinant
+    later, _, velocity = family.release_map(y)
+    longer = -(family.period - family.contact_duration(y)) / y[2] * velocity
+    phase = later + longer
+    velocity = velocity - longer
+    determinant = phase[0] * velocity[1] - phase[1] * velocity[0]
+    return 1 + phase[0] + velocity[1] + determinant
 
 
 def stiff_reproduced(n: NDArray, printed: NDArray) -> NDArray:

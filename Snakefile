@@ -400,7 +400,10 @@ rule all:
 
 def asked(wildcards):
     """The figures, tables and datasets to compare, those on the command line; none for all."""
-    return named(config, workflow.dag_settings.targets)
+    settings = workflow.dag_settings
+    if settings.until or settings.omit_from:
+        sys.exit("--until and --omit-from leave out the comparison: name the figures instead")
+    return named(config, settings.targets)
 
 
 rule diff:

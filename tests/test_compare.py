@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from itertools import chain, count, product, takewhile
+from pathlib import Path
 from types import SimpleNamespace
 
 import matplotlib
@@ -467,6 +468,29 @@ def test_the_command_prints_a_mistake_and_its_status(project, capsys, tmp_path):
         assert "\n" + line in "\n" + "".join(capsys.readouterr())
 
 
+def test_a_mistake_in_yaml_names_its_file_and_a_full_disk_its_folder(project, capsys):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    data = project.top / "results/figures/fig14.nc"
+    with pytest.raises(OSError, match=r"TMPDIR names another folder: .* No space left on device"):
+        compare.remade(full, data, "")
+    (project.top / "config/config.yaml").write_text("caption: a: b", "utf-8")
+    with pytest.raises(SystemExit):
+        compare.main(project, [str(project.top)])
+    assert 'config/config.yaml", line 1' in capsys.readouterr().err
+
+
+def test_of_several_workflows_in_a_zip_each_takes_its_own_results(project, tmp_path):
+    for folder in ("results/figures", "extras/other/results/figures"):
+        (tmp_path / "all" / folder).mkdir(parents=True)
+    file = shutil.make_archive(str(tmp_path / "everything"), "zip", tmp_path / "all")
+    other = replace(project, top=project.top / "extras/other")
+    for each, folder in ((project, "results"), (other, "extras/other/results")):
+        unpacked = tmp_path / folder.replace("/", "-")
+        assert compare.results_of(each, Path(file), unpacked) == unpacked / folder
+
+
 def two_runs(project, tmp_path):
     """Two runs with different parameters, and their folders."""
     folders = []
@@ -486,13 +510,12 @@ def test_two_runs_are_compared_by_their_records(project, tmp_path, capsys, kind)
     edit(project, *FILES)
     if kind == "folder of the run":
         one, other = one.parent, other.parent
-        page = other / "diff/index.html"
         # A checkout has the reference beside the results.
         shutil.copytree(project.top / "figures", one / "figures")
     if kind.startswith("zip"):
         base = other.parent if "several" in kind else other
         other = shutil.make_archive(str(tmp_path / "artifact"), "zip", base)
-        page = tmp_path / "diff/index.html"
+        page = tmp_path / "artifact.diff/index.html"
     assert compare.main(project, [str(one), str(other)]) == 1
     assert capsys.readouterr().out.splitlines() == [
         f"fig14: {HIGHER}; changed parameter: n 1 → 2",
@@ -543,12 +566,12 @@ def test_names_are_escaped_and_a_page_that_cannot_be_written_changes_no_verdict(
         (project.top / f"results/figures/{name}.md").write_text("x", "utf-8")
     assert compare.main(project, [str(project.top)]) == 1
     text = capsys.readouterr().out
-    page = project.top / "diff/index.html"
+    page = project.top / "results/diff/index.html"
     for each in (text, page.read_text("utf-8")):
         assert "\x1b" not in each and "\nAll 8 files" not in each
     assert "<img src=x>" in text and "<img src=x>" not in page.read_text("utf-8")
-    shutil.rmtree(project.top / "diff")
-    (project.top / "diff").write_text("a file", "utf-8")
+    shutil.rmtree(page.parent)
+    page.parent.write_text("a file", "utf-8")
     assert compare.main(project, [str(project.top)]) == 1
     assert "The page cannot be written: " in capsys.readouterr().out
 

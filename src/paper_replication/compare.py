@@ -139,7 +139,8 @@ def run_in(folder: Path, label: str) -> Run:
 
 def configuration(project: Project) -> dict:
     """The configuration of the checkout."""
-    return yaml.safe_load((project.top / "config/config.yaml").read_bytes())
+    with (project.top / "config/config.yaml").open("rb") as file:
+        return yaml.safe_load(file)
 
 
 def one_line(error: Exception) -> str:
@@ -516,7 +517,10 @@ def rounded(old: Side, new: Side, checkout: Checkout | None) -> bool:
 def remade(make: Callable, path: Path, _made: str) -> dict[str, str]:
     """The hashes of the files that follow from a dataset, made again."""
     with TemporaryDirectory() as folder:
-        make(path.stem, read(path), Path(folder))
+        try:
+            make(path.stem, read(path), Path(folder))
+        except OSError as error:
+            raise OSError(f"{folder}, TMPDIR names another folder: {error}") from error
         return {each.name: content(each) for each in Path(folder).iterdir()}
 
 
@@ -723,9 +727,10 @@ def refusals(
 # The command and the rule
 
 
-def results_of(path: Path, unpacked: Path) -> Path:
+def results_of(project: Project, path: Path, unpacked: Path) -> Path:
     """The folder of the results of a run: `results` in a folder, or the folder itself, or the same
-    in a zip file, as continuous integration delivers it, which is unpacked.
+    in a zip file, as continuous integration delivers it, which is unpacked. If there are results of
+    several workflows, they are those of this one.
 
     Raises ValueError if there are none, as in a checkout that was not run, or another error if a
     zip file is damaged.
@@ -733,7 +738,8 @@ def results_of(path: Path, unpacked: Path) -> Path:
     if path.is_file():
         shutil.unpack_archive(path, unpacked, "zip")
     top = unpacked if path.is_file() else path
-    for folder in (top / "results", top):
+    of_workflow = relative(project.checkout, project.top)
+    for folder in (top / of_workflow / "results", top / "results", top):
         if (folder / "figures").is_dir() and not (folder / ACCEPTED).exists():
             return folder
     inner = [*top.glob("*.zip"), *(folder.parent for folder in top.glob("*/**/records"))]
@@ -760,7 +766,9 @@ def main(project: Project, arguments: list[str]) -> int:
     paths = [path for path in vars(parser.parse_args(arguments)).values() if path]
     with TemporaryDirectory() as unpacked:
         try:
-            folders = [results_of(path, Path(unpacked, str(n))) for n, path in enumerate(paths)]
+            folders = [
+                results_of(project, path, Path(unpacked, str(n))) for n, path in enumerate(paths)
+            ]
             config = configuration(project)
         except Exception as error:  # Whatever unpacking raises for a damaged file.
             parser.error(f"a run cannot be read: {one_line(error)}")
@@ -770,8 +778,10 @@ def main(project: Project, arguments: list[str]) -> int:
         is_own = new.folder.resolve() == (project.top / "results").resolve()
         checkout = Checkout(project, main_branch(project.checkout), config if is_own else None)
         report = compare(project, old, new, checkout if len(runs) == 1 else None)
-        folder = paths[-1] if paths[-1].is_dir() else paths[-1].parent
-        return written(project, report, folder / "diff", sys.stdout)
+        # No file of somebody else lies there.
+        is_zip = paths[-1].is_file()
+        folder = paths[-1].with_suffix(".diff") if is_zip else folders[-1] / "diff"
+        return written(project, report, folder, sys.stdout)
 
 
 def report_of_run(project: Project, results: Path, snakemake: Any) -> int:

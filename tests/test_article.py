@@ -407,7 +407,7 @@ def test_largest_and_smallest_numbers_are_those_of_their_own_formulas(name, data
 
 
 def test_what_the_article_says_of_a_frequency_ratio_of_one_hundred(data):
-    errors = measures.stiff_errors(**{name: data[name] for name in article.STIFF_CURVES})
+    errors = measures.stiff_errors(*(data[name] for name in article.STIFF_CURVES))
     curves = {
         (n, float(r), float(amplitude))
         for name, n in zip(article.STIFF_CURVES, (1, 1, 2), strict=True)

@@ -76,7 +76,7 @@ def written(name: str, datasets: Datasets) -> str:
         name,
         datasets,
         marked=True,
-        stiff_errors=measures.stiff_errors(**{name: datasets[name] for name in STIFF_CURVES}),
+        stiff_errors=measures.stiff_errors(*(datasets[name] for name in STIFF_CURVES)),
         other_contacts=other_contacts(datasets["hypotheses"]),
         others_with_82=others_with_82(datasets["hypotheses"]),
         stable_ranges=measures.stable_ranges,
@@ -90,6 +90,7 @@ def written(name: str, datasets: Datasets) -> str:
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,
+        curve_errors=measures.curve_errors,
     )
 
 

@@ -88,42 +88,50 @@ def stable_ranges(branch: xr.Dataset) -> list[tuple[float, float]]:
     return [(low, high) for low, high in ranges[stable].tolist()]
 
 
-def stiff_errors(**sweeps: xr.Dataset) -> xr.DataArray:
-    """Return the largest errors of the restitution model at ϖ ≥ 100, over orbit and measure.
+def curve_errors(sweep: xr.Dataset) -> xr.DataArray:
+    """Return the errors of the restitution model on the curves of Fig. 5, 6 or 10, by measure.
 
-    `sweeps` are the datasets of Figs. 5, 6 and 10 by name. An orbit of two figures is listed once.
-    Errors are relative, except for the phase: its error is a fraction of a period of the table.
+    They are relative, except for the phase: its error is a fraction of a period of the table. An
+    error is negative where the value of the restitution model is larger.
     """
-    found = {}
-    for sweep in sweeps.values():
-        n = parameters(sweep)["n"]
-        for _, curve in sweep.sel(frequency_ratio=STIFF_CONTACTS).groupby("case"):
-            r = curve["restitution"].item()
-            amplitude = curve["amplitude"].item()
-            limits = {
-                "max_height": restitution.max_height(n, r, amplitude),
-                "bounce_velocity": restitution.bounce_velocity(n),
-                "apparent_restitution": r,
-            }
-            errors = {name: curve[name].values / limit - 1 for name, limit in limits.items()}
-            turn = curve["phase"].values - restitution.impact_phase(n, r, amplitude)
-            errors["phase"] = turn / (2 * np.pi)
-            orbit = f"n = {n}, r = {r:g}, Λ = {amplitude:g}"
-            found[orbit] = [np.abs(error).max() for error in errors.values()]
-    coordinates = {"orbit": list(found), "measure": list(errors)}
-    return xr.DataArray(list(found.values()), coordinates, ("orbit", "measure"))
+    n = parameters(sweep)["n"]
+    r = sweep["restitution"].values
+    amplitude = sweep["amplitude"].values
+    limits = xr.Dataset(
+        {
+            "max_height": ("case", restitution.max_height(n, r, amplitude)),
+            "bounce_velocity": restitution.bounce_velocity(n),
+            "apparent_restitution": ("case", r),
+        }
+    )
+    errors = sweep[[*limits]] / limits - 1
+    turn = sweep["phase"] - xr.DataArray(restitution.impact_phase(n, r, amplitude), dims="case")
+    return errors.assign(phase=turn / (2 * np.pi)).to_dataarray("measure")
 
 
-def departure(fig10: xr.Dataset) -> xr.DataArray:
+def stiff_errors(*sweeps: xr.Dataset) -> xr.DataArray:
+    """Return the largest `curve_errors` at ϖ ≥ 100, over orbit and measure.
+
+    `sweeps` are the datasets of Figs. 5, 6 and 10. An orbit of two figures is listed once.
+    """
+    found = []
+    for sweep in sweeps:
+        stiff = abs(curve_errors(sweep).sel(frequency_ratio=STIFF_CONTACTS))
+        orbits = [f"n = {parameters(sweep)['n']}, {case}" for case in sweep["case"].values]
+        worst = stiff.max("frequency_ratio", skipna=False)
+        found.append(worst.assign_coords(case=orbits).rename(case="orbit"))
+    return xr.concat(found, "orbit").drop_duplicates("orbit")
+
+
+def departure(sweep: xr.Dataset) -> xr.DataArray:
     """Return the relative difference of the bouncing-off velocity and nπ."""
-    return abs(fig10["bounce_velocity"] / fig10["restitution_bounce_velocity"] - 1)
+    return abs(curve_errors(sweep).sel(measure="bounce_velocity"))
 
 
-def spread(fig10: xr.Dataset) -> xr.DataArray:
+def spread(sweep: xr.Dataset) -> xr.DataArray:
     """Return the largest difference of velocities between amplitudes, divided by nπ."""
-    velocity = fig10["bounce_velocity"]
-    apart = velocity.max("case", skipna=False) - velocity.min("case", skipna=False)
-    return apart / fig10["restitution_bounce_velocity"]
+    error = curve_errors(sweep).sel(measure="bounce_velocity")
+    return error.max("case", skipna=False) - error.min("case", skipna=False)
 
 
 def error_of_eq_8(thresholds: xr.Dataset) -> float:

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 from bouncing_ball import restitution
 from bouncing_ball.orbits import Family, NoOrbit
-from bouncing_ball.restitution import Numbers
+from bouncing_ball.restitution import Numbers, finite, required
 from bouncing_ball.spring_damper import NO_CONTACT, Contact, free_duration
 
 Condition = Callable[[Family, NDArray], tuple[NDArray, NDArray]]
@@ -198,7 +198,7 @@ def walk(family: Family, condition: Condition, x: NDArray, impact_height: NDArra
     ndarray, shape (4, cases, ratios)
         NaN if the walk does not reach the orbit.
     """
-    ratios = np.atleast_1d(family.contact.frequency_ratio)
+    ratios = np.atleast_1d(finite("ϖ", family.contact.frequency_ratio))
     stiffest = max(WALK_START, 2 * ratios.max())
     count = 3 + int(STEPS_PER_DECADE * np.log10(stiffest / ratios.min()))
     nodes = np.geomspace(stiffest, ratios.min(), count)
@@ -277,13 +277,14 @@ def stable_orbits(
     >>> stable_orbits(1, 0.65, [0.9, 1.0], [10.0, 100.0]).shape
     (4, 2, 2)
     """
-    r, amplitude = np.broadcast_arrays(np.atleast_1d(r), np.atleast_1d(amplitude))
+    r, amplitude = np.broadcast_arrays(np.atleast_1d(finite("r", r)), np.atleast_1d(amplitude))
     contact = Contact.of_restitution(np.atleast_1d(ratios), r[:, np.newaxis], release)
     return _upper_orbits(Family(n, contact), amplitude[:, np.newaxis])
 
 
 def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
     """Orbits as in `stable_orbits`, for a family and amplitudes of the shape (cases, 1)."""
+    finite("Λ", amplitude)
     r = family.contact.restitution
     if np.isnan(r).all():
         raise NoOrbit(f"no contact has this restitution: {NO_CONTACT}")
@@ -417,6 +418,10 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
         If no orbit is found at `amplitude_max`, or the corrector fails at an end of the branch or
         at one of its points.
     """
+    whole = np.greater_equal(points, 2) & (np.mod(points, 1) == 0)
+    required("points", points, ~whole, "a whole number of points >= 2")
+    positive = np.greater(largest_step, 0) & np.isfinite(largest_step)
+    required("largest_step", largest_step, ~positive, "a finite step > 0")
     ratio = float(family.contact.frequency_ratio)
     start = _upper_orbits(family, np.array([[amplitude_max]]))[:, 0, 0]
     if np.isnan(start).any():

@@ -27,8 +27,15 @@ from bouncing_ball.continuation import (
     walk,
 )
 from bouncing_ball.orbits import Family, NoOrbit, contact_of_ball
-from bouncing_ball.restitution import Numbers, is_stable
+from bouncing_ball.restitution import Numbers, ascending, finite, is_stable, required
 from bouncing_ball.spring_damper import Contact, permanent_contact
+
+OF_ORBITS = ("max_height", "bounce_velocity", "phase_in_periods", "apparent_restitution")
+"""Quantities of orbits."""
+OF_BIFURCATIONS = ("saddle_node", "period_doubling")
+"""Amplitudes of bifurcations."""
+QUANTITIES = (*OF_ORBITS, *OF_BIFURCATIONS, "permanent_contact")
+"""Quantities that both models have, by the names that `errors` takes."""
 
 
 class Error(NamedTuple):
@@ -105,8 +112,10 @@ def threshold(ratios: NDArray, error: Error, tolerance: Numbers) -> Threshold:
     >>> found.ratio.round(9).tolist(), found.status.tolist()
     ([50.0, nan], ['found', 'within'])
     """
+    ratios = ascending(ratios)
     values = error.values.reshape(-1, 1, ratios.size)
     allowed = np.atleast_1d(tolerance)
+    required("tolerance", allowed, ~np.greater(allowed, 0), "a tolerance > 0")
     outside = ~(values <= allowed[:, np.newaxis])
     last = ratios.size - 1 - np.argmax(outside[..., ::-1], axis=-1)
     is_within = ~outside.any(axis=-1)
@@ -142,7 +151,13 @@ def permanent_contact_error(ratios: NDArray, zeta: Numbers, release: str) -> Err
     return Error(error(ratios), lambda ratio, below, curve: error(ratio))
 
 
-def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) -> dict[str, Error]:
+def orbit_errors(
+    family: Family,
+    orbits: NDArray,
+    r: float,
+    amplitude: float,
+    names: Sequence[str] = OF_ORBITS,
+) -> dict[str, Error]:
     """Errors of the quantities of n-T orbits, along ϖ at one amplitude, as in `errors` (Eq. 37).
 
     Parameters
@@ -153,6 +168,8 @@ def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) ->
         Orbits at these ratios, NaN if an orbit does not exist.
     r, amplitude : float
         Restitution coefficient and amplitude Λ of the orbits.
+    names : sequence of str
+        Quantities, any of OF_ORBITS.
 
     Returns
     -------
@@ -170,14 +187,17 @@ def orbit_errors(family: Family, orbits: NDArray, r: float, amplitude: float) ->
         "phase_in_periods": (lambda family, y: y[1], phase, 2 * np.pi),
         "apparent_restitution": (Family.apparent_restitution, r, r),
     }
-    condition = at_amplitude(amplitude)
+    condition = at_amplitude(finite("Λ", amplitude))
+    admissible = family.clearance(orbits) > 0
     return {
-        name: _along(family, orbits, condition, *measure) for name, measure in quantities.items()
+        name: _along(family, orbits, condition, admissible, *quantities[name]) for name in names
     }
 
 
-def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[str, Error]:
-    """Relative errors of the amplitudes of the saddle-node and of the period doubling, by name."""
+def bifurcation_errors(
+    n: int, r: float, ratios: NDArray, release: str, names: Sequence[str] = OF_BIFURCATIONS
+) -> dict[str, Error]:
+    """Relative errors of the amplitudes of bifurcations, by name, any of OF_BIFURCATIONS."""
     kinds = {
         "saddle_node": ("saddle-node", Family.saddle_node_test, restitution.saddle_node(n, r)),
         "period_doubling": (
@@ -186,12 +206,15 @@ def bifurcation_errors(n: int, r: float, ratios: NDArray, release: str) -> dict[
             restitution.period_doubling(n, r),
         ),
     }
-    family = Family(n, Contact.of_restitution(ratios, r, release))
+    family = Family(n, contact_of_ball(ratios, r, release))
     found = {}
-    for name, (kind, test, limit) in kinds.items():
+    for name in names:
+        kind, test, limit = kinds[name]
         orbits = bifurcations(n, kind, family.contact)[:, 0]
-        condition = at_bifurcation(test)
-        found[name] = _along(family, orbits, condition, lambda family, y: y[0], limit, limit)
+        admissible = family.clearance(orbits) > 0
+        found[name] = _along(
+            family, orbits, at_bifurcation(test), admissible, lambda family, y: y[0], limit, limit
+        )
     return found
 
 
@@ -199,6 +222,7 @@ def _along(
     family: Family,
     orbits: NDArray,
     condition: Condition,
+    admissible: NDArray,
     value: Callable[[Family, NDArray], NDArray],
     limit: Numbers,
     unit: Numbers,
@@ -221,23 +245,16 @@ def _along(
 
     # The restitution model predicts an orbit that does not exist: count its error as infinite.
     values = error(family, orbits)
-    return Error(np.where(np.isnan(values), np.inf, values), between, family.clearance(orbits) > 0)
-
-
-QUANTITIES = (
-    "max_height",
-    "bounce_velocity",
-    "phase_in_periods",
-    "apparent_restitution",
-    "saddle_node",
-    "period_doubling",
-    "permanent_contact",
-)
-"""Quantities that both models have, by the names that `errors` takes."""
+    return Error(np.where(np.isnan(orbits).any(axis=0), np.inf, values), between, admissible)
 
 
 def errors(
-    quantities: Sequence[str], n: int, r: float, amplitude: float, ratios: Numbers, release: str
+    quantities: Sequence[str],
+    n: int,
+    r: float,
+    amplitude: float,
+    ratios: Numbers,
+    release: str = "displacement",
 ) -> dict[str, Error]:
     """Errors of the named quantities, along ϖ, on contacts whose free impact has the restitution r.
 
@@ -269,19 +286,22 @@ def errors(
         amplitude: there is nothing to compare. The message says where the contact of the largest ϖ
         has stable orbits.
     ValueError
-        If a name, the release, n, r or ϖ is not one of those that are allowed.
+        If quantities is no list of names, or if a name, the release, n, r, Λ or ϖ is not allowed.
 
     >>> scan = np.array([10.0, 100.0])
     >>> found = errors(["bounce_velocity"], 1, 0.65, 1.0, scan, "displacement")
     >>> found["bounce_velocity"].values.round(3).tolist()
     [0.061, 0.006]
     """
-    ratios = np.atleast_1d(ratios)
+    ratios = ascending(ratios)
     contact = contact_of_ball(ratios, r, release)
-    if unknown := [name for name in quantities if name not in QUANTITIES]:
-        raise ValueError(f"the quantity is {unknown[0]!r}: give any of {', '.join(QUANTITIES)}")
+    names = [quantities] if isinstance(quantities, str) else list(quantities)
+    unknown = [name for name in names if name not in QUANTITIES or isinstance(quantities, str)]
+    if unknown:
+        raise ValueError(f"quantities is {unknown[0]!r}: give a list of {', '.join(QUANTITIES)}")
     known: dict[str, Error] = {}
-    if set(quantities) - {"saddle_node", "period_doubling", "permanent_contact"}:
+    if of_orbits := [name for name in names if name in OF_ORBITS]:
+        finite("Λ", amplitude)
         family = Family(n, contact)
         ends = restitution.saddle_node(n, r), restitution.period_doubling(n, r)
         orbits = np.full((4, ratios.size), np.nan)
@@ -296,11 +316,12 @@ def errors(
                 f"Λ = {amplitude:.6g}: stable {n}-T orbits of the restitution model need Λ from "
                 f"{ends[0]:.6g} to {ends[1]:.6g} (Eqs. 7 and R1){of_contact * (low < high)}"
             )
-        known |= orbit_errors(family, np.where(stable, orbits, np.nan), r, amplitude)
-    if {"saddle_node", "period_doubling"} & set(quantities):
-        known |= bifurcation_errors(n, r, ratios, release)
-    known["permanent_contact"] = permanent_contact_error(ratios, contact.damping_ratio, release)
-    return {name: known[name] for name in quantities}
+        known = orbit_errors(family, np.where(stable, orbits, np.nan), r, amplitude, of_orbits)
+    of_bifurcations = [name for name in names if name in OF_BIFURCATIONS]
+    known |= bifurcation_errors(n, r, ratios, release, of_bifurcations)
+    if "permanent_contact" in names:
+        known["permanent_contact"] = permanent_contact_error(ratios, contact.damping_ratio, release)
+    return {name: known[name] for name in names}
 
 
 COMPARED = ("summit", "bounce_velocity", "apparent_restitution", "phase_in_periods")
@@ -339,6 +360,7 @@ def orbits_along(family: Family, amplitude: NDArray) -> NDArray:
         NaN if the walk does not reach the orbit (`continuation.walk`).
     """
     ratios = np.asarray(family.contact.frequency_ratio)
+    finite("Λ", amplitude)
     x = restitution.saddle_node(family.n, family.contact.restitution)
     # Guess of Y for the ϖ at which the walk starts. It is larger than the Y of the orbit.
     impact_height = np.sqrt(amplitude**2 - x**2 + 8 * x / max(WALK_START, 2 * ratios.max()))
@@ -404,7 +426,8 @@ def lowest_period_doublings(
     doubling. A frequency ratio has half as many exact digits as the amplitude, because the minimum
     is flat.
     """
-    contact = Contact.of_restitution(ratios, r, release)
+    ratios = ascending(ratios)
+    contact = Contact.of_restitution(ratios, finite("r", r), release)
     orbits = bifurcations(n, "period doubling", contact)
     families = np.atleast_1d(n)
     turns = np.full(families.size, np.nan)

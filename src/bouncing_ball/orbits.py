@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball.restitution import Numbers, is_stable, periods
+from bouncing_ball.restitution import Numbers, is_stable, periods, required
 from bouncing_ball.spring_damper import NO_CONTACT, Contact
 
 
@@ -31,6 +31,7 @@ def contact_of_ball(frequency_ratio: Numbers, r: float, release: str) -> Contact
 
     Raises NoOrbit if there is none (`spring_damper.damping_ratio`).
     """
+    required("r", r, np.isnan(r), "0 < r <= 1")
     contact = Contact.of_restitution(frequency_ratio, r, release)
     if np.isnan(contact.damping_ratio):
         raise NoOrbit(f"r = {r:g}: {NO_CONTACT}")

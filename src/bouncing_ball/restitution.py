@@ -46,6 +46,25 @@ def coefficient(r: Numbers) -> NDArray:
     return required("r", r, np.less_equal(r, 0) | np.greater(r, 1), "0 < r <= 1")
 
 
+def finite(name: str, values: Numbers) -> NDArray:
+    """Return the values of an argument of a search; ValueError if they are NaN or infinite.
+
+    Closed forms have no such check: they return NaN for NaN.
+    """
+    return required(name, values, ~np.isfinite(values), f"finite {name}")
+
+
+def ascending(ratios: Numbers) -> NDArray:
+    """Return frequency ratios ϖ of a scan; ValueError unless they are finite, positive and rising.
+
+    A search for thresholds needs the order. A number becomes an array of one.
+    """
+    ratios = np.atleast_1d(ratios)
+    wrong = ~(np.isfinite(ratios) & np.greater(ratios, 0))
+    wrong[1:] |= ratios[1:] <= ratios[:-1]
+    return required("ϖ", ratios, wrong, "finite ϖ > 0 in ascending order")
+
+
 def bounce_velocity(n: Numbers) -> NDArray:
     """Velocity nπ of the ball after the impact of an n-T orbit (Eq. 6).
 
@@ -75,8 +94,9 @@ def impact_phase(n: Numbers, r: Numbers, amplitude: Numbers) -> NDArray:
     >>> round(float(impact_phase(1, 0.65, 1.0)), 4)
     0.8414
     """
-    with np.errstate(invalid="ignore"):
-        return np.arccos(saddle_node(n, r) / np.asarray(amplitude))
+    amplitude = required("Λ", amplitude, np.less(amplitude, 0), "Λ >= 0")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.arccos(saddle_node(n, r) / amplitude)
 
 
 def trace(r: Numbers, impact_height: Numbers) -> NDArray:

@@ -129,7 +129,7 @@ class Contact:
     ----------
     frequency_ratio : array_like
         Frequency ratio ϖ = ω/Ω > 0: natural frequency of the contact divided by the frequency of
-        the table.
+        the table. It is finite, or NaN if no contact exists.
     damping_ratio : array_like
         Damping ratio ζ, 0 <= ζ < 1, or NaN if no contact exists.
     release : str
@@ -166,6 +166,7 @@ class Contact:
         for name in ("frequency_ratio", "damping_ratio", "weight"):
             object.__setattr__(self, name, np.asarray(getattr(self, name))[()])
         check_ratios(self.frequency_ratio, self.damping_ratio)
+        required("ϖ", self.frequency_ratio, np.isinf(self.frequency_ratio), "finite ϖ > 0")
 
     @property
     def lag(self) -> NDArray:
@@ -262,6 +263,7 @@ def contact_of_duration(duration: Numbers, r: Numbers, release: str) -> Contact:
         the table.
     r : array_like
         Restitution coefficient. With the force release, e⁻² < r <= 1; ϖ and ζ are NaN otherwise.
+        If no r has a contact, ValueError.
     release : str
         Condition that ends the contact, ``displacement`` or ``force``. The contact of a real ball
         cannot pull, and its measured duration ends with its force: ``force``.
@@ -270,7 +272,11 @@ def contact_of_duration(duration: Numbers, r: Numbers, release: str) -> Contact:
     >>> contact.frequency_ratio.round(1).tolist(), contact.damping_ratio.round(3).tolist()
     ([101.3, 80.7], [0.053, 0.497])
     """
+    positive = np.greater(duration, 0) & np.isfinite(duration)
+    duration = required("duration", duration, ~positive, "a finite duration > 0")
     zeta = damping_ratio(r, release)
+    if np.isnan(zeta).all():
+        raise ValueError(f"r is {np.max(r):g}: {NO_CONTACT}")
     return Contact(free_duration(zeta, release) / duration, zeta, release)
 
 
@@ -296,11 +302,13 @@ def permanent_contact(ratio: Numbers, zeta: Numbers, release: str = "displacemen
     """
     check_ratios(ratio, zeta)
     check_release(release)
-    ratio = np.asarray(ratio, dtype=float)
-    resistance = np.hypot(ratio**2 - 1, 2 * zeta * ratio)
+    # Divided by ϖ², so that Λ_SD = 1 for ϖ = ∞.
+    inverse = 1 / np.asarray(ratio, dtype=float)
+    damping = 2 * zeta * inverse
+    resistance = np.hypot(1 - inverse**2, damping)
     if release == "displacement":
-        return resistance / ratio**2
-    return resistance / np.hypot(ratio**2, 2 * zeta * ratio)
+        return resistance
+    return resistance / np.hypot(1, damping)
 
 
 def lowest_permanent_contact(zeta: float, release: str = "displacement") -> tuple[float, float]:
@@ -335,6 +343,8 @@ def permanent_contact_ratios(amplitude: float, zeta: float) -> tuple[float, floa
     [0.7225, 9.8116]
     """
     check_ratios(1, zeta)
+    outside = np.less(amplitude, 0) | np.greater_equal(amplitude, 1)
+    required("Λ", amplitude, outside, "0 <= Λ < 1")
     middle = 1 - 2 * zeta**2
     with np.errstate(invalid="ignore"):
         root = np.sqrt(middle**2 + amplitude**2 - 1)

@@ -7,7 +7,7 @@
 set -eu
 
 here=$(dirname "$0")
-package=$(sed -n 's/^name = "\(.*\)"/\1/p' pyproject.toml)
+package=$(sed -n '/^name = /{s/^name = "\(.*\)"/\1/p;q}' pyproject.toml)
 
 stop() {
     echo "$1" >&2
@@ -26,7 +26,7 @@ ours() {
     [ -n "$(ls -A "$venv" 2> /dev/null)" ] || return 0
     [ -e "$venv/.package" ] || [ ! -e "$venv/.installed" ] || again "was installed before make noted what it installs"
     [ -e "$venv/.package" ] || stop "$venv has files that make did not install. Name another folder: make VENV=FOLDER"
-    owner=$(cat "$venv/.package")
+    read -r owner < "$venv/.package" || true
     [ "$owner" = "$package" ] || stop "$venv is the environment of $owner, not of $package. Name another folder: make VENV=FOLDER"
 }
 

@@ -81,6 +81,8 @@ def project_in(top):
         code=("src", "config"),
         texts=("paper.md", "supplement.md"),
         references="",
+        source="",
+        license="",
         describe=variables.described,
         described_in=("src/variables.py",),
         side_by_side=side_by_side,

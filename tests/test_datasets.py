@@ -32,7 +32,9 @@ def small():
 @pytest.fixture
 def project(tmp_path):
     """A replication in this folder, without a reference."""
-    return Project(tmp_path, tmp_path, (), (), "", described, ("variables.py",), print, print)
+    return Project(
+        tmp_path, tmp_path, (), (), "", "", "", described, ("variables.py",), print, print
+    )
 
 
 def test_a_saved_dataset_is_described_and_read_as_it_was(small, project, tmp_path):

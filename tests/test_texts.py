@@ -2,6 +2,7 @@
 
 import doctest
 import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -153,6 +154,8 @@ def test_versions_agree(folder):
     if not folder:
         assert bouncing_ball.__version__ == cited["version"]
         assert ("There is no release" in text("README.md")) == (date == "unreleased")
+        notes = [ROOT / ".ci/release-notes", cited["version"]]
+        assert subprocess.run(notes, capture_output=True).returncode == (date == "unreleased")
 
 
 @pytest.mark.parametrize("page", PAGES)

@@ -61,8 +61,8 @@ RECORD = ("made", "data", "code", "versions", "entries")
 and those they were made of. `versions` are by library. `entries` are the parameters of a text; a
 dataset has its own. The record of the reference has no `data`.
 """
-PROVENANCE = {"title", "parameters", "code", "versions", "computed_on"}
-"""Attributes of a dataset that say how it was made."""
+PROVENANCE = {"title", "parameters", "code", "versions", "computed_on", "source", "license"}
+"""Attributes of a dataset that say how it was made, and how it may be used."""
 MISSING, UNREADABLE, UNNAMED = "missing", "cannot be compared", "no record names"
 EDITED, STALE = "edited by hand", "stale, remove it and run again; changed since"
 LEFT = "no rule makes it, remove it"

@@ -68,6 +68,8 @@ class Project:
         Files of the reference beside its folder `figures`.
     references
         The paper, as its datasets cite it.
+    source, license
+        The software that computes the datasets, with its version, and the licence of the datasets.
     describe
         Today's descriptions of the variables of a dataset, by its name.
     described_in
@@ -84,6 +86,8 @@ class Project:
     code: tuple[str, ...]
     texts: tuple[str, ...]
     references: str
+    source: str
+    license: str
     describe: Describe
     described_in: tuple[str, ...]
     side_by_side: Callable[[str, list[xr.Dataset]], list[bytes]]
@@ -147,6 +151,8 @@ def save(
         Conventions="CF-1.11",
         title=title,
         references=project.references,
+        source=project.source,
+        license=project.license,
         parameters=json.dumps(plain(parameters), sort_keys=True, ensure_ascii=False),
         code=json.dumps(below(project.checkout, sources["code"])),
         versions=json.dumps(sources["versions"]),

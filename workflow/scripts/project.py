@@ -4,6 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from bouncing_ball import __version__
 from carbonelli2011.variables import REFERENCE, described
 from paper_replication.datasets import Project
 
@@ -40,6 +41,8 @@ PROJECT = Project(
     code=("Snakefile", "config", "src", "workflow"),
     texts=("paper.md", "supplement.md"),
     references=REFERENCE,
+    source=f"bouncing-ball {__version__}",
+    license="BSD-3-Clause",
     describe=described,
     described_in=("src/carbonelli2011/variables.py",),
     side_by_side=side_by_side,

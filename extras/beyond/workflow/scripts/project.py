@@ -4,6 +4,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from bouncing_ball_beyond import __version__
 from carbonelli2011.variables import REFERENCE
 from paper_replication.datasets import Project
 from studies.variables import described
@@ -43,6 +44,8 @@ PROJECT = Project(
     code=(*(f"extras/beyond/{name}" for name in ("Snakefile", "config", "src", "workflow")), "src"),
     texts=("article.md", "appendix.md", "phase.md"),
     references=REFERENCE,
+    source=f"bouncing-ball-beyond {__version__}",
+    license="BSD-3-Clause",
     describe=described,
     described_in=("extras/beyond/workflow/studies/variables.py",),
     side_by_side=side_by_side,

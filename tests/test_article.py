@@ -12,7 +12,9 @@ from jinja2 import TemplateSyntaxError
 from tests import independent
 from tests.reference import reference, with_more, with_parameters
 
-from bouncing_ball import spring_damper
+from bouncing_ball import restitution, spring_damper
+from bouncing_ball.errors import errors_of_orbits, orbits_along
+from bouncing_ball.orbits import Family
 from carbonelli2011 import article, claims, measures, paper
 from carbonelli2011.paper import LIMIT, STIFF, printed_table
 from paper_replication import judgements, origins, templates, texts
@@ -459,6 +461,16 @@ def test_what_the_article_says_of_the_map(data):
     at_node = found.stiff_error.isel(place=0).max(["n", "restitution"])
     largest = found.largest_error.max("n")
     assert largest.values[[0, 3]] == pytest.approx(at_node.values[[0, 3]], rel=1e-5)
+    # Where the height fails, the ball flies higher on the contact, and on most orbits lower.
+    mesh = np.meshgrid(found.n, found.restitution, found.place, indexing="ij")
+    n, r, place = (each.reshape(-1, 1) for each in mesh)
+    low = restitution.saddle_node(n, r)
+    amplitude = low + place * (restitution.period_doubling(n, r) - low)
+    family = Family(n, spring_damper.Contact.of_restitution(np.array([STIFF]), r))
+    orbits = orbits_along(family, amplitude)
+    height = errors_of_orbits(family, orbits, r, amplitude)[0].reshape(found.stable.shape)
+    assert (height[fails.sel(quantity="summit").values] > LIMIT).all()
+    assert (height[found.stable.values] < 0).mean() > 0.5
     # Openings: most orbits are right, and both ends of the range of the contact are lower.
     assert found.failing_mean.sel(quantity="summit").max() < 0.1
     assert (found.below_share > found.doubled_share).all() and (found.doubled_share > 0).all()

@@ -69,6 +69,10 @@ def test_the_flight_at_the_grazing_height_touches_the_table_without_crossing_it(
     assert -1e-11 * n < height.min() < 1e-8
 
 
+def test_next_to_the_saddle_node_a_flight_passes_through_the_table_for_small_r_only():
+    assert restitution.grazing_height(1, 0.02) > 0 > restitution.grazing_height(1, 0.021)
+
+
 @pytest.mark.parametrize(("n", "r"), [(1, 0.85), (2, 0.65), (3, 0.95)])
 def test_fixed_points_and_their_multipliers(n, r):
     x = restitution.saddle_node(n, r)

@@ -300,7 +300,7 @@ def _upper_orbits(family: Family, amplitude: NDArray) -> NDArray:
 
 
 def bifurcations(n: Numbers, kind: str, contact: Contact) -> NDArray:
-    """Bifurcations that bound the range of stable orbits, along ϖ.
+    """Bifurcations at the ends of the range of `stable_orbits`, along ϖ.
 
     Parameters
     ----------

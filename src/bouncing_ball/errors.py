@@ -137,7 +137,7 @@ def threshold(ratios: NDArray, error: Error, tolerance: Numbers) -> Threshold:
     cases = [is_within, ~is_orbit & is_last, ~is_orbit, np.isfinite(ratio)]
     status = np.select(cases, ["within", "no orbit", "first orbit", "found"], "exceeded")
     shape = error.values.shape[:-1] + np.shape(tolerance)
-    # Of a single curve and tolerance, the results are numbers.
+    # For a single curve and tolerance, the results are numbers.
     return Threshold(ratio.reshape(shape)[()], status.reshape(shape)[()])
 
 

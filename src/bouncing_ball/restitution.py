@@ -77,7 +77,8 @@ def bounce_velocity(n: Numbers) -> NDArray:
 def saddle_node(n: Numbers, r: Numbers) -> NDArray:
     """Minimum amplitude nπ(1 - r)/(1 + r) at which n-T orbits exist (Eq. 7).
 
-    The velocity X of the table at the impact has the same value, for every n-T orbit (Eq. 6).
+    The velocity X of the table at the impact has the same value, for every n-T orbit (Eq. 6). For
+    n = 1 and r < 0.02 the flight of this orbit would pass through the table (`grazing_height`).
 
     >>> round(float(saddle_node(1, 0.85)), 4)
     0.2547

@@ -120,8 +120,7 @@ def on_curves(asked: Callable[[xr.Dataset], ArrayLike], curves: Sequence[xr.Data
     "Abstract",
     "for a high contact stiffness the spring-damper model behaves as the restitution model",
     f"thresholds {CURVES}",
-    remark="with the period doubling of Eq. 5; that of Eq. 8 is a claim of its own (*period "
-    "doubling*)",
+    remark="with the period doubling of Eq. 5, not of Eq. 8 (*period doubling*)",
 )
 def stiff_limit(thresholds, *curves):
     stiffest = thresholds["relative_error"].isel(frequency_ratio=-1)
@@ -357,8 +356,8 @@ def period_doubling(fig03):
     "Fig. 3, Figs. 8 and 9, Table 1",
     "the stable orbits of a family are those from its saddle-node to its period doubling",
     "fig08 fig09 fig15",
-    remark="in the restitution model it follows from Eq. 5 by algebra; at ϖ = 2 the branch of n "
-    "= 1 has two further stable ranges with long contacts, one of which ends in permanent contact",
+    remark="in the restitution model it follows from Eq. 5 by algebra; the other ranges have long "
+    "contacts",
     beside="table1",
 )
 def stability_range(*figures):
@@ -647,8 +646,8 @@ def apart_when_compliant(*figures):
     "as the frequency ratio falls the saddle-node moves to lower amplitudes, and the period "
     "doubling to higher ones",
     "table1 lowest_doubling fig15",
-    remark="in the printed table the period doubling rises from the first row on, which agrees "
-    "with Eq. 8; the paper calls the moves slight",
+    remark="the printed period doubling rises from the first row on; the paper calls the moves "
+    "slight",
 )
 def bifurcations_move(table1, lowest, fig15):
     move = from_the_stiffest(table1)["computed"].diff("frequency_ratio")
@@ -737,8 +736,7 @@ def no_longer_nπ(*curves):
     "after Fig. 10",
     "the bouncing-off velocity starts to depart from nπ below ϖ = 100",
     "fig10 validity_map",
-    remark="1 % is the paper's limit for errors; the width of a line is 1 % of the axis; the "
-    "departure falls as the inverse of the frequency ratio, without a step",
+    remark="1 % is the paper's limit for errors; the width of a line is 1 % of the axis",
 )
 def departs_below_100(fig10, validity_map):
     error = departure(fig10)

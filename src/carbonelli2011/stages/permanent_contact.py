@@ -34,7 +34,7 @@ def fig16(parameters: dict, release: str) -> xr.Dataset:
     contact = contact_of_ball(ratios, parameters["restitution"], release)
     zeta = float(contact.damping_ratio)
     error = permanent_contact_error(ratios, zeta, release)
-    # The lowest threshold is the only extremum of the error: with it no crossing is missed.
+    # The error turns at the lowest threshold, and where it is zero: no last crossing is missed.
     lowest_ratio, _ = spring_damper.lowest_permanent_contact(zeta, release)
     turns = np.union1d(ratios, np.clip(lowest_ratio, ratios[0], ratios[-1]))
     searched = permanent_contact_error(turns, zeta, release)

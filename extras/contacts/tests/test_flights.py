@@ -77,7 +77,7 @@ def test_an_impact_of_a_track_has_the_speeds_of_the_integrated_one(drag):
     for first, at, last in zip(edges, impacts, edges[2:], strict=False):
         near = (t > first) & (t < last)
         track = np.column_stack([t[near], 100 * y[near], t[near] > at])
-        down, up, gravity, misfit, time, floor = impact_of(track, drag)
+        down, up, gravity, misfit, time, floor, _ = impact_of(track, drag)
         assert time == pytest.approx(at, abs=1e-6) and abs(floor) < 1e-3
         assert up / down == pytest.approx(0.85, abs=1e-6)
         assert gravity == pytest.approx(100 * G, rel=1e-6)

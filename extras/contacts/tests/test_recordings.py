@@ -294,7 +294,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("interval [s]\n0.5\n0.7\n0.6", "line 3: a flight of 0.7 s follows one of 0.5"),
         ("interval [s]\n0.5\n-0.4", "not positive"),
         ("interval [s]\n0.0009\n0.0007", "a flight of 0.0009 s is too short"),
-        ("t,y\n" + ZIGZAG, "no impact between two flights of four positions"),
+        ("t,y\n" + ZIGZAG, "no impact between two flights in the track"),
         ("height [m]\n0.5\n0.7\n0.6", "a height of 0.7 m follows one of 0.5"),
         (
             "t,y\n" + "\n".join(reversed(track().split("\n"))),
@@ -324,7 +324,7 @@ TWO = "drop (cm),rebound (cm)\n50,32\n60,38\n70,45"
         ("drop height rebound height\n1 0.64", "2 cells below 4 headings: .* spaces divide names"),
         ("|\n|", "no line of numbers below a heading"),
         ("t,y\ns,m", "no line of numbers below a heading"),
-        ("t,y" + 20 * "\n1,2", "no impact between two flights of four positions"),
+        ("t,y" + 20 * "\n1,2", "no impact between two flights in the track"),
         (
             " ,Area,XM,YM,Slice\n1,5716,465.6,65.3,29",
             "'Slice' is frame: frames are times with a li",
@@ -680,7 +680,7 @@ SPOILED = {
 def test_a_spoiled_film_holds_r_with_less_than_twice_the_width_of_a_clean_one(kind):
     """Of films with copies and of sensors without echo most impacts were lost without a word."""
     spoil, said = SPOILED[kind]
-    widths = []
+    widths, holds = [], []
     for seed in range(12):
         rng = np.random.default_rng(seed)
         y = np.array([position(t) for t in FRAMES]) + 2e-3 * rng.normal(size=len(FRAMES))
@@ -688,19 +688,61 @@ def test_a_spoiled_film_holds_r_with_less_than_twice_the_width_of_a_clean_one(ki
         clean, found = (fit({"t (s)": FRAMES, "y (m)": np.round(each, 4)}) for each in (y, spoiled))
         assert not any("left out" in note for note in clean.notes)
         assert any(said in note for note in found.notes)
-        assert found.interval[0] < 0.82 < found.interval[1]
+        holds.append(found.interval[0] < 0.82 < found.interval[1])
         widths.append((np.ptp(found.interval), np.ptp(clean.interval)))
     wide, narrow = np.median(widths, axis=0)
-    assert wide < 2 * narrow
+    # Of twelve intervals of 95 %, fewer than nine hold r in one of 5,000 cases.
+    assert wide < 2 * narrow and sum(holds) >= 9
 
 
 def test_rounded_positions_near_a_top_are_no_copies():
     """Positions in whole pixels repeat where a ball turns; beside a copy it moves on."""
     t = np.arange(0, TIMES[-1] - 0.05, 1 / 240)
     y = np.round([700 - 500 * position(each) for each in t])
-    assert not copies(y, 1.0).any()
+    assert not copies(t, y, 1.0).any()
     y[101::2] = y[100::2][: len(y[101::2])]
-    assert copies(y, 1.0)[101::2].sum() > 100 and not copies(y, 1.0)[100::2].any()
+    assert copies(t, y, 1.0)[101::2].sum() > 100 and not copies(t, y, 1.0)[100::2].any()
+
+
+def film(rate, noise, hidden=0.0):
+    """Return the columns of a film in which the ball is not seen below a height in m."""
+    t = np.arange(0, TIMES[-1] - 0.05, 1 / rate)
+    y = np.array([position(each) for each in t])
+    y = np.where(y < hidden, math.nan, y + noise * np.random.default_rng(7).normal(size=len(t)))
+    return {"t (s)": np.round(t, 5), "y (m)": np.round(y, 4)}
+
+
+@pytest.mark.parametrize("noise", [1e-4, 5e-4, 2e-3])
+@pytest.mark.parametrize("hidden", [0.0, 0.02, 0.08, 0.2])
+def test_a_film_of_more_frames_is_worth_more(hidden, noise):
+    """With a hidden floor 120 frames a second left one impact of four, and 240 none."""
+    found = [fit(film(rate, noise, hidden)) for rate in (60, 120, 240, 480, 960)]
+    counts = [len(each.impacts.speed) for each in found]
+    assert counts == sorted(counts) and counts[0] > 1
+    widths = [np.ptp(each.interval) for each in found]
+    # One interval has an error of its width, of four impacts about a third.
+    assert widths[-1] < 0.75 * widths[0] or counts[0] < 3
+    for each in found:
+        assert each.restitution == pytest.approx(0.82, abs=np.ptp(each.interval))
+        assert not any("copies" in note for note in each.notes)
+
+
+def test_a_bounce_that_is_not_seen_is_no_impact():
+    """Parabolas of the flights beside it meet as well, with r = 0.90."""
+    columns = film(240, 5e-4)
+    t = columns["t (s)"]
+    columns["y (m)"][(t > TIMES[1] - 0.05) & (t < TIMES[2] + 0.05)] = math.nan
+    found = fit(columns)
+    assert "positions are missing around it for so long" in str(found.notes)
+    assert np.abs(found.impacts.restitution - 0.82).max() < 0.01
+
+
+def test_a_tracker_that_jumps_to_another_ball_is_named():
+    """Of two balls with 0.8 and 0.57 a mean was given without a word."""
+    columns = film(240, 5e-4)
+    late = columns["t (s)"] > TIMES[2] + 0.2
+    columns["y (m)"][late] = 0.6 * columns["y (m)"][late] + 0.3
+    assert "does the tracker jump, as to another ball?" in str(fit(columns).notes)
 
 
 RECORDINGS = {"tables", "tracks", "flights", "recordings", "intervals", "fits", "sounds"}

@@ -194,22 +194,26 @@ def _drag_note(found: Fit, known: Any, rounding: float) -> str:
 
 
 def _contact_note(found: Fit) -> str:
-    """Return what the contacts do to r of times between impacts, which include them."""
+    """Return what the contacts do to r of times between impacts, or of parabolas that meet."""
     recording = found.recording
-    if recording.kind != "flights" or recording.is_free:
+    is_film = recording.kind == "track" and not recording.no_speed
+    if not is_film and (recording.kind != "flights" or recording.is_free):
         return ""
     lasts = found.contact_time
-    if lasts:
+    if lasts and not is_film:
         return f"the contact, {show(lasts, 's')}, is taken off each time between two impacts"
     impacts = found.impacts
     low, high = found.interval
     # Of flights T with a contact, r is T′/T; by g T = 2 v this is its derivative by the contact.
+    # Parabolas meet at half of a contact, where both are faster by g times it.
     lower = float(np.mean((1 - impacts.restitution) / impacts.speed)) * STANDARD_GRAVITY / 2
     matters = (high - low) / (2 * lower) if lower > 0 else math.inf
     # Contacts of rubber, the longest ones, last for 10 ms.
+    within = "parabolas meet within" if is_film else "times between impacts include"
+    remedy = "" if is_film else "; give --contact-time"
     return (matters < 0.01) * (
-        f"times between impacts include the contact: r is too high by {lower / 1000:.2g} for "
-        f"each ms of it, which matters above {show(matters, 's')}; give --contact-time"
+        f"{within} the contact: r is too high by {lower / 1000:.2g} for each ms of it, which "
+        f"matters above {show(matters, 's')}{remedy}"
     )
 
 
@@ -248,7 +252,7 @@ def _notes(found: Fit, known: Any, rounding: float, value: float) -> tuple[str, 
     drag = _drag_note(found, known, rounding)
     contact = _contact_note(found)
     gravity = _gravity_note(found)
-    is_taken_off = bool(contact and found.contact_time)
+    is_taken_off = found.recording.kind == "flights" and bool(contact and found.contact_time)
     return tuple(
         holding(
             [
@@ -355,6 +359,10 @@ def fit(
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
+    if recording.kind == "track" and known is None:
+        # The positions show their errors, which the speeds before and after an impact share alike.
+        of_r = np.array([impact_of(each, drag)[-1] for each in recording.chains])
+        known = of_r * v / np.sqrt(1 + impacts.restitution**-2)
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
     error = rounding / math.sqrt(12) if known is None else known

@@ -69,11 +69,12 @@ def _fall(since_top: Array, drag: float) -> tuple[Array, Array]:
 
 
 def impact_of(track: Array, drag: float = 0.0) -> Array:
-    """Fit two flights with one gravity, and return how they meet, shape (6,).
+    """Fit two flights with one gravity, and return how they meet, shape (7,).
 
     In units of the track these are the speeds down before and up after the impact, gravity, the
     root mean square of the distances of the positions from the flights, and the time and the
-    position of the impact. ``track`` has the columns time in s, position upwards, and 1 after the
+    position of the impact; the last one is the standard error of ln r by these distances.
+    ``track`` has the columns time in s, position upwards, and 1 after the
     impact or else 0.
 
     A flight is a parabola but for what the drag changes, which depends on its top and on gravity:
@@ -104,4 +105,11 @@ def impact_of(track: Array, drag: float = 0.0) -> Array:
     down, up = gravity * speeds * [1, -1]
     misfit = math.sqrt(float(np.mean((columns @ found + by_drag - y) ** 2)))
     floor = np.mean(heights - gravity * depths)
-    return np.array([down, up, gravity, misfit, begin + meet, floor])
+    # Derivatives of ln r of two parabolas with respect to gravity, the starts and the slopes.
+    sum_of_both = 1 / up + 1 / down
+    moves = gravity * sum_of_both / np.diff(slope)[0]
+    of_meet = np.array([0.0, -moves, moves, -moves * meet, moves * meet])
+    of_r = of_meet + [-meet * sum_of_both, 0.0, 0.0, 1 / down, 1 / up]
+    spread = np.linalg.norm(of_r @ np.linalg.pinv(columns))
+    error = misfit * spread * math.sqrt(len(t) / max(len(t) - len(found), 1))
+    return np.array([down, up, gravity, misfit, begin + meet, floor, error])

@@ -28,7 +28,7 @@ from bouncing_ball_contacts.tables import (
     Table,
     table_of,
 )
-from bouncing_ball_contacts.tracks import FEWEST, copies, impacts_of_track, outliers
+from bouncing_ball_contacts.tracks import FEWEST, TOLD, copies, impacts_of_track, outliers
 from bouncing_ball_contacts.units import (
     STANDARD_GRAVITY,
     Array,
@@ -372,13 +372,19 @@ class _Film(NamedTuple):
     is_copy: NDArray[np.bool_]
     is_out: NDArray[np.bool_]
 
-    def impacts(self, way: int) -> list[tuple[int, Array]]:
-        """Return the line and the track of each impact; `way` is -1 if positions grow downwards."""
+    def impacts(self, way: int) -> tuple[dict[int, Array], dict[int, str]]:
+        """Return tracks of impacts, and why others are not used, by their lines.
+
+        ``way`` is -1 if positions grow downwards.
+        """
         used = np.flatnonzero(~(self.is_copy | self.is_out))
         if len(used) <= 2 * FEWEST:
-            return []
-        found = impacts_of_track(self.t[used], way * self.y[used])
-        return [(int(self.lines[used[i]]), impact) for i, impact in found.items()]
+            return {}, {}
+        found, unused = impacts_of_track(self.t[used], way * self.y[used])
+        lines = self.lines[used].tolist()
+        return {lines[i]: each for i, each in found.items()}, {
+            lines[i]: each for i, each in unused.items()
+        }
 
 
 def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
@@ -388,7 +394,9 @@ def _film(columns: list[Column], t: Array, y: Array, lines: Lines) -> _Film:
     is_even = np.abs(t - even).max() <= columns[0].scale * columns[0].digit
     t = np.where(is_even, even, t)
     digit = columns[1].digit
-    is_copy = copies(y, digit) | (np.diff(t, prepend=-1.0) == 0)
+    is_copy = np.diff(t, prepend=-1.0) == 0
+    moments = np.flatnonzero(~is_copy)
+    is_copy[moments] = copies(t[moments], y[moments], digit)
     is_out = np.zeros(len(t), bool)
     left = np.flatnonzero(~is_copy)
     if len(left) > 2 * FEWEST:
@@ -421,23 +429,32 @@ def _films(table: Table, columns: list[Column]) -> list[_Film]:
     return films
 
 
-def _left_out(films: list[_Film], impacts: list[list[tuple[int, Array]]]) -> list[str]:
+def _left_out(
+    films: list[_Film], impacts: list[dict[int, Array]], unused: list[dict[int, str]]
+) -> list[str]:
     """Return what is left out of films between the begin of their first and end of last flight."""
     left: dict[str, list[int]] = {
         "copies of the frame before": [],
         "positions that no ball has": [],
         "frames that are missing before": [],
     }
-    for film, found in zip(films, impacts, strict=True):
+    said = []
+    for film, found, others in zip(films, impacts, unused, strict=True):
+        said += [
+            f"the impact in line {line} is not used: {others[line]}"
+            for line in others
+            if others[line] in TOLD
+        ]
         if not found:
             continue
-        begin, end = found[0][1][0, 0], found[-1][1][-1, 0]
+        tracks = list(found.values())
+        begin, end = tracks[0][0, 0], tracks[-1][-1, 0]
         during = (film.t >= begin) & (film.t <= end)
         steps = np.diff(film.t, prepend=film.t[0])
         of_kinds = film.is_copy, film.is_out, steps > 2.5 * np.median(steps)
         for lines, is_left in zip(left.values(), of_kinds, strict=True):
             lines += film.lines[during & is_left].tolist()
-    return [
+    return said + [
         f"left out are {what}: line {', '.join(map(str, lines[:3]))}"
         + f" and {len(lines) - 3} more" * (len(lines) > 3)
         for what, lines in left.items()
@@ -474,18 +491,22 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     films = _films(table, columns)
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]
-    of_films = max(ways, key=lambda each: sum(map(len, each)))
-    numbers, tracks = zip(*itertools.chain(*of_films), strict=True) if any(of_films) else ((), ())
+    films_of = max(ways, key=lambda each: [sum(map(len, part)) for part in zip(*each, strict=True)])
+    of_films, unused = zip(*films_of, strict=True)
+    numbers = [line for each in of_films for line in each]
+    tracks = [track for each in of_films for track in each.values()]
     if not tracks:
-        raise Refused(f"{table.name}: no impact between two flights of four positions in the track")
+        reasons = {line: said for each in unused for line, said in each.items()}
+        lowest = "".join(f"; line {line}: {said}" for line, said in list(reasons.items())[:1])
+        raise Refused(f"{table.name}: no impact between two flights in the track{lowest}")
     before, _, gravity, *_ = np.transpose([impact_of(each) for each in tracks])
     metres, no_speed, by_clock = _clock(columns, np.mean(gravity), np.max(before / gravity))
     notes = [
         (by_clock, by_clock),
         (no_speed, f"no speed is known, and no drag of the air is removed: {no_speed}"),
-        *((True, note) for note in _left_out(films, of_films)),
+        *((True, note) for note in _left_out(films, of_films, unused)),
         (
-            of_films is ways[1],
+            films_of is ways[1],
             "the positions grow downwards, as in a picture: they were turned",
         ),
     ]

@@ -13,12 +13,20 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
-from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array
+from bouncing_ball_contacts.units import STANDARD_GRAVITY, Array, holding
 
 FEWEST = 4
 """Positions that a flight has at least, without positions next to impacts."""
-# Number of steps between two flights above which an impact is not used: positions are missing.
-_LONGEST_GAP = 10
+# Standard error of ln r above which an impact is not used.
+_MOST = 0.05
+# Why an impact is not used.
+_FEW = f"there are fewer than {FEWEST} positions before or after it"
+_GAP = "positions are missing around it for so long that another impact may be missing, too"
+_LOW = f"by the positions before and after it r is known to {_MOST:.0%} at best"
+_NO_PARABOLAS = "no two flights meet there: does the tracker jump, as to another ball?"
+_HIT = "the ball leaves faster than it came"
+TOLD = (_GAP, _NO_PARABOLAS, _HIT)
+"""Reasons that are said of an answer, too: at its end each film has impacts with the others."""
 # Median of the absolute value of a normally distributed number with the standard deviation 1.
 _MEDIAN = 0.6745
 
@@ -42,7 +50,9 @@ def speeds_of_film(tracks: Sequence[Array], drag: float, has_clock: bool) -> Arr
         Whether times are true.
     """
     for _ in range(1 if has_clock else 5):
-        before, after, gravity, _, time, floor = np.transpose([impact_of(x, drag) for x in tracks])
+        before, after, gravity, _, time, floor, _ = np.transpose(
+            [impact_of(x, drag) for x in tracks]
+        )
         slow = 1.0 if has_clock else math.sqrt(max(gravity.mean() / STANDARD_GRAVITY, 1e-9))
         tracks = [each * [slow, 1, 1] for each in tracks]
     since = time - time.mean()
@@ -62,20 +72,30 @@ def _third_differences(t: Array, y: Array) -> Array:
     return np.abs(third) / np.sqrt(np.sum(weights**2, axis=1))
 
 
-def copies(y: Array, digit: float) -> NDArray[np.bool_]:
+def _noise(t: Array, y: Array) -> float:
+    """Return the standard deviation of the errors of positions."""
+    return float(np.median(_third_differences(t, y))) / _MEDIAN if len(t) > 3 else math.inf
+
+
+def copies(t: Array, y: Array, digit: float) -> NDArray[np.bool_]:
     """Return which positions repeat the one before, while the ball moves on in one direction.
 
     Rounded positions repeat near a top, where the ball moves by one digit. Around a copy it moves
-    by three digits or more.
+    by three digits or more. Errors let positions repeat by chance, so that a film has copies only
+    if the ball moves by much more than the errors around one of them.
     """
     begins = np.flatnonzero(np.diff(y, prepend=math.nan) != 0)
     moves = np.diff(y[begins])
-    ways = np.sign(moves) * (np.abs(moves) > 2.5 * digit)
-    goes_on = np.zeros(len(begins), bool)
-    goes_on[1:-1] = ways[:-1] * ways[1:] > 0
-    is_copy = np.repeat(goes_on, np.diff([*begins, len(y)]))
-    is_copy[begins] = False
-    return is_copy
+    copied = np.zeros((2, len(y)), bool)
+    for is_copy, least in zip(
+        copied, (2.5 * digit, 10 * _noise(t[begins], y[begins])), strict=True
+    ):
+        ways = np.sign(moves) * (np.abs(moves) > max(least, 2.5 * digit))
+        goes_on = np.zeros(len(begins), bool)
+        goes_on[1:-1] = ways[:-1] * ways[1:] > 0
+        is_copy[:] = np.repeat(goes_on, np.diff([*begins, len(y)]))
+        is_copy[begins] = False
+    return copied[0] & copied[1].any()
 
 
 def outliers(t: Array, y: Array, digit: float) -> NDArray[np.bool_]:
@@ -101,8 +121,9 @@ def flights_of(t: Array, up: Array) -> tuple[list[NDArray[np.intp]], list[int]]:
     """Return the indices of each flight, without positions next to impacts, and the impacts."""
     from scipy.signal import find_peaks
 
-    noise = float(np.median(_third_differences(t, up))) / _MEDIAN
-    bottoms = find_peaks(-up, prominence=max(0.02 * np.ptp(up), 6 * noise))[0].tolist()
+    # Where a ball turns at its top, errors of many positions make hills of six errors.
+    prominence = max(0.02 * np.ptp(up), 10 * _noise(t, up))
+    bottoms = find_peaks(-up, prominence=prominence)[0].tolist()
     edges = [-2, *bottoms, len(up) + 1]
     flights = [np.arange(a + 2, b - 1) for a, b in itertools.pairwise(edges)]
     if bottoms:
@@ -118,25 +139,50 @@ def flights_of(t: Array, up: Array) -> tuple[list[NDArray[np.intp]], list[int]]:
     return flights, bottoms
 
 
-def impacts_of_track(t: Array, up: Array) -> dict[int, Array]:
-    """Return the tracks of impacts between two flights, by the indices of their lowest positions.
+def impacts_of_track(t: Array, up: Array) -> tuple[dict[int, Array], dict[int, str]]:
+    """Return the tracks of impacts between two flights, and why others are not used.
 
-    A track has the columns time, position, and 1 after the impact or else 0.
+    Both are by the indices of the lowest positions. A track has the columns time, position, and 1
+    after the impact or else 0.
+
+    The parabolas on both sides decide, whatever the frame rate. They meet while no position is
+    seen. A bounce that is not seen lasts for T, and the next one for r T. The parabolas around both
+    meet below the floor, from where the next bounce lasts for r T + 2T/(1 + r), less than 2T: so no
+    bounce is missing if positions are missing for less than half of it.
     """
     flights, bottoms = flights_of(t, up)
-    longest = _LONGEST_GAP * float(np.median(np.diff(t)))
-    impacts = {}
+    noise = _noise(t, up)
+    step = np.median(np.diff(t))
+    impacts: dict[int, Array] = {}
+    unused: dict[int, str] = {}
     for bottom, (before, after) in zip(bottoms, itertools.pairwise(flights), strict=True):
-        # Where positions are missing, other impacts may be, too.
-        if min(len(before), len(after)) < FEWEST or t[after[0]] - t[before[-1]] > longest:
+        if min(len(before), len(after)) < FEWEST:
+            unused[bottom] = _FEW
             continue
-        both = np.concatenate([before, after])
-        track = np.column_stack([t[both], up[both], np.isin(both, after)])
-        v_before, v_after, gravity, misfit, *_ = impact_of(track)
-        # What misses the positions by more than a twentieth of the height is no flight, and what
-        # leaves faster than it came is hit.
-        slowest = min(v_before, v_after)
-        is_flight = gravity > 0 and misfit < 0.05 * slowest**2 / (2 * gravity)
-        if is_flight and 0 < v_after < 1.05 * v_before:
+        span = np.arange(before[0], after[-1] + 1)
+        edges = t[before[FEWEST - 1]], t[after[-FEWEST]]
+        meet = t[bottom]
+        # The lowest position that is seen may lie on either side of an impact that is not seen.
+        for _ in range(3):
+            both = span[np.abs(t[span] - meet) > 1.5 * step]
+            track = np.column_stack([t[both], up[both], t[both] > meet])
+            v_before, v_after, gravity, misfit, meet, _, error = impact_of(track)
+            meet = np.clip(meet, *edges)
+        missing = np.ptp(t[np.searchsorted(t, meet) + [-1, 0]])
+        height = min(v_before, v_after) ** 2 / (2 * gravity)
+        # What misses the positions by more than a twentieth of the height is no flight.
+        is_flight = misfit < 0.05 * height and edges[0] < meet < edges[1]
+        said = [
+            (gravity <= 0 or v_after <= 0, _NO_PARABOLAS),
+            (missing * gravity > v_after, _GAP),
+            (not is_flight, _LOW if misfit < 3 * noise else _NO_PARABOLAS),
+            (error > _MOST, _LOW),
+            # What leaves faster than it came is hit.
+            (v_after >= 1.05 * v_before, _HIT),
+        ]
+        reasons = holding(said)
+        if reasons:
+            unused[bottom] = reasons[0]
+        else:
             impacts[bottom] = track
-    return impacts
+    return impacts, unused

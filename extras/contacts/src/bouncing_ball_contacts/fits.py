@@ -14,6 +14,7 @@ from bouncing_ball_contacts.intervals import (
     KINDS,
     Impacts,
     curves_of,
+    errors_shown,
     estimate,
     impacts_of,
     misread,
@@ -340,7 +341,7 @@ def fit(
         return None if said is None else positive(name, said, unit)
 
     unit = KINDS[recording.kind][0]
-    known = given("resolution", resolution, unit) or recording.uncertainty
+    known = given("resolution", resolution, unit)
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
@@ -354,15 +355,12 @@ def fit(
     )
     # A contact that is not known is taken to have no duration.
     lasts = given("contact time", contact_time, "s") or recording.contact_time
-    rounding = rounding_of(recording) if known is None else 0.0
     if recording.kind == "flights" and not recording.is_free:
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
-    if recording.kind == "track" and known is None:
-        # The positions show their errors, which the speeds before and after an impact share alike.
-        of_r = np.array([impact_of(each, drag)[-1] for each in recording.chains])
-        known = of_r * v / np.sqrt(1 + impacts.restitution**-2)
+    known = errors_shown(recording, impacts, drag) if known is None else known
+    rounding = rounding_of(recording) if known is None else 0.0
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")
     error = rounding / math.sqrt(12) if known is None else known

@@ -59,7 +59,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize, special
 
-from bouncing_ball_contacts.flights import heights_of, speeds_of
+from bouncing_ball_contacts.flights import heights_of, impact_of, speeds_of
 from bouncing_ball_contacts.recordings import Recording
 from bouncing_ball_contacts.tables import Lines
 from bouncing_ball_contacts.tracks import speeds_of_film
@@ -242,6 +242,18 @@ def impacts_of(recording: Recording, drag: float = 0.0) -> Impacts:
     log_r = np.log(after / before)
     usual = KINDS[kind][1]
     return Impacts(before, log_r, readings, of_speed, usual, groups, is_set=is_set)
+
+
+def errors_shown(recording: Recording, impacts: Impacts, drag: float) -> Array | None:
+    """Return the standard deviations of readings that a recording has, or that its films show.
+
+    By the distances of the positions from their parabolas r of an impact has an error, to which the
+    speeds before and after it contribute alike.
+    """
+    if recording.kind != "track":
+        return recording.uncertainty
+    of_r = np.array([impact_of(each, drag)[-1] for each in recording.chains])
+    return of_r * impacts.speed / np.sqrt(1 + impacts.restitution**-2)
 
 
 def group_means(

@@ -85,7 +85,7 @@ def test_the_orbits_of_a_rigid_ball_at_its_saddle_node(restitution):
 
 def test_an_ordinary_orbit_has_no_form():
     one = orbit(Rigid(0.5), amplitude=1.4)
-    with pytest.raises(ValueError, match="needs a saddle-node or a period doubling"):
+    with pytest.raises(ValueError, match="needs a saddle-node, a period doubling or a Nei"):
         normal_form(one)
     with pytest.raises(OrbitNotFound, match="no flight of the orbit"):
         grazing_form(one)

@@ -25,7 +25,7 @@ from bouncing_ball_beyond.contacts.balls import (
     whole_number,
 )
 from bouncing_ball_beyond.contacts.laws import ForceLaw
-from bouncing_ball_beyond.periodic.equations import OrbitEquations
+from bouncing_ball_beyond.periodic.equations import OrbitEquations, are_stable
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.periodic.search import AT_FOLD, guess_of_instants, rows_of
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
@@ -39,6 +39,9 @@ QUANTITIES = (
     "period_doubling",
 )
 """Quantities of the n-T orbit at an amplitude, and the amplitudes of its two bifurcations."""
+
+BIFURCATIONS = {"saddle_node", "period_doubling"}
+"""Quantities that do not belong to the orbit at an amplitude."""
 
 
 AT_TOLERANCE = 1e-12
@@ -184,6 +187,17 @@ def off_rounding(impact: FreeImpact, amplitude: ArrayLike, table: Table) -> NDAr
     return np.where(below, node, amplitude)
 
 
+def restitution_trace(impact: FreeImpact, push: Values) -> tuple[NDArray, NDArray]:
+    """Trace and determinant of the return map of the restitution model, where -w″ = ``push``.
+
+    The determinant is r r̂. The trace is 1 + r r̂ at the saddle-node, where w″ = 0, and -(1 + r r̂) at
+    the period doubling.
+    """
+    r, slope = np.real(impact.restitution), np.real(impact.slope)
+    determinant = r * slope + 0 * np.real(push)
+    return 1 + determinant - (1 + r) * (1 + slope) * np.real(push), determinant
+
+
 def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = SINE) -> dict:
     """Compute the six `QUANTITIES` of the restitution model in closed form (Eqs. 6, 7 and R8)."""
     amplitude = off_rounding(impact, amplitude, table)
@@ -199,9 +213,31 @@ def restitution_values(impact: FreeImpact, amplitude: ArrayLike, table: Table = 
     }
 
 
+class Compared(dict[str, Any]):
+    """Errors or thresholds by the name of the quantity.
+
+    Attributes
+    ----------
+    unstable : array of str
+        Which of the orbits that are compared is unstable: "", "in the simple model", "on the
+        contact" or "in both models". "" if there is no orbit, or none is compared.
+    """
+
+    unstable: NDArray
+
+    def __init__(self, values: dict, unstable: NDArray) -> None:
+        super().__init__(values)
+        self.unstable = unstable
+
+
+UNSTABLE = np.array(["", "in the simple model", "on the contact", "in both models"])
+"""Texts by index: 1 if the orbit of the simple model is unstable, plus 2 if that on the contact is.
+"""
+
+
 def law_errors(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: ArrayLike = 1, table: Table = SINE
-) -> dict:
+) -> Compared:
     """Use the error law to compute the signed errors of the restitution model.
 
     An error is (x_c - x)/x, where x_c is the value on the contact and x is the value in the model
@@ -223,10 +259,10 @@ def law_errors(
 
     Returns
     -------
-    dict
-        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. Above the
-        period doubling the errors are those of unstable orbits. The function
-        ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
+    Compared
+        Errors by the names in :data:`QUANTITIES`. They are NaN if a model has no orbit. The law
+        does not decide on the stability on the contact: ``unstable`` is "in the simple model" or
+        "". The function ``contact_values(Rigid(r), …)`` gives the Λ of the period doubling.
 
     Examples
     --------
@@ -242,7 +278,7 @@ def law_errors(
     r = reference["apparent_restitution"]
     delay = impact.centroid
     shift = impact.shift
-    phase, lift, _, jolt = table.instant(impact.line, amplitude)
+    phase, lift, rise, jolt = table.instant(impact.line, amplitude)
     later, turned, push, _ = table.instant(impact.line - shift, amplitude)
     _, _, doubling, _ = _doubling_shift(impact, table)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -250,7 +286,7 @@ def law_errors(
         risen = turned - lift - shift * impact.line - impact.speed * delay
         loaded = impact.load - impact.duration + (1 + r) * delay - (impact.slope - r) * shift
         load = 1 - push + shift * jolt
-        return {
+        errors = {
             "max_height": risen / reference["max_height"],
             "bounce_velocity": -(impact.duration - delay) / reference["bounce_velocity"],
             "phase": (turn - shift - delay) / (2 * np.pi),
@@ -258,6 +294,13 @@ def law_errors(
             "saddle_node": np.divide(-shift, impact.line) + 0 * reference["saddle_node"],
             "period_doubling": doubling + 0 * reference["period_doubling"],
         }
+    return Compared(errors, UNSTABLE[1 * _leaves(impact, rise)])
+
+
+def _leaves(impact: FreeImpact, push: Values) -> NDArray:
+    """Whether the orbit of the restitution model exists and is unstable."""
+    trace, determinant = restitution_trace(impact, push)
+    return np.isfinite(trace) & ~are_stable(trace, determinant)
 
 
 def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
@@ -283,7 +326,7 @@ def _doubling_shift(impact: FreeImpact, table: Table = SINE) -> tuple:
 
 def law_coefficients(
     impact: Ball | FreeImpact, *, amplitude: ArrayLike, n: ArrayLike = 1, table: Table = SINE
-) -> dict:
+) -> Compared:
     """Compute coefficients K of errors. A contact that is stretched by γ has the errors Kγ.
 
     This holds far above the saddle-node. If the given ball has ϖ = 1, errors at other ϖ are K/ϖ. At
@@ -292,7 +335,8 @@ def law_coefficients(
     """
     impact = impact if isinstance(impact, FreeImpact) else free_impact(impact, n)
     errors = law_errors(impact.stretched(1j * H), amplitude=amplitude, table=table)
-    return {name: np.imag(error) / H for name, error in errors.items()}
+    values = {name: np.imag(error) / H for name, error in errors.items()}
+    return Compared(values, errors.unstable)
 
 
 def law_thresholds(
@@ -302,7 +346,7 @@ def law_thresholds(
     n: ArrayLike = 1,
     tolerance: float = 0.01,
     table: Table = SINE,
-) -> dict:
+) -> Compared:
     """Use the error law to compute the ϖ above which the restitution model is within a tolerance.
 
     This ϖ is |K|/ε, except for the height and the phase. The saddle-node changes the errors of
@@ -325,7 +369,7 @@ def law_thresholds(
 
     Returns
     -------
-    dict
+    Compared
         Threshold values of ϖ. The keys are the names in :data:`QUANTITIES`.
 
     Examples
@@ -341,7 +385,7 @@ def law_thresholds(
     found = {name: np.abs(value) / tolerance for name, value in coefficients.items()}
     for name in ("max_height", "phase"):
         found[name] = 1 / _first_stretch(impact, amplitude, tolerance, name, table)
-    return found
+    return Compared(found, coefficients.unstable)
 
 
 @np.errstate(invalid="ignore", divide="ignore")
@@ -444,10 +488,10 @@ def contact_values(
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
     check_ends("ball", ball, 1.5 * np.pi * np.asarray(n))
     found = {name: np.full(amplitudes.size, np.nan) for name in quantities}
-    for name in ("saddle_node", "period_doubling"):
+    for name in BIFURCATIONS:
         if name in found:
             found[name] = _bifurcation(row, periods, name, table)
-    of_orbits = [name for name in quantities if name not in ("saddle_node", "period_doubling")]
+    of_orbits = [name for name in quantities if name not in BIFURCATIONS]
     # Blocks of about 4096 orbits limit the memory.
     blocks = np.array_split(np.arange(amplitudes.size), amplitudes.size // 4096 + 1)
     for block in blocks if of_orbits else []:
@@ -544,7 +588,7 @@ def exact_errors(
     simple: Callable[[Ball], Ball] | None = None,
     quantities: Sequence[str] = QUANTITIES,
     table: Table = SINE,
-) -> dict:
+) -> Compared:
     """Use exact orbits to compute the signed errors of a simple model, as in :func:`law_errors`.
 
     Parameters
@@ -557,8 +601,8 @@ def exact_errors(
 
     Returns
     -------
-    dict of arrays
-        Errors by the names in ``quantities``.
+    Compared
+        Arrays by the names in ``quantities``. ``unstable`` names the unstable orbits.
 
     Examples
     --------
@@ -567,7 +611,29 @@ def exact_errors(
     >>> error = exact_errors(ball, amplitude=1.0, simple=Corrected, quantities=["max_height"])
     >>> round(float(error["max_height"]), 6)
     -0.000121
+
+    Above the period doubling, unstable orbits are compared:
+
+    >>> str(exact_errors(ball, amplitude=1.6).unstable)
+    'in both models'
     """
+    errors = _exact_errors(ball, amplitude, n, simple, quantities, table)
+    shape = np.shape(next(iter(errors.values()), 0.0))
+    unstable = np.zeros(shape, int)
+    if not set(quantities) <= BIFURCATIONS:
+        unstable = _unstable(ball, amplitude, n, simple, table)
+    return Compared(errors, UNSTABLE[unstable])
+
+
+def _exact_errors(
+    ball: Ball,
+    amplitude: ArrayLike,
+    n: ArrayLike,
+    simple: Callable | None,
+    quantities: Sequence[str],
+    table: Table,
+) -> dict:
+    """Return the errors of :func:`exact_errors`, without asking whether orbits are stable."""
     if not (simple is None or callable(simple)):
         raise ValueError(f"simple = {brief(simple)}: must map a ball to a ball, such as Corrected")
     given: dict = {"amplitude": amplitude, "n": n, "quantities": quantities, "table": table}
@@ -579,6 +645,29 @@ def exact_errors(
     with np.errstate(invalid="ignore", divide="ignore"):
         scales = {name: reference[name] for name in quantities} | {"phase": 2 * np.pi}
         return {name: (exact[name] - reference[name]) / scales[name] for name in quantities}
+
+
+def _unstable(
+    ball: Ball, amplitude: ArrayLike, n: ArrayLike, simple: Callable | None, table: Table
+) -> NDArray:
+    """Indices into :data:`UNSTABLE` for the n-T orbits of a ball and of its simple model."""
+    if simple is None:
+        impact = free_impact(ball, n)
+        at = table.instant(impact.line, off_rounding(impact, amplitude, table))
+        of_simple = _leaves(impact, at[2])
+    else:
+        of_simple = _are_unstable(simple(ball), amplitude, n, table)
+    return of_simple + 2 * _are_unstable(ball, amplitude, n, table)
+
+
+def _are_unstable(ball: Ball, amplitude: ArrayLike, n: ArrayLike, table: Table) -> NDArray:
+    """Whether n-T orbits on the stable side of the saddle-node exist and are unstable."""
+    row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
+    equations = OrbitEquations(row, 1, periods, table=table)
+    z = rows_of_orbits(equations, amplitudes)
+    with np.errstate(invalid="ignore"):
+        stable = equations.stable(equations.linearized(z))
+    return (np.isfinite(z[:, 0]) & ~stable).reshape(shape)
 
 
 class ErrorThreshold(NamedTuple):
@@ -594,10 +683,14 @@ class ErrorThreshold(NamedTuple):
         - "exceeded": the error exceeds the tolerance at the largest ratio;
         - "first orbit": it is within the tolerance from the first ratio with an orbit on;
         - "no orbit": there is no orbit at the largest ratio.
+    unstable : array of str
+        Which orbit is unstable, as in :class:`Compared`: at ``ratio``, or at the largest ratio if
+        ``ratio`` is NaN.
     """
 
     ratio: NDArray
     status: NDArray
+    unstable: NDArray
 
 
 def error_thresholds(
@@ -632,8 +725,7 @@ def error_thresholds(
     Returns
     -------
     dict of ErrorThreshold
-        Thresholds by the names in ``quantities``. Above the period doubling they compare unstable
-        orbits.
+        Thresholds by the names in ``quantities``.
 
     Examples
     --------
@@ -642,18 +734,24 @@ def error_thresholds(
     >>> found = error_thresholds(ball, amplitude=1.0, quantities=["max_height", "phase"])
     >>> [f"{threshold.ratio:.3f} {threshold.status}" for threshold in found.values()]
     ['82.177 found', '18.054 found']
+
+    Above the period doubling, unstable orbits are compared:
+
+    >>> found = error_thresholds(ball, amplitude=1.6, quantities=["max_height"])["max_height"]
+    >>> round(float(found.ratio), 2), str(found.unstable)
+    (75.79, 'in both models')
     """
     if not one_number("low", low) < one_number("high", high):
         raise ValueError(f"low = {low!r}, high = {high!r}: must be positive, and low below high")
     whole_number("samples", samples, 2)
     path = ball_at_ratio(contacts, n, tolerance)
-    known: dict = {"amplitude": amplitude, "n": n, "simple": simple, "table": table}
+    given = amplitude, n, simple
     shape = rows_of(path(high), amplitude=amplitude)[2]
     grid = np.geomspace(low, high, samples)
     ratios = grid.reshape(-1, *(1 for _ in shape))
-    errors = exact_errors(path(ratios), quantities=quantities, **known)
+    errors = _exact_errors(path(ratios), *given, quantities, table)
     # The thresholds of quantities of one orbit are found together. Each bifurcation is found alone.
-    alone = [name for name in quantities if name in ("saddle_node", "period_doubling")]
+    alone = [name for name in quantities if name in BIFURCATIONS]
     together = [name for name in quantities if name not in alone]
     found: dict[str, ErrorThreshold] = {}
     for names in filter(None, [together, *([name] for name in alone)]):
@@ -663,7 +761,7 @@ def error_thresholds(
             ratio = np.full((len(logarithms), len(names), *shape), float(high))
             rows = ratio.reshape(len(logarithms), -1)
             rows[:, places] = np.exp(logarithms)
-            there = exact_errors(path(ratio), quantities=names, **known)
+            there = _exact_errors(path(ratio), *given, names, table)
             error = np.stack([there[name][:, j] for j, name in enumerate(names)], axis=1)
             # The error is nearly proportional to 1/ϖ, so its logarithm is nearly linear in ln ϖ.
             return np.log(np.abs(error.reshape(rows.shape)[:, places]) / tolerance)
@@ -688,5 +786,10 @@ def error_thresholds(
             )
             ratio[places] = np.exp(at.x)
         of_names = ratio.reshape(-1, *shape), status.reshape(-1, *shape)
-        found |= {name: ErrorThreshold(*each) for name, *each in zip(names, *of_names, strict=True)}
+        for name, ratio, status in zip(names, *of_names, strict=True):
+            unstable = np.zeros(shape, int)
+            if name not in alone:
+                there = path(np.where(np.isfinite(ratio), ratio, high))
+                unstable = _unstable(there, *given, table)
+            found[name] = ErrorThreshold(ratio, status, UNSTABLE[unstable])
     return {name: found[name] for name in quantities}

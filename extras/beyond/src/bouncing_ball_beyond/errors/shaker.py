@@ -27,8 +27,12 @@ from bouncing_ball_beyond.errors.error_law import (
     error_thresholds,
     free_impact,
     law_errors,
+    off_rounding,
+    restitution_trace,
     restitution_values,
+    rows_of_orbits,
 )
+from bouncing_ball_beyond.periodic.equations import NEUTRAL, OrbitEquations, multipliers_of
 from bouncing_ball_beyond.tables.table import SINE, Table, Values, check_table
 
 STANDARD_GRAVITY = 9.80665
@@ -84,11 +88,13 @@ class ShakerAnswer:
     saddle_node: ByModel
     """Λ above which the ball bounces."""
     period_doubling: ByModel
-    """Λ up to which the orbit is stable."""
+    """Λ at which the period of the orbit doubles."""
     max_height: ByModel
     """Maximum height of the ball, in m, above the mean position of the table."""
     longest_contact: float
     """Longest contact, in s, with a height within the tolerance, at the same frequency."""
+    multiplier: tuple[complex, complex]
+    """Floquet multiplier of the larger modulus, in the restitution model and on the contact."""
     table: Table = SINE
     """Waveform of the table."""
 
@@ -100,7 +106,12 @@ class ShakerAnswer:
     @property
     def stable(self) -> bool:
         """Whether the orbit is stable, in the restitution model and on the contact."""
-        return self.bounces and self.amplitude <= min(self.period_doubling[:2])
+        return self.bounces and all(abs(each) <= 1 + NEUTRAL for each in self.multiplier)
+
+    @property
+    def _unstable(self) -> tuple[bool, ...]:
+        """Whether the orbit is unstable, in the restitution model and on the contact."""
+        return tuple(abs(each) > 1 + NEUTRAL for each in self.multiplier)
 
     @property
     def error(self) -> float:
@@ -121,18 +132,25 @@ class ShakerAnswer:
         if not self.bounces:
             where = WHERE[tuple(value > self.amplitude for value in self.saddle_node[:2])]
             return f"Λ is below the saddle-node {where}, so there is no height to compare"
-        if not self.stable:
-            where = WHERE[tuple(value < self.amplitude for value in self.period_doubling[:2])]
-            return f"the orbit has doubled {where}, so a ball does not stay on it"
+        if any(self._unstable):
+            where = WHERE[self._unstable]
+            return f"{LOST[self._way][0]} {where}, so a ball does not stay on it"
         if not abs(self.error) <= self.tolerance:
             return "the heights of both models differ by more than the tolerance"
         return ""
+
+    @property
+    def _way(self) -> str:
+        """Way in which the orbit has lost its stability, by its multipliers."""
+        lost = [each for each in self.multiplier if abs(each) > 1 + NEUTRAL]
+        turning = any(abs(each.imag) > 0 or each.real > 0 for each in lost)
+        return "Neimark-Sacker" if turning else "period doubling"
 
     def __repr__(self) -> str:
         rows = {
             "": ("restitution", "contact", "error law"),
             "bounces from Λ": [f"{value:.4g}" for value in self.saddle_node],
-            "stable up to Λ": [f"{value:.4g}" for value in self.period_doubling],
+            "doubles at Λ": [f"{value:.4g}" for value in self.period_doubling],
             "maximum height/mm": [
                 f"{1e3 * value:.4g}".replace("nan", "–") for value in self.max_height
             ],
@@ -145,7 +163,6 @@ class ShakerAnswer:
 
     def _sentences(self) -> list[str]:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
-        doubled = sum(value < self.amplitude for value in self.period_doubling[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
         sentences = [
             f"The table moves by ±{1e3 * self.displacement:.4g} mm at {self.frequency:.4g} Hz,"
@@ -162,7 +179,8 @@ class ShakerAnswer:
             )
         elif self.bounces:
             elastic = self.stable and self.ball.signature(1.0).restitution > ELASTIC
-            sentences.append(f"This motion is {'marginally ' if elastic else ''}{STABLE[doubled]}.")
+            how = (STABLE + LOST[self._way][1:])[sum(self._unstable)]
+            sentences.append(f"This motion is {'marginally ' if elastic else ''}{how}.")
             lower = "lower" if self.error < 0 else "higher"
             beyond = "within" if abs(self.error) <= self.tolerance else "beyond"
             by_law = self.max_height.by_law / self.max_height.by_restitution - 1
@@ -180,7 +198,7 @@ class ShakerAnswer:
             sentences.append("A ball that is laid on the table stays there.")
         reason = self.reason
         verdict = "A restitution coefficient is good enough"
-        if begun == 0 or doubled == 2:
+        if begun == 0 or (self.bounces and all(self._unstable)):
             verdict = f"Whether a restitution coefficient is good enough has no answer: {reason}"
         elif reason:
             verdict = f"A restitution coefficient is not good enough: {reason}"
@@ -198,8 +216,16 @@ A key has two parts: whether the condition fails in the restitution model, and o
 """
 BOUNCES = ("does not bounce", "bounces in one of the two models only:", "bounces")
 """Text on bouncing. The index is the number of models in which the ball bounces."""
-STABLE = ("stable", "stable in one of the two models only", "unstable, its period has doubled")
-"""Text on stability. The index is the number of models in which the period has doubled."""
+STABLE = ("stable", "stable in one of the two models only")
+"""Text on stability. The index is the number of models in which the orbit is unstable."""
+LOST = {
+    "period doubling": ("the orbit has doubled", "unstable, its period has doubled"),
+    "Neimark-Sacker": (
+        "neighbouring motions turn away from the orbit",
+        "unstable, neighbouring motions turn away from it: faster impacts lose less energy",
+    ),
+}
+"""Texts on where and how the orbit has lost its stability."""
 
 
 def on_shaker(
@@ -407,11 +433,15 @@ def _answer(
             f"the saddle-node or the period doubling is not found: a contact lasts"
             f" {duration / (2 * np.pi):.2g} periods of the table; give a shorter contact"
         )
+    push = table.instant(impact.line, off_rounding(impact, amplitude, table))[2]
+    multiplier = (
+        multipliers_of(*map(float, restitution_trace(impact, push)))[0],
+        _multiplier(OrbitEquations(ball, 1, n, table=table), amplitude),
+    )
     longest = np.nan
     # Heights are only compared where both orbits exist and are stable.
-    if all(
-        values["saddle_node"] <= amplitude <= values["period_doubling"]
-        for values in (simple, exact)
+    if np.all(np.abs(multiplier) <= 1 + NEUTRAL) and all(
+        values["saddle_node"] <= amplitude for values in (simple, exact)
     ):
         low = duration / np.pi
         threshold = error_thresholds(
@@ -443,6 +473,13 @@ def _answer(
         contact_duration=duration / rate,
         tolerance=tolerance,
         longest_contact=longest,
+        multiplier=multiplier,
         table=table,
         **compared,
     )
+
+
+def _multiplier(equations: OrbitEquations, amplitude: float) -> complex:
+    """Multiplier of the larger modulus of the n-T orbit of a ball; NaN if there is no orbit."""
+    row = rows_of_orbits(equations, np.array([amplitude]))[0]
+    return equations.orbit(row).multipliers[0] if np.isfinite(row).all() else np.nan

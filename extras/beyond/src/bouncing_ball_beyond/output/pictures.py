@@ -25,6 +25,7 @@ MARKS = {
     "saddle-node": "o",
     "period doubling": "s",
     "period halving": "D",
+    "Neimark-Sacker": "P",
     "grazing of a flight": "^",
     "grazing of a release": "v",
     "grazing of an impact": "<",

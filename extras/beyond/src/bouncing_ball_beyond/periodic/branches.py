@@ -24,7 +24,7 @@ from bouncing_ball_beyond.periodic.march import (
     newton,
 )
 from bouncing_ball_beyond.periodic.search import single
-from bouncing_ball_beyond.periodic.special_orbits import crossings_of, halved_at, located
+from bouncing_ball_beyond.periodic.special_orbits import crossings_of, divided, halved_at, located
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -136,7 +136,7 @@ class FollowedBranch:
         Spaces and hyphens are equivalent. Raises OrbitNotFound if there is no such orbit.
         """
         for each in self.special:
-            if each.kind.replace("-", " ") == str(kind).replace("-", " ").lower():
+            if _plain(each.kind) == _plain(kind):
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
         raise OrbitNotFound(f"no {kind} here; special orbits: {others}")
@@ -164,6 +164,11 @@ class SpecialCurve(FollowedBranch):
     def kind(self) -> str:
         """Kind of the special orbits."""
         return self.equations.kind
+
+
+def _plain(kind: object) -> str:
+    """Kind of a special orbit in small letters, without hyphens and dashes."""
+    return str(kind).lower().replace("-", " ").replace("\N{EN DASH}", " ")
 
 
 def joined(back: Any, forth: Any) -> Any:
@@ -194,7 +199,10 @@ def followed(
     A special orbit of the kind ``own`` in the first step is the start of the branch, and is left
     out. Grazings of flights and releases take most of the time, and may be left out.
     """
-    steps = march(start, window, until, points)
+    steps = [
+        (divided(single(start.equations, i), path), end)
+        for i, (path, end) in enumerate(march(start, window, until, points))
+    ]
     row = np.repeat(np.arange(len(steps)), [len(points.z) for points, _ in steps])
     every = zip(*(points for points, _ in steps), strict=True)
     z, slopes, tests, _ = (np.concatenate(each) for each in every)
@@ -220,7 +228,8 @@ def followed(
                 passed.append((order, equations.orbit(here, kind)))
         passed.sort(key=itemgetter(0))
         orbits = path.z
-        ends = [j for j, (_, each) in enumerate(passed) if ends_at(each.kind, until[i])]
+        kinds = [each.kind for _, each in passed]
+        ends = [j for j, kind in enumerate(kinds) if ends_at(kind, until[i], equations.kind)]
         if ends:
             passed = passed[: ends[0] + 1]
             (number, *_), last = passed[-1]

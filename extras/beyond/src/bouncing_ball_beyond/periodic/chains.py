@@ -29,7 +29,7 @@ def product_of(maps: NDArray) -> NDArray:
 def dense(derivatives: NDArray) -> NDArray:
     """Jacobian, shape (rows, k, q, N), from the derivatives of legs."""
     rows, k, q, columns = derivatives.shape
-    matrix = np.zeros((rows, k, q, k * q + columns - q - 2))
+    matrix = np.zeros((rows, k, q, k * q + columns - q - 2), derivatives.dtype)
     for i in range(k):
         after = (i + 1) % k * q
         matrix[:, i, :, i * q : (i + 1) * q] += derivatives[:, i, :, :q]

@@ -1,10 +1,10 @@
 """Follow orbits along a parameter, follow cascades, and find the limits of n-T orbits."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from itertools import groupby
+from dataclasses import dataclass, replace
+from itertools import groupby, pairwise
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -26,6 +26,7 @@ from bouncing_ball_beyond.periodic.equations import (
     PeriodicOrbit,
     alone,
 )
+from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.periodic.paths import Path, path_of, usual_range
 from bouncing_ball_beyond.periodic.search import near_instants, rows_of, shortest_contacts
 from bouncing_ball_beyond.periodic.starts import STARTS, Task
@@ -55,11 +56,11 @@ def follow(
     The branch of an ordinary orbit goes through this orbit. The branch of a special orbit depends
     on the kind of this orbit:
 
-    - saddle-node: the stable branch;
+    - saddle-node: the branch on its stable side, where tr < 1 + det;
     - period doubling: orbits of twice the period;
     - period halving: orbits of half the period;
     - grazing of a flight: orbits with one more impact;
-    - grazing of a release: the branch that contains the orbit.
+    - grazing of a release, Neimark-Sacker: the branch that contains the orbit.
 
     Parameters
     ----------
@@ -271,26 +272,43 @@ def _from_special(task: Task, kind: str, points: int, grazings: bool) -> list:
     return found
 
 
-class Limits(NamedTuple):
-    """Limits between which n-T orbits are stable.
+@dataclass(frozen=True, repr=False)
+class Limits(Sequence):
+    """Special orbits at which n-T orbits begin and double their period; a sequence of these two.
 
     Attributes
     ----------
     saddle_node, period_doubling : PeriodicOrbit or OrbitNotFound
         Special orbit, or the reason why there is none.
+    stable_ranges : tuple of (low, high)
+        Ranges of Λ in which orbits of the branch are stable, in their order on the branch. With a
+        constant r on a sine there is one range, from the saddle-node to the period doubling. If
+        faster impacts lose less energy, a range may end at a Neimark-Sacker bifurcation, or there
+        may be none. A range also ends where the branch ends.
     """
 
     saddle_node: PeriodicOrbit | OrbitNotFound
     period_doubling: PeriodicOrbit | OrbitNotFound
+    stable_ranges: tuple[tuple[float, float], ...] = ()
+
+    def __getitem__(self, i: Any) -> Any:
+        return (self.saddle_node, self.period_doubling)[i]
+
+    def __len__(self) -> int:
+        return 2
 
     def __repr__(self) -> str:
-        places = (
+        places = [
             f"{each.kind} at Λ = {each.amplitude:.10g}"
             if isinstance(each, PeriodicOrbit)
             else str(each)
             for each in self
-        )
-        return "Limits: {}; {}".format(*places)
+        ]
+        known = {each.amplitude for each in self if isinstance(each, PeriodicOrbit)}
+        if known and not (len(self.stable_ranges) == 1 and known <= {*self.stable_ranges[0]}):
+            ranges = (f"from {low:.10g} to {high:.10g}" for low, high in self.stable_ranges)
+            places.append(f"stable {' and '.join(ranges) or 'nowhere on this branch'}")
+        return f"Limits: {'; '.join(places)}"
 
 
 def limits(
@@ -301,12 +319,13 @@ def limits(
     evaluations: int = EVALUATIONS,
     progress: Callable | None = None,
 ) -> Any:
-    """Find the saddle-node and the period doubling of the n-T orbits of a ball.
+    """Find the saddle-node and the period doubling of n-T orbits, and where they are stable.
 
     n-T orbits have one impact in n periods of the table. One of them, next to the phase at which
     the table rises fastest, is followed towards smaller and larger Λ. On tables that rise several
     times in a period, the branch may turn back at two other saddle-nodes before its period
-    doubling.
+    doubling; its ``stable_ranges`` may then overlap. Orbits that are not on this branch, such as
+    those next to another rise, may be stable, too: see :func:`.orbits`.
 
     Parameters
     ----------
@@ -349,18 +368,54 @@ def limits_of(equations: OrbitEquations) -> list[Limits]:
     between = _between_limits(equations)
     equations.spend(0, "the branches of these orbits")
     rows = len(between)
-    until = ["saddle-node"] * rows + ["period doubling"] * rows
+    # Where W′ has another maximum, the branch turns back, and may be stable again.
+    turns_back = equations.table.next_low_slope > 0
+    until = [None if turns_back else "saddle-node"] * rows + ["period doubling"] * rows
     to = [LOWEST] * rows + [None] * rows
     branches = _follow_all(between * 2, "amplitude", to, 500, until, False, equations.effort)
     found = []
-    for below, above in zip(branches[:rows], branches[rows:], strict=True):
+    for start, below, above in zip(between, branches[:rows], branches[rows:], strict=True):
         if isinstance(below, OrbitNotFound):
             found.append(Limits(below, below))
             continue
-        special = (*below.special[::-1], *above.special)
+        folds = [i for i, each in enumerate(below.special) if each.kind == "saddle-node"]
+        to_fold = below.special[: folds[0] + 1] if folds else below.special
+        special = (*to_fold[::-1], *above.special)
         fold = _limit(special, "saddle-node", below.end)
-        found.append(Limits(fold, _limit(special, "period doubling", above.end)))
+        doubling = _limit(special, "period doubling", above.end)
+        if below.special == (fold,) and above.special == (doubling,):
+            # The start is in between, and nothing in between changes the stability.
+            whole = below.special[0].amplitude, above.special[0].amplitude
+            found.append(Limits(fold, doubling, (whole,) if start.stable else ()))
+        else:
+            found.append(Limits(fold, doubling, _stable_ranges(joined(below, above))))
     return found
+
+
+def _stable_ranges(branch: FollowedBranch) -> tuple[tuple[float, float], ...]:
+    """Ranges of the parameter in which the orbits of a branch are stable."""
+    path = branch.with_special()
+    special = [i for i, each in enumerate(path) if each.kind in CHANGES]
+    ranges = []
+    for first, last in pairwise([0, *special, len(path) - 1]):
+        ends = np.array([path[first].z, path[last].z])
+        if np.array_equal(*ends):
+            continue
+        inner = path[first + 1 : last]
+        if inner:
+            middle = inner[len(inner) // 2]
+        else:
+            normal = np.diff(ends, axis=0) / branch.equations.scales(ends[:1]) ** 2
+            guess = ends.mean(axis=0, keepdims=True)
+            middle = branch.equations.orbit(newton(branch.equations, guess, normal).z[0])
+        if middle.stable:
+            low, high = sorted(float(each) for each in ends[:, -1])
+            ranges.append((low, high))
+    return tuple(ranges)
+
+
+CHANGES = {"saddle-node", "period doubling", "Neimark-Sacker"}
+"""Kinds of special orbits at which the stability changes."""
 
 
 def _limit(special: tuple, kind: str, end: str) -> PeriodicOrbit | OrbitNotFound:

@@ -101,7 +101,7 @@ def _start(special: Any, along: Any) -> tuple[OrbitEquations, NDArray]:
     if special.kind not in allowed:
         raise OrbitNotFound(
             f"kind = {special.kind!r}: a curve must start at a special orbit of a branch:"
-            f" {', '.join(sorted(allowed))}"
+            f" {', '.join(sorted(allowed, key=str.lower))}"
         )
     paths = tuple(path_of(each, special.ball, special.table) for each in along)
     equations, z = special.on(*paths)

@@ -35,6 +35,9 @@ CURVE = (1.0, -1.0, 2.0, -2.0), (2 / 3, -2 / 3, -1 / 12, 1 / 12), 1e-4
 has errors of 1e-12, which are small enough for tangents of curves.
 """
 
+NEUTRAL = 1e-9
+"""Modulus of 1 - det below which det counts as 1: that of an elastic ball is 1 within rounding."""
+
 LASTING = 4 * np.pi
 """T of two free oscillations. Above this T, step lengths count relative changes of T.
 
@@ -350,6 +353,7 @@ class OrbitEquations:
     kinds = (
         "saddle-node",
         "period doubling",
+        "Neimark-Sacker",
         "vanishing flight",
         "grazing of an impact",
         "lost release",
@@ -362,11 +366,14 @@ class OrbitEquations:
 
         On a curve, the test function of its kind vanishes everywhere, and is replaced by 1.
         """
-        columns = [
-            np.ones(len(z)) if name == self.kind else KINDS[name].test(self, z, linear)
+        columns = {
+            name: np.ones(len(z)) if name == self.kind else KINDS[name].test(self, z, linear)
             for name in self.kinds
-        ]
-        return np.stack(columns, axis=1)
+        }
+        # Rounding errors of an elastic ball change no sign.
+        loss = columns["Neimark-Sacker"]
+        columns["Neimark-Sacker"] = np.where(np.abs(loss) < NEUTRAL, 0.0, loss)
+        return np.stack([*columns.values()], axis=1)
 
     def turn(self, linear: LinearizedLegs) -> NDArray:
         """tr/(1 + det). It is ±1 if a multiplier is ±1, and in between if orbits are stable."""
@@ -375,9 +382,7 @@ class OrbitEquations:
 
     def stable(self, linear: LinearizedLegs) -> NDArray:
         """Whether neighbouring motions stay near the orbits, shape (rows,)."""
-        trace, determinant = linear.trace_and_determinant
-        # The determinant of an elastic ball is 1 within rounding.
-        return (np.abs(trace) < 1 + determinant) & (determinant < 1 + 1e-9)
+        return are_stable(*linear.trace_and_determinant)
 
     def ends(self, z: NDArray) -> Flights:
         """Return the flights after the contacts."""
@@ -534,6 +539,19 @@ class OrbitEquations:
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
         clear = (self.clearance(z, ends) > 0) & (self.contact_clearance(z) > 0)
         return clear & leaving & (landing & lasting).all(axis=-1)
+
+
+def are_stable(trace: NDArray, determinant: NDArray) -> NDArray:
+    """Whether both multipliers are in the unit circle, or on it if impacts lose nothing."""
+    return (np.abs(trace) < 1 + determinant) & (determinant < 1 + NEUTRAL)
+
+
+def multipliers_of(trace: float, determinant: float) -> NDArray:
+    """Complex Floquet multipliers, shape (2,), in order of decreasing modulus."""
+    root = np.sqrt(complex(trace**2 / 4 - determinant))
+    larger = trace / 2 - root if trace < 0 else trace / 2 + root
+    with np.errstate(invalid="ignore"):
+        return np.array([larger, determinant / larger])
 
 
 def _derivative(function: Callable, t: NDArray) -> NDArray:
@@ -831,10 +849,7 @@ class PeriodicOrbit:
     @property
     def multipliers(self) -> NDArray:
         """Complex Floquet multipliers, shape (2,), in order of decreasing modulus."""
-        trace, determinant = self.trace_and_determinant
-        root = np.sqrt(complex(trace**2 / 4 - determinant))
-        larger = trace / 2 - root if trace < 0 else trace / 2 + root
-        return np.array([larger, determinant / larger])
+        return multipliers_of(*self.trace_and_determinant)
 
     @property
     def turn(self) -> float:
@@ -886,6 +901,7 @@ class Kind(NamedTuple):
 KINDS = {
     "saddle-node": Kind(lambda equations, z, linear: 1 - equations.turn(linear)),
     "period doubling": Kind(lambda equations, z, linear: 1 + equations.turn(linear)),
+    "Neimark-Sacker": Kind(lambda equations, z, linear: 1 - linear.trace_and_determinant[1]),
     "grazing of a flight": Kind(lambda equations, z, linear: equations.clearance(z)),
     "grazing of a release": Kind(lambda equations, z, linear: equations.contact_clearance(z)),
     "vanishing flight": Kind(
@@ -908,7 +924,7 @@ KINDS = {
 """Kinds of special orbits of a branch, by name."""
 
 
-SINGULAR = slice(2, 5)
+SINGULAR = slice(3, 6)
 """Part of `OrbitEquations.kinds`: the kinds at which multipliers jump or have poles.
 
 There are no orbits beyond special orbits of these kinds.

@@ -66,23 +66,20 @@ class Curvature(NamedTuple):
     second: NDArray
 
 
-def closed(derivatives: NDArray, multiplier: float) -> NDArray:
+def closed(derivatives: NDArray, multiplier: complex) -> NDArray:
     """Matrix, shape (kq, kq), of a chain of legs whose end is ``multiplier`` times its start."""
     q = derivatives.shape[-2]
-    turned = derivatives.copy()
-    turned[-1, :, q : q + 2] *= multiplier
-    return dense(turned[np.newaxis, ..., : q + 2])[0].reshape(-1, derivatives.shape[0] * q)
+    turned = derivatives[..., : q + 2] * np.ones_like(multiplier)
+    turned[-1, :, q:] *= multiplier
+    return dense(turned[np.newaxis])[0].reshape(-1, derivatives.shape[0] * q)
 
 
 def curvature(
-    equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: int, step: float
+    equations: OrbitEquations, z: NDArray, v: NDArray, after: NDArray, step: float
 ) -> Curvature:
-    """Differentiate the legs along a vector v that one period of the orbit multiplies by ±1.
-
-    The differences use two periods, because two periods map v to v in both cases.
-    """
+    """Differentiate the legs of one period along v, which is ``after`` one period later."""
     twice, row = equations.doubled(z[np.newaxis])
-    direction = np.concatenate([v, multiplier * v, np.zeros(len(z) - len(v))])
+    direction = np.concatenate([v, after, np.zeros(len(z) - len(v))])
     rows = row + np.multiply.outer(step * NODES, direction)
     derivatives = twice.linearized(rows).derivatives[:, : equations.impacts]
     first = np.tensordot(FIRST, derivatives, axes=1) / step
@@ -90,46 +87,73 @@ def curvature(
     return Curvature(derivatives[len(NODES) // 2], first, second)
 
 
-def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: int) -> float:
-    """Coefficient a for the multiplier 1, or b for -1. It depends on the scales of v and w."""
+def _bent(
+    equations: OrbitEquations, z: NDArray, v: NDArray, multiplier: complex, step: float
+) -> Curvature:
+    """Differentiate the legs along a vector that one period of the orbit multiplies.
+
+    Complex steps already give the derivatives of the legs, so for a complex v the derivatives along
+    real vectors are combined: B(v, ·) is linear in v, and C(v, v, ·) is quadratic.
+    """
+    after = multiplier * v
+    if np.isrealobj(after):
+        return curvature(equations, z, v, after, step)
+    start, end = (np.array([x.real, x.imag, x.real + x.imag, x.real - x.imag]) for x in (v, after))
+    real, imaginary, plus, minus = (
+        curvature(equations, z, *way, step) for way in zip(start, end, strict=True)
+    )
+    second = real.second - imaginary.second + 0.5j * (plus.second - minus.second)
+    return Curvature(real.derivatives, real.first + 1j * imaginary.first, second)
+
+
+def coefficient(bent: Curvature, v: NDArray, w: NDArray, multiplier: complex) -> float:
+    """Coefficient a or b of docs/equations.md. It depends on the scales of v and w."""
     bend = closed(bent.first, multiplier) @ v
     if multiplier == 1:
         return float(w @ bend / 2)
-    h = np.linalg.solve(closed(bent.derivatives, 1), -bend / 2)
-    return float(w @ (closed(bent.first, 1) @ h + closed(bent.second, multiplier) @ v / 6))
+    if multiplier == -1:
+        h = np.linalg.solve(closed(bent.derivatives, 1), -bend / 2)
+        return float(w @ (closed(bent.first, 1) @ h + closed(bent.second, multiplier) @ v / 6))
+    back, square = np.conj(multiplier), multiplier**2
+    h = np.linalg.solve(closed(bent.derivatives, 1), -closed(bent.first, back) @ v.conj())
+    g = np.linalg.solve(closed(bent.derivatives, square), -bend)
+    cubic = closed(bent.first, 1) @ h + closed(bent.first.conj(), square) @ g / 2
+    cubic += closed(bent.second, back) @ v.conj() / 2
+    return float((back * (w @ cubic)).real)
 
 
-def _vectors(derivatives: NDArray, multiplier: int) -> tuple[NDArray, NDArray]:
+def _vectors(derivatives: NDArray, multiplier: complex) -> tuple[NDArray, NDArray]:
     """Vectors v and w of docs/equations.md. Their scales follow from |v_0| = 1 and p v_0 = 1."""
     q = derivatives.shape[-2]
     left, _, right = np.linalg.svd(closed(derivatives, multiplier))
-    v = right[-1]
-    w = left[:, -1]
+    v = right[-1].conj()
+    w = left[:, -1].conj()
     # The sign of v is chosen so that τ or δ′ = -u grows, whichever changes more.
     start = v[:2] * [1.0, -1.0]
-    v = v * np.sign(start[np.abs(start).argmax()]) / np.linalg.norm(start)
+    largest = start[np.abs(start).argmax()]
+    v = v * (abs(largest) / largest) / np.linalg.norm(start)
     return v, w / -(w[-q:] @ derivatives[-1, :, q : q + 2] @ v[:2])
 
 
 @dataclass(frozen=True)
 class NormalForm:
-    """Normal form of a saddle-node or a period doubling, the result of `normal_form`.
+    """Normal form of a special orbit, the result of `normal_form`.
 
     Attributes
     ----------
     kind : str
-        "saddle-node" or "period doubling".
+        "saddle-node", "period doubling" or "Neimark-Sacker".
     coefficient : float
-        a at a saddle-node, b at a period doubling.
+        a at a saddle-node or a Neimark-Sacker bifurcation, b at a period doubling.
     error : float
         Estimated error of the coefficient.
     rate : float
         Rate of the parameter in the map.
     along : str
         Name of the parameter.
-    direction : tuple of two floats
-        Unit vector of ξ in (τ, δ′) of the first impact.
-    other : float
+    direction : tuple of two numbers
+        Unit vector of ξ in (τ, δ′) of the first impact. It is complex for a pair.
+    other : float or complex
         The other multiplier.
     """
 
@@ -138,34 +162,57 @@ class NormalForm:
     error: float
     rate: float
     along: str
-    direction: tuple[float, float]
-    other: float
+    direction: tuple[complex, complex]
+    other: complex
 
     @property
     def supercritical(self) -> bool:
-        """Whether a period doubling has b > 0.
+        """Whether a period doubling has b > 0, or a Neimark-Sacker bifurcation a < 0.
 
-        The doubled orbits then exist where the orbit is unstable. They are stable if the other
-        multiplier is inside the unit circle. Raises ValueError for a saddle-node.
+        The doubled orbits, or the closed curve, then exist where the orbit is unstable. The closed
+        curve is then stable, and doubled orbits are stable if the other multiplier is inside the
+        unit circle. Raises ValueError for a saddle-node.
         """
-        if self.kind != "period doubling":
+        if self.kind == "saddle-node":
             raise ValueError("a saddle-node is neither supercritical nor subcritical")
-        return self.coefficient > 0
+        return (self.coefficient > 0) == (self.kind == "period doubling")
 
     @property
     def opens_upwards(self) -> bool:
         """Whether the new orbits exist at larger values of the parameter.
 
-        These are the doubled orbits of a period doubling, or both orbits of a saddle-node.
+        These are the doubled orbits of a period doubling, the closed curve of a Neimark-Sacker
+        bifurcation, or both orbits of a saddle-node.
         """
-        return -MULTIPLIERS[self.kind] * self.rate * self.coefficient > 0
+        return -MULTIPLIERS.get(self.kind, 1) * self.rate * self.coefficient > 0
+
+
+RESONANT = 1e-3
+"""Smallest |μ^k - 1|, for k from 1 to 4, of a Neimark-Sacker bifurcation with a normal form.
+
+At a strong resonance, the cubic terms that turn with the motion count, too; at the first three,
+`coefficient` is infinite.
+"""
+
+
+def _off_resonance(orbit: PeriodicOrbit) -> complex:
+    """Multiplier of a Neimark-Sacker bifurcation. Raises ValueError at a strong resonance."""
+    multiplier = np.exp(1j * np.arccos(np.clip(orbit.trace_and_determinant[0] / 2, -1, 1)))
+    distances = np.abs(multiplier ** np.arange(1, 5) - 1)
+    if distances.min() < RESONANT:
+        raise ValueError(
+            f"the bifurcation is at the strong resonance 1:{distances.argmin() + 1}, which has"
+            " another normal form"
+        )
+    return multiplier
 
 
 def normal_form(orbit: PeriodicOrbit) -> NormalForm:
-    """Compute the normal form of a saddle-node or a period doubling.
+    """Compute the normal form of a saddle-node, a period doubling or a Neimark-Sacker bifurcation.
 
     On the centre manifold the return map is ξ → ξ + rate dλ + aξ² at a saddle-node, and
-    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling.
+    ξ → -(1 + rate dλ) ξ + bξ³ at a period doubling. At a Neimark-Sacker bifurcation ξ is complex,
+    and |ξ| → (1 + rate dλ) |ξ| + a|ξ|³: motions near the orbit have the deviation 2 Re(ξv) from it.
 
     Parameters
     ----------
@@ -179,7 +226,8 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     Raises
     ------
     ValueError
-        If the orbit is of another kind.
+        If the orbit is of another kind, or if a pair of multipliers is a strong resonance: its
+        first, second, third or fourth power is 1.
 
     Examples
     --------
@@ -190,35 +238,36 @@ def normal_form(orbit: PeriodicOrbit) -> NormalForm:
     (True, True, 1.54243)
     """
     check_orbit(orbit)
-    if orbit.kind not in MULTIPLIERS:
+    if orbit.kind not in (*MULTIPLIERS, "Neimark-Sacker"):
         raise ValueError(
-            f"kind = {orbit.kind!r}: a normal form needs a saddle-node or a period doubling,"
-            ' such as branch.first("period doubling")'
+            f"kind = {orbit.kind!r}: a normal form needs a saddle-node, a period doubling or a"
+            ' Neimark-Sacker bifurcation, such as branch.first("period doubling")'
         )
+    multiplier = MULTIPLIERS.get(orbit.kind) or _off_resonance(orbit)
     equations = orbit.equations
     z = orbit.z
-    multiplier = MULTIPLIERS[orbit.kind]
     q = equations.unknowns
     derivatives = equations.linearized(z[np.newaxis]).derivatives[0]
     v, w = _vectors(derivatives, multiplier)
     # The longest step of the central differences along v.
     slowest = np.abs(z[1 : equations.size : q]).min()
     step = SHARE * min(1.0, slowest) / np.abs(v).max()
-    coarse, fine = (curvature(equations, z, v, multiplier, h) for h in (step, step / 2))
-    value = coefficient(fine, v, w, multiplier)
     by_parameter = derivatives[..., q + 2].ravel()
+    coarse, fine = (_bent(equations, z, v, multiplier, h) for h in (step, step / 2))
+    value = coefficient(fine, v, w, multiplier)
     if multiplier == 1:
         rate = w @ by_parameter
     else:
         moved = np.linalg.solve(closed(derivatives, 1), -by_parameter)
-        rate = -w @ (closed(fine.first, 1) @ moved + fine.first[..., q + 2].ravel())
+        turned = w @ (closed(fine.first, 1) @ moved + fine.first[..., q + 2].ravel())
+        rate = (np.conj(multiplier) * turned).real
     return NormalForm(
         kind=orbit.kind,
         coefficient=value,
         error=abs(value - coefficient(coarse, v, w, multiplier)),
         rate=float(rate),
         along=equations.along[0].name,
-        direction=(float(v[0]), -float(v[1])),
+        direction=tuple((v[:2] * [1, -1]).tolist()),
         other=orbit.trace_and_determinant[1] / multiplier,
     )
 

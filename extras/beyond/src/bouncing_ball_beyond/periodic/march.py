@@ -13,7 +13,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.periodic.equations import KINDS, SINGULAR, LinearizedLegs, OrbitEquations
+from bouncing_ball_beyond.periodic.equations import (
+    KINDS,
+    MULTIPLIERS,
+    SINGULAR,
+    LinearizedLegs,
+    OrbitEquations,
+)
 
 RESIDUAL_ROUNDING = 8 * np.finfo(float).eps
 """Size of the rounding errors of the equations, relative to their largest terms."""
@@ -302,7 +308,7 @@ def points_at(
     return Points(z, tangents, equations.tests(z, linear), equations.halves(z))
 
 
-def _same_sign(before: Points, after: Points) -> Points:
+def same_sign(before: Points, after: Points) -> Points:
     """Return ``after`` with a signed test for period halving.
 
     The last test is the norm of ``halves``, which is never negative. A step across a period halving
@@ -389,7 +395,7 @@ def march(
         solution.z[last, bound[last]] = guess[last, bound[last]]
         with np.errstate(all="ignore"):
             there = points_at(equations, solution.z, solution.tangent, solution.linear)
-            there = _same_sign(here, there)
+            there = same_sign(here, there)
             crossed = here.tests * there.tests < 0
             ending = crossed[:, SINGULAR].any(axis=1)
             inner = there
@@ -426,7 +432,7 @@ def march(
             paths[rows[j]].append(here.take([j]))
             kind = until[rows[j]]
             passed = np.array(equations.kinds)[crossed[j]]
-            ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind)
+            ends[rows[j]] = _end_of_step(passed, last[j], back[j], kind, equations.kind)
             if stalled[j] and not ends[rows[j]]:
                 nearest = np.abs(here.tests[j, SINGULAR]).argmin()
                 ends[rows[j]] = equations.kinds[SINGULAR][nearest]
@@ -459,7 +465,7 @@ def _before_end(equations: OrbitEquations, here: Points, there: Points, normal: 
     solution = newton(equations, here.z + share * (there.z - here.z), normal)
     inner = points_at(equations, solution.z, solution.tangent, solution.linear)
     inner.tests[~solution.found] = np.nan
-    return _same_sign(here, inner)
+    return same_sign(here, inner)
 
 
 def _cosine(points: Points, others: Points, units: NDArray) -> NDArray:
@@ -467,22 +473,27 @@ def _cosine(points: Points, others: Points, units: NDArray) -> NDArray:
     return np.sum(unit(points.tangents / units) * unit(others.tangents / units), axis=1)
 
 
-def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None) -> str:
+def _end_of_step(passed: NDArray, last: bool, back: bool, until: str | None, curve: str) -> str:
     """Reason why a branch ends with this step, or "" if it continues.
 
     ``passed`` are the kinds of special orbits that the step crossed.
     """
     for name in passed:
-        if ends_at(name, until):
+        if ends_at(name, until, curve):
             return str(name)
     if last:
         return AT_GOAL
     return CLOSED if back else ""
 
 
-def ends_at(kind: str, until: str | None) -> bool:
-    """Whether a branch ends at special orbits of this kind."""
-    return kind == until or (kind in KINDS and KINDS[kind].end != "")
+def ends_at(kind: str, until: str | None, curve: str = "") -> bool:
+    """Whether a branch, or a curve of special orbits, ends at special orbits of this kind.
+
+    A curve of Neimark-Sacker bifurcations ends where the multipliers become real: the orbits beyond
+    are neutral saddles.
+    """
+    is_real = curve == "Neimark-Sacker" and kind in MULTIPLIERS
+    return is_real or kind == until or (kind in KINDS and KINDS[kind].end != "")
 
 
 def _path_of(path: list[Points], end: str, equations: OrbitEquations, units: NDArray) -> Points:

@@ -6,8 +6,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from bouncing_ball_beyond.periodic.equations import KINDS, SINGULAR, OrbitEquations
-from bouncing_ball_beyond.periodic.march import Solution, ends_at, newton
+from bouncing_ball_beyond.periodic.equations import KINDS, MULTIPLIERS, SINGULAR, OrbitEquations
+from bouncing_ball_beyond.periodic.march import (
+    Points,
+    Solution,
+    ends_at,
+    newton,
+    points_at,
+    same_sign,
+)
 
 
 class Crossings(NamedTuple):
@@ -57,11 +64,46 @@ def crossings_of(
     crossed = (values[:, :-1] * values[:, 1:] < 0) & (row[1:] == row[:-1])
     # At a pole or a jump of tr/(1 + det), the tests change sign although no multiplier is ±1.
     pole = np.abs(np.diff(np.arctan(values[1] - 1))) > np.pi / 2
-    crossed[:2] &= ~(pole | crossed[SINGULAR].any(axis=0))
+    crossed[:2] &= ~pole
+    crossed[:3] &= ~crossed[SINGULAR].any(axis=0)
     which, at = np.nonzero(crossed)
     both = np.stack([at, at + 1])
     kinds = np.array(names)[which]
     return Crossings(row[at], number[at], kinds, z[both], slopes[both], values[which, both])
+
+
+BETWEEN = 9
+"""Number of orbits in a step among which `divided` looks for one between two bifurcations."""
+
+
+@np.errstate(all="ignore")
+def divided(equations: OrbitEquations, path: Points) -> Points:
+    """Insert orbits of one branch between two Neimark-Sacker bifurcations in one step.
+
+    They are looked for where det turns back and is nearer to 1 than it changed in a step.
+    """
+    pair = equations.kinds.index("Neimark-Sacker")
+    values = path.tests[:, pair]
+    size = np.abs(values)
+    turns = (values[1:-1] * values[:-2] > 0) & (values[1:-1] * values[2:] > 0)
+    turns &= (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])
+    turns &= 2 * size[1:-1] < np.maximum(size[:-2], size[2:])
+    for i in np.flatnonzero(turns)[::-1] + 1:
+        units = equations.scales(path.z[[i]])
+        chords = np.diff(path.z[i - 1 : i + 2], axis=0)
+        share = np.tile(np.linspace(0, 1, BETWEEN), 2)[:, np.newaxis]
+        step = np.repeat([0, 1], BETWEEN)
+        normal = (chords / units**2)[step]
+        solution = newton(equations, path.z[i - 1 + step] + share * chords[step], normal)
+        there = points_at(equations, solution.z, solution.tangent, solution.linear)
+        opposite = np.where(solution.found, there.tests[:, pair] * np.sign(values[i]), 0.0)
+        best = int(opposite.argmin())
+        if opposite[best] < 0:
+            at = i + step[best]
+            inner = same_sign(path.take([at - 1]), there.take([best]))
+            parts = zip(path, inner, strict=True)
+            path = Points(*(np.insert(old, at, new[0], axis=0) for old, new in parts))
+    return path
 
 
 def _cubic(part: NDArray, ends: NDArray, slopes: NDArray) -> NDArray:
@@ -146,7 +188,14 @@ def located(equations: OrbitEquations, crossings: Crossings) -> tuple[NDArray, N
     # Use the iterate with the smallest test function, because rounding errors may move later
     # iterates away: at the ends of curves the equations are singular.
     largest = np.abs(crossings.values).max(axis=0)
-    return nearest, found & (least < 1e-6 * np.maximum(largest, 0.1))
+    found &= least < 1e-6 * np.maximum(largest, 0.1)
+    # A saddle with the real multipliers μ and 1/μ is neutral, and no bifurcation. On a curve of
+    # saddle-nodes or period doublings, the multipliers are equal: a resonance.
+    pair = crossings.kind == "Neimark-Sacker"
+    if pair.any() and equations.kind not in MULTIPLIERS:
+        there = equations.rows(pair)
+        found[pair] &= np.abs(there.turn(there.linearized(nearest[pair]))) < 1
+    return nearest, found
 
 
 def halved_at(equations: OrbitEquations, ends: NDArray) -> NDArray | None:

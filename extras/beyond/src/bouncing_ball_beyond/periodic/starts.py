@@ -105,10 +105,10 @@ def _ordinary_start(task: Task) -> Start:
 
 
 def _fold_start(task: Task) -> Start:
-    """Start the stable branch at a saddle-node.
+    """Start the branch on the stable side of a saddle-node, where tr < 1 + det.
 
-    If both directions are followed, the second branch is unstable. The parameter of both branches
-    is on the same side of the saddle-node.
+    If both directions are followed, the second branch is on the unstable side. The parameter of
+    both branches is on the same side of the saddle-node.
     """
     direction = tangents(task.equations, task.z)
     near = _beside(task.equations, task.z, direction, 1e-3)
@@ -214,6 +214,7 @@ def _doubled_start(task: Task) -> Start:
 STARTS = {
     "": _ordinary_start,
     "grazing of a release": _ordinary_start,
+    "Neimark-Sacker": _ordinary_start,
     "saddle-node": _fold_start,
     "period doubling": _doubled_start,
     "period halving": _halved_start,

@@ -1,0 +1,111 @@
+"""Pairs of multipliers that leave the unit circle, where faster impacts lose less energy."""
+
+import numpy as np
+import pytest
+
+import bouncing_ball_beyond as bb
+
+
+def force(p, v, k, c, w):
+    return k * p + c * v / (1 + (v / w) ** 4)
+
+
+LAW = bb.ForceLaw(force, {"k": 400.0, "c": 6.0, "w": 3.2})
+GIVEN = {"frequency": 50.0, "acceleration": 7.5, "mass": 0.02, "stiffness": 1e8}
+RISING = [(0.10, 0.5), (0.11, 0.64), (0.12, 0.75), (0.14, 0.883), (0.2, 0.985)]
+
+
+@pytest.fixture(scope="module")
+def torus():
+    branch = bb.follow(bb.orbit(LAW, amplitude=0.7), along="w", to=1.5)
+    assert np.diff(branch.stable.astype(int)).tolist().count(-1) == 1
+    (special,) = branch.special
+    return special
+
+
+def test_a_pair_passes_the_unit_circle(torus):
+    assert torus.kind == "Neimark-Sacker"
+    assert np.abs(torus.multipliers) == pytest.approx(1, abs=1e-13)
+    assert torus.multipliers[0].imag != 0
+    for side, stable in ((-0.01, False), (0.01, True)):
+        assert bb.follow(torus, to=torus.z[-1] + side).orbits[-1].stable == stable
+
+
+def test_a_curve_ends_where_the_multipliers_are_real(torus):
+    ranges = {"amplitude": (0.1, 2.0), "w": (0.5, 6.0)}
+    curve = bb.special_curve(torus, along=("amplitude", "w"), ranges=ranges)
+    assert curve.start.startswith("saddle-node") and curve.end.startswith("period doubling")
+    for each in curve.orbits[1:-1]:
+        assert np.abs(each.multipliers) == pytest.approx(1, abs=1e-12)
+    for each, resonance in ((curve.orbits[0], "1:1"), (curve.orbits[-1], "1:2")):
+        with pytest.raises(ValueError, match=f"strong resonance {resonance}, which has"):
+            bb.normal_form(each)
+
+
+def test_the_normal_form(torus):
+    form = bb.normal_form(torus)
+    assert form.supercritical and not form.opens_upwards
+    # By a polynomial of degree 6 through an integration of the return map.
+    assert form.coefficient == pytest.approx(-0.0173659, rel=1e-5)
+    step = 1e-4
+    sizes = [
+        abs(bb.follow(torus, to=torus.z[-1] + side).orbits[-1].multipliers[0])
+        for side in (-step, step)
+    ]
+    assert form.rate == pytest.approx((sizes[1] - sizes[0]) / (2 * step), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("w", "stable"), [(3.2, [(0.48791, 1.10858)]), (2.37, [(0.30449, 0.48361)]), (2.0, [])]
+)
+def test_ranges_of_stable_orbits(w, stable):
+    found = bb.limits(LAW.at(w=w))
+    assert np.array(found.stable_ranges) == pytest.approx(np.array(stable), abs=1e-5)
+    assert ("stable" in repr(found)) == (w != 3.2)
+
+
+def test_a_shaker_asks_the_multipliers():
+    answer = bb.on_shaker(**GIVEN, restitution=RISING, release="displacement")
+    assert not answer.stable and not answer.is_good_enough
+    assert np.abs(answer.multiplier) == pytest.approx((1.1730, 1.1728), abs=1e-4)
+    assert "neighbouring motions turn away from the orbit in both models" in str(answer)
+    assert abs(bb.on_shaker(**GIVEN, restitution=0.85).multiplier[0]) == pytest.approx(0.85)
+
+
+def test_an_elastic_ball_passes_nothing():
+    elastic = bb.limits(bb.Rigid(1.0), n=3)
+    assert elastic.stable_ranges == ((1e-6, elastic.period_doubling.amplitude),)
+    for each in bb.orbits(bb.SpringDamper(10.0, 1.0), impacts=2, periods=2, amplitude=1.6):
+        kinds = {special.kind for special in bb.follow(each, to=0.6).special}
+        assert "Neimark-Sacker" not in kinds
+
+
+def test_two_points_in_one_step_are_found():
+    """Along w, the determinant rises above 1 and falls again between two orbits of the branch."""
+    law = bb.ForceLaw(
+        lambda p, v, k, c, w, d: force(p, v, k, c, w) + d * v,
+        {"k": 400.0, "c": 6.0, "w": 3.2, "d": 0.33},
+    )
+    for w in (2.6, 3.2, 4.4):
+        branch = bb.follow(bb.orbit(law.at(w=w), amplitude=0.9), along="w", to=1.0)
+        places = [each.z[-1] for each in branch.special]
+        assert places == pytest.approx([1.88080, 1.72288], abs=1e-5)
+
+
+def test_thresholds_and_errors_say_where_the_orbit_is_unstable():
+    ball = bb.SpringDamper(1.0, restitution=0.65)
+    known = {"amplitude": [1.0, 1.2385, 1.6], "quantities": ["max_height", "saddle_node"]}
+    found = bb.error_thresholds(ball, **known)
+    height = found["max_height"]
+    assert height.unstable.tolist() == ["", "on the contact", "in both models"]
+    assert (found["saddle_node"].unstable == "").all()
+    for amplitude, ratio, text in zip(
+        known["amplitude"], height.ratio, height.unstable, strict=True
+    ):
+        one = bb.orbit(ball.at(frequency_ratio=float(ratio)), amplitude=amplitude)
+        assert one.stable == (text == "")
+    corrected = bb.error_thresholds(ball, simple=bb.Corrected, **known | {"amplitude": 1.6})
+    assert corrected["max_height"].unstable == "in both models"
+    law = LAW.at(w=2.0)
+    assert bb.exact_errors(law, amplitude=0.7).unstable == "in both models"
+    assert bb.law_errors(law, amplitude=0.7).unstable == "in the simple model"

@@ -448,7 +448,7 @@ def test_an_orbit_of_the_validity_map_without_an_answer_leaves_the_share_unknown
 def test_each_point_of_the_regimes_lies_in_the_region_of_its_answer():
     data = reference("regimes")
     line, axes = of_reference("regimes").axes
-    names = ("within 1 %", "off by more", "contact: period doubled", "only on the contact")
+    names = ("within 1 %", "off by more", "period doubled", "in this model only")
     regions = [
         each.get_paths()[0]
         for name in names

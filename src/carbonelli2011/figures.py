@@ -663,6 +663,8 @@ def regimes(data: xr.Dataset) -> Figure:
         line.text((start + end) / 2, height, words, ha="center", va="center")
     for kind, end in (("saddle-node", first), ("period doubling", last)):
         line.plot(end, 1, color="black", label=kind, **mark_look(kind))
+    line.text(0, 1, "restitution model", va="center")
+    axes.text(0.03, 0.95, "spring-damper model", transform=axes.transAxes, va="top")
     line.set_title(f"maximum height in flight, {title(data, 'n', 'restitution')}")
     axes.set_xlim(0, 1.1 * max(last, rest))
     line.axis("off")
@@ -673,10 +675,10 @@ def regimes(data: xr.Dataset) -> Figure:
     wrong: Look = {"facecolor": CONTACT, "linewidth": 0, "label": f"off by more than {percent}"}
     axes.fill_between(data.amplitude, ratio.min(), enough, **wrong)
     doubling = data.period_doubling_amplitude.clip(first, last)
-    axes.fill_betweenx(ratio, doubling, last, label="contact: period doubled", **DOUBLED)
-    alone: Look = {"facecolor": "0.75", "linewidth": 0, "label": "orbit only on the contact"}
+    axes.fill_betweenx(ratio, doubling, last, label="period doubled", **DOUBLED)
+    alone: Look = {"facecolor": "0.75", "linewidth": 0, "label": "orbit in this model only"}
     axes.fill_betweenx(ratio, data.saddle_node_amplitude.clip(max=first), first, **alone)
-    axes.plot(data.threshold_amplitude, ratio, color="black", label="contact: limit of rest")
+    axes.plot(data.threshold_amplitude, ratio, color="black", label="limit of rest")
     axes.axhline(
         given["advised"],
         label=rf"$\varpi={latex_number(given['advised'])}$",

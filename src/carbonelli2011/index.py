@@ -148,9 +148,9 @@ def shifts(validity_map: xr.Dataset) -> list[list[str]]:
     """
     advised = texts.short(parameters(validity_map)["advised"])
     families = [f"n = {n}" for n in validity_map.n.values]
-    rows = [[f"the contact of ϖ = {advised}", "where", f"share: {families[0]}", *families[1:]]]
+    rows = [[f"spring-damper, ϖ = {advised}", "where", f"share: {families[0]}", *families[1:]]]
     ends = {
-        "below": ("has stable orbits, the simple model none", "below the saddle-node"),
+        "below": ("has stable orbits, the restitution model none", "below the saddle-node"),
         "doubled": ("has already doubled its period", "next to the period doubling"),
     }
     for name, (found, side) in ends.items():

@@ -63,7 +63,7 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     node, doubling = (bifurcations(n_all[ends, 0], kind, contact)[0] for kind in SPECIAL[:2])
     width = last[ends] - first[ends]
     doubled = ((last[ends] - doubling) / width).reshape(shape[:2])
-    # The period doubling of a compliant contact may be at a larger Λ than that of the simple model.
+    # The period doubling of a compliant contact may be at a larger Λ than in the other model.
     end_place = np.clip(1 - doubled, 0, 1)
     inside = (place > 0) & (place < end_place[..., np.newaxis])
     doubled_mean = [mean_share(r, each) for each in doubled]

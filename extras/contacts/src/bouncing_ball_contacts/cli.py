@@ -141,7 +141,7 @@ def _assigned(pairs: tuple[str, ...]) -> dict[str, str]:
             [
                 (
                     not (equals and name),
-                    f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or kn=1e5",
+                    f"{text!r} is not NAME=VALUE, such as solref='0.02 1' or 'Zeit=t (s)'",
                 ),
                 (name in found, f"{name} is given twice"),
             ]
@@ -231,6 +231,11 @@ def _hear(path: Path, begin: str | None, end: str | None) -> tuple[Any, list[Pat
             ["--leave-out"], type=int, multiple=True, help="A line of the file; may be repeated."
         ),
         click.Option(["--ball"], help="One of several in the file."),
+        click.Option(
+            ["--columns"],
+            multiple=True,
+            help="What a column is, by its name or number, as 'Zeit=t (s)'; may be repeated.",
+        ),
         click.Option(["--from", "begin"], help="Begin of the fall in a sound, such as '1.4 s'."),
         click.Option(["--to", "end"], help="End of the fall in a sound."),
         click.Option(["--engine"], help="For which the contact is written."),
@@ -244,6 +249,7 @@ def fit_command(
     recording: tuple[str, ...],
     leave_out: tuple[int, ...],
     ball: str | None,
+    columns: tuple[str, ...],
     begin: str | None,
     end: str | None,
     engine: str | None,
@@ -273,7 +279,8 @@ def fit_command(
         of_fit["resolution"] = of_fit["resolution"] or f"{heard.resolution:.2g} s"
     elif (begin, end) != (None, None):
         raise Refused("--from and --to are of a sound in a file, such as drop.wav")
-    balls = read("/dev/stdin" if source == "-" else source, leave_out, ball, of_fit["resolution"])
+    path = "/dev/stdin" if source == "-" else source
+    balls = read(path, leave_out, ball, of_fit["resolution"], _assigned(columns))
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     if engine is None:
         if time_step is not None:

@@ -158,11 +158,12 @@ def _recording_of(
     leave_out: tuple[int, ...],
     ball: str | None,
     resolution: Quantity,
+    columns: Mapping[str, str] | None,
 ) -> Recording:
     """Return the recording of one ball."""
     if isinstance(source, Recording):
         return source
-    balls = read(source, leave_out, ball, resolution)
+    balls = read(source, leave_out, ball, resolution, columns)
     if len(balls) > 1:
         raise Refused(f"the recording has {', '.join(balls)}: name one, --ball")
     return next(iter(balls.values()))
@@ -306,6 +307,7 @@ def fit(
     contact_time: Quantity = None,
     leave_out: tuple[int, ...] = (),
     ball: str | None = None,
+    columns: Mapping[str, str] | None = None,
 ) -> Fit:
     """Return r of a recording at a speed with its 95 % interval.
 
@@ -327,6 +329,8 @@ def fit(
         Lines of the file.
     ball : str, optional
         The name of one, if the file has a column of several.
+    columns : mapping, optional
+        Headings by the names or the numbers of the columns in the file, as of `read`.
 
     Raises
     ------
@@ -334,14 +338,14 @@ def fit(
         If the recording cannot be read or has several balls, no impact lies between two
         flights, or r is above 1.
     """
-    recording = _recording_of(source, leave_out, ball, resolution)
+    recording = _recording_of(source, leave_out, ball, resolution, columns)
 
     def given(name: str, value: Quantity, unit: str) -> float | None:
         said = recording.head.get(name) if value is None else value
         return None if said is None else positive(name, said, unit)
 
     unit = KINDS[recording.kind][0]
-    known = given("resolution", resolution, unit)
+    stated = given("resolution", resolution, unit)
     kilograms = given("mass", mass, "kg")
     metres = given("diameter", diameter, "m")
     drag = drag_of(kilograms, metres) if kilograms and metres else 0.0
@@ -359,7 +363,7 @@ def fit(
         recording = without_contacts(recording, lasts)
     impacts = impacts_of(recording, drag)
     v = impacts.speed
-    known = errors_shown(recording, impacts, drag) if known is None else known
+    known = errors_shown(recording, impacts, drag) if stated is None else stated
     rounding = rounding_of(recording) if known is None else 0.0
     middle = math.exp(float(np.mean(np.log(v))))
     at = middle if speed is None else positive("speed", speed, "m/s")

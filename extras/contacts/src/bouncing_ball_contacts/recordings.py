@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_contacts.flights import impact_of
 from bouncing_ball_contacts.tables import (
+    COLUMNS,
     HEADINGS,
     LAYOUTS,
     NAMES,
@@ -492,7 +493,8 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]
     films_of = max(ways, key=lambda each: [sum(map(len, part)) for part in zip(*each, strict=True)])
-    of_films, unused = zip(*films_of, strict=True)
+    of_films = [found for found, _ in films_of]
+    unused = [others for _, others in films_of]
     numbers = [line for each in of_films for line in each]
     tracks = [track for each in of_films for track in each.values()]
     if not tracks:
@@ -560,7 +562,7 @@ def _layout(table: Table) -> tuple[str, list[Column]]:
                 f"{table.name}: two columns are both {each.role}, {each.name!r} and "
                 f"{other.name!r}: write trial 1,trial 2 over repeated drops, h0,h1,h2 over "
                 "successive tops, the same heading over runs side by side of one ball, and 'height "
-                "(cm) (golf)' over those of several balls"
+                f"(cm) (golf)' over those of several balls, {COLUMNS}"
             )
     return kind, columns
 
@@ -599,7 +601,7 @@ def _recording(table: Table, leave_out: Sequence[int]) -> Recording:
             raise Refused(
                 f"{table.name}: column {each.name!r} looks like a measurement, but "
                 f"{' and '.join(dict.fromkeys(one.role for one in columns))} are read: "
-                "delete it, or name it 'remark'"
+                f"delete it, or name it 'remark', {COLUMNS}"
             )
     unused = ", ".join(repr(each.name) for each in ignored)
     gaps = ", ".join(map(str, np.setdiff1d(table.lines[~is_there], leave_out)))
@@ -631,6 +633,7 @@ def read(
     leave_out: Sequence[int] = (),
     ball: str | None = None,
     resolution: Any = None,
+    columns: Mapping[str, str] | None = None,
 ) -> dict[str, Recording]:
     """Return the recordings of a file, an experiment or columns, by the names of their balls.
 
@@ -645,6 +648,9 @@ def read(
     resolution : quantity, optional
         The standard deviation of a reading, in place of that of the head. A number is refused only
         if it is wrong by more than such errors.
+    columns : mapping, optional
+        Headings of columns by the names that they have in the file, or by their numbers from 1 on,
+        as in ``{"Zeit": "t (s)", "3": "y (cm)"}``; other columns are not read.
 
     Returns
     -------
@@ -656,7 +662,7 @@ def read(
     Refused
         If there are no bounces, or if a number or a column cannot be read.
     """
-    table = table_of(source, leave_out)
+    table = table_of(source, leave_out, columns)
     if resolution is not None:
         table = replace(table, head={**table.head, "resolution": str(resolution)})
     for each in table.columns:
@@ -665,7 +671,7 @@ def read(
         if not each.role and np.isnan(each.numbers).all() and len(texts) > 1:
             raise Refused(
                 f"{table.name}: column {each.name!r} has {', '.join(sorted(texts))}: name it "
-                "'ball' for one result each, or 'group' for one of all"
+                f"'ball' for one result each, or 'group' for one of all, {COLUMNS}"
             )
     balls = table.parts("ball")
     if ball is None:

@@ -11,8 +11,10 @@ import io
 import itertools
 import math
 import re
+import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -34,13 +36,13 @@ from bouncing_ball_contacts.units import (
 Lines = NDArray[np.intp]
 
 NAMES = {
-    "time": "time, t, impact time, event time",
+    "time": "time, t, impact time, event time, timestamp",
     "interval": "interval, time between, dt, delta t, Δt, difference",
     "touch": "start, stop",
     "flight": "flight, flight time, time of flight, air time",
     "drop height": "drop height, drop, initial height, release height, start height, "
     "height before, height of drop",
-    "rebound height": "rebound height, rebound, final height, height after, h', "
+    "rebound height": "rebound height, rebound, return height, final height, height after, h', "
     "height of rebound, height of bounce",
     "trial": "trial, test, attempt",
     "average": "average, mean, average height, mean height, average bounce height, "
@@ -79,9 +81,11 @@ LAYOUTS: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("heights", ("height",)),
 )
 """What was measured is the first row whose columns are all there."""
+COLUMNS = "or say which column is what, as in --columns 'NAME=t (s)'"
+"""What each refusal of a heading names; ``columns={'NAME': 't (s)'}`` in Python."""
 HEADINGS = (
     "write 'time (s)' over times of impacts, 'interval (s)', 'height (cm)' over successive tops, "
-    "'drop height (cm),rebound height (cm)' over drops, or 't (s),y (cm)' over a film"
+    "'drop height (cm),rebound height (cm)' over drops, or 't (s),y (cm)' over a film, " + COLUMNS
 )
 """What messages say of headings that are not known."""
 _ROLES = {
@@ -90,6 +94,7 @@ _ROLES = {
     for name in names.split(", ")
 }
 _INHERITED = ("m", "m/s")
+_QUANTITIES = ("s", *_INHERITED)
 TEXTS = ("ball", "recording", "group", "remark", "count", "frame")
 """What divides a table or is said of its lines, and is no reading."""
 _KNOWN_UNITS = {*SPELLED, *itertools.chain(*map(units_of, ("s", "m", "m/s"))), "px", "%"}
@@ -131,8 +136,12 @@ _LARGEST = {
     "": ("restitution coefficient", 1.05, 1.05, "%"),
 }
 _SMALLEST = 1e-9
-# How files of spreadsheets begin.
-_SHEETS = (b"PK\3\4", b"\xd0\xcf\x11\xe0")
+# Lines above a table in which its headings are looked for.
+_MOST_LINES = 40
+# How files of spreadsheets and archives begin, and what a new spreadsheet has in its archive.
+_OLD_SHEET = b"\xd0\xcf\x11\xe0"
+_ARCHIVE = b"PK\3\4"
+_OF_SHEETS = {"[Content_Types].xml", "mimetype"}
 # What programs and people write for a missing number.
 _MISSING = ("", "-", "–", "—", "na", "n/a", "#n/a")
 
@@ -266,14 +275,13 @@ def _text_of(source: Any) -> tuple[str, str]:
             (path.is_dir(), f"{path} is a folder: give a file in it"),
         ]
     )
-    data = path.read_bytes()
+    data = _unpacked(path.name, path.read_bytes())
     if data.startswith(b"RIFF"):
         return path.name, _heard(data)
     # Spreadsheets write what they call Unicode text.
     is_wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     refuse(
         [
-            (data[:4] in _SHEETS, f"{path.name} is a spreadsheet: save its sheet as csv"),
             (
                 b"\0" in data and not is_wide,
                 f"{path.name} is no text: save it as csv in UTF-8, or a sound as WAV, as by ffmpeg "
@@ -285,6 +293,31 @@ def _text_of(source: Any) -> tuple[str, str]:
     # A single line of numbers is read as the arguments of the command.
     is_typed = re.fullmatch(r"[-+−.\d][^\n:;#\t]*\s*", text)
     return path.name, _columns_as_text(typed_readings(text.split())) if is_typed else text
+
+
+def _unpacked(name: str, data: bytes) -> bytes:
+    """Return the only table of an archive; other data are returned as they are."""
+    is_archive = data.startswith(_ARCHIVE)
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data)) if is_archive else None
+    except zipfile.BadZipFile:
+        raise Refused(f"{name} is a spreadsheet: save its sheet as csv; or damaged") from None
+    members = archive.namelist() if archive else []
+    # Programs write folders about the device beside their table.
+    tables = [
+        each for each in members if re.fullmatch(r"[^/]+\.(csv|txt|tsv|dat|wav)", each.lower())
+    ]
+    is_sheet = data.startswith(_OLD_SHEET) or _OF_SHEETS & {*members}
+    refuse(
+        [
+            (is_sheet, f"{name} is a spreadsheet: save its sheet as csv"),
+            (
+                archive and len(tables) != 1,
+                f"{name} has {', '.join((tables or members)[:5])}: unpack it, and give one table",
+            ),
+        ]
+    )
+    return archive.read(tables[0]) if archive else data
 
 
 def _heard(data: bytes) -> str:
@@ -370,10 +403,13 @@ def _number(cell: str, is_decimal_comma: bool) -> float | None:
     return None if abs(number) > 10 * LARGEST else number
 
 
-def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]], bool]:
+def _rows_of(
+    name: str, text: str, named: Mapping[str, str]
+) -> tuple[dict[str, str], dict[int, list[str]], bool]:
     """Return the quantities of the head, the cells by line, and whether commas are decimal.
 
-    The first line of cells has the headings, also if a program wrote a title above it.
+    The headings are the last line with names of columns above the numbers: a line whose next line
+    has names is a title, whatever its words.
     """
     head: dict[str, str] = {}
     lines: dict[int, str] = {}
@@ -390,9 +426,7 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
             head[key] = f"{head.get(key, '')} {said.strip()}".strip()
         elif lines or line.strip():
             lines[i] = line
-    titles = {i: re.split(r'[\t;|,"]+', lines[i]) for i in list(lines)[:4]}
-    known = [i for i, cells in titles.items() if any(_heading(cell)[2] for cell in cells)]
-    begin = min(known or lines, default=0)
+    begin = _line_of_headings(lines, named)
     table = {i: line for i, line in lines.items() if i >= begin}
     # A line that begins with a backslash has the frequencies of a label.
     labels = {i: line for i, line in lines.items() if not line.startswith("\\")}
@@ -413,6 +447,31 @@ def _rows_of(name: str, text: str) -> tuple[dict[str, str], dict[int, list[str]]
         (cells,) = csv.reader([line.strip("| ")], delimiter=sign or "\t", skipinitialspace=True)
         rows[i] = [cell.strip() for cell in cells]
     return head, rows, sign != ","
+
+
+def _line_of_headings(lines: Mapping[int, str], named: Mapping[str, str]) -> int:
+    """Return the line with the names of the columns, above the first line with a number.
+
+    It is the last one with a name that is known, or else the last one that has more than units.
+    """
+    known = above = fallback = 0
+    for i, line in itertools.islice(lines.items(), _MOST_LINES):
+        cells = [each.strip() for each in re.split(r'[\t;|,"]+', line)]
+        words = cells if len(cells) > 1 else [*re.split(r"\s{2,}", line), *line.split()]
+        if any(map(_is_reading, words)):
+            if known:
+                break
+            fallback = fallback or above
+        elif any(_heading(each)[2] or each in named for each in words):
+            known = i
+        elif not {*words} <= _KNOWN_UNITS:
+            above = i
+    return known or fallback or min(lines, default=0)
+
+
+def _is_reading(cell: str) -> bool:
+    """Return whether a cell has a number, which may have a unit."""
+    return bool(re.fullmatch(r"[-+−]?[.,]?\d\S*( ?[^\W\d]\S*)?", cell))
 
 
 def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]:
@@ -446,12 +505,12 @@ def _name_in(heading: str) -> tuple[str, str]:
 def _series_in(headings: list[str]) -> list[tuple[str, str]]:
     """Return the name of each column's series, and the heading without it.
 
-    A heading that returns begins another run.
+    A heading that returns begins another run, whatever it is.
     """
     found = [_name_in(each) for each in headings]
     plain = [each for _, each in found]
     for i, each in enumerate(plain):
-        if _heading(each)[2] and headings.count(each) > 1:
+        if each and headings.count(each) > 1:
             found[i] = str(headings[: i + 1].count(each)), each
     return found
 
@@ -471,22 +530,24 @@ def _below_each_other(
     shared = [_heading(each)[2] for each, named in zip(plain, names, strict=True) if not named]
     if len(series) < 2 or len([each for each in shared if each not in ("", *TEXTS)]) > 1:
         return headings, lines, rows
-    kinds = {tuple(plain[i] for i in columns) for columns in series.values()}
-    if len(kinds) > 1:
-        both = " and ".join(
-            f"{each} has {', '.join(plain[i] for i in columns)}" for each, columns in series.items()
-        )
+    kinds = {each: [plain[i] for i in columns] for each, columns in series.items()}
+    # A column that one series has alone is not read.
+    common = [each for each in plain if all(each in kind for kind in kinds.values())]
+    alike = [each for each in dict.fromkeys(common) if each]
+    if not any(_heading(each)[2] not in ("", *TEXTS) for each in alike):
+        both = " and ".join(f"{each} has {', '.join(kind)}" for each, kind in kinds.items())
         raise Refused(f"{name}: {both}: leave the same columns of each")
     numbers: list[int] = []
     stacked: list[list[str]] = []
-    for each, columns in series.items():
+    for each, of_series in series.items():
+        columns = [next(i for i in of_series if plain[i] == heading) for heading in alike]
         # A shorter series ends with empty cells.
         is_there = [any(row[i] for i in columns if names[i]) for row in rows]
         length = max(itertools.compress(itertools.count(1), is_there), default=0)
         numbers += lines[:length]
         stacked += [[each, *(row[i] for i in columns)] for row in rows[:length]]
     is_of_balls = any(re.fullmatch(_OF_BALL, each) for each in headings)
-    return ["ball" if is_of_balls else "recording", *kinds.pop()], numbers, stacked
+    return ["ball" if is_of_balls else "recording", *alike], numbers, stacked
 
 
 def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
@@ -501,10 +562,13 @@ def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
     return [f"{heading} ({unit})" if unit else heading for heading, unit in padded]
 
 
-def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
+def table_of(
+    source: Any, leave_out: Sequence[int] = (), named: Mapping[str, str] | None = None
+) -> Table:
     """Return the table of a source.
 
-    Cells of lines that are left out are empty.
+    Cells of lines that are left out are empty. ``named`` has headings by the names that columns
+    have in the file, or by their numbers from 1 on; other columns are not read.
 
     Raises
     ------
@@ -512,9 +576,14 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
         If there is no table with headings, or a number is none.
     """
     name, text = _text_of(source)
-    head, rows, is_decimal_comma = _rows_of(name, text)
+    head, rows, is_decimal_comma = _rows_of(name, text, named or {})
     begin = next(iter(rows))
+    if named and all(_is_reading(cell) for cell in rows[begin] if cell):
+        # Above its numbers the file has no names.
+        rows = {0: [""] * len(rows[begin]), **rows}
     headings = _with_row_of_units(rows)
+    if named:
+        headings = _with_names(name, headings, named)
     lines = list(rows)
     unknown = set(leave_out) - set(lines)
     refuse(
@@ -532,12 +601,14 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     )
     rows |= {i: [] for i in leave_out}
     padded = [[*row, *[""] * (len(headings) - len(row))][: len(headings)] for row in rows.values()]
-    headings, lines, cells_of = _below_each_other(name, headings, lines, padded)
+    if not named:
+        headings, lines, padded = _below_each_other(name, headings, lines, padded)
     columns = []
-    for heading, *cells in zip(headings, *cells_of, strict=True):
+    for heading, *cells in zip(headings, *padded, strict=True):
         title, unit, role = _heading(heading)
-        if not unit:
-            cells, unit = _with_one_unit(cells)
+        if role and role not in TEXTS:
+            written = [_decimal(cell) for cell in cells]
+            cells, unit = _with_units_of_cells(written, unit, is_decimal_comma)
         numbers = [_number(cell, is_decimal_comma) for cell in cells]
         if role and role not in TEXTS and None in numbers:
             i = numbers.index(None)
@@ -555,13 +626,61 @@ def table_of(source: Any, leave_out: Sequence[int] = ()) -> Table:
     return Table(name, head, _with_times(head, columns), np.array(lines))
 
 
-def _with_one_unit(cells: list[str]) -> tuple[list[str], str]:
-    """Return the numbers of cells such as 1 meter, and their unit, if all have one unit."""
-    found = [re.fullmatch(r"([-+−]?[\d.,]*\d)\s*([^\W\d]+)", cell) for cell in cells if cell]
-    units = {SPELLED.get(each[2].lower(), each[2]) for each in found if each}
-    if None in found or len(units) != 1 or not units <= _KNOWN_UNITS:
-        return cells, ""
-    return [re.sub(r"\s*[^\W\d]+$", "", cell) for cell in cells], units.pop()
+def _with_names(name: str, headings: list[str], named: Mapping[str, str]) -> list[str]:
+    """Return the headings that are given for columns; those of other columns are remarks."""
+    plain = [each.lower() for each in headings]
+    found = ["remark"] * len(headings)
+    for key, heading in named.items():
+        is_there = key.lower() in plain
+        i = plain.index(key.lower()) if is_there else int(key) - 1 if key.isdecimal() else -1
+        refuse(
+            [
+                (
+                    not 0 <= i < len(headings),
+                    f"{name} has no column {key!r}: its columns are {', '.join(headings)}",
+                ),
+                (not _heading(heading)[2], f"--columns: {heading!r} is not known: {HEADINGS}"),
+            ]
+        )
+        found[i] = heading
+    return found
+
+
+def _decimal(cell: str) -> str:
+    """Return a cell without its error, and with a decimal number for a fraction, feet or a clock.
+
+    >>> [_decimal(each) for each in ("50 ± 0.5 cm", "46 1/2", "6' 2\"", "00:01:02.5")]
+    ['50 cm', '46.5', '74 in', '62.5']
+    """
+    plain = re.sub(r"\s*(±|\+/-)\s*[\d.,]+", "", cell)
+    mixed = re.match(r"(\d+) (\d+)/([1-9]\d*)", plain)
+    if mixed:
+        plain = f"{int(mixed[1]) + int(mixed[2]) / int(mixed[3]):g}{plain[mixed.end() :]}"
+    feet = re.fullmatch(r"(\d+)\s*['’′]\s*(?:([\d.]+)\s*[\"”″]?)?", plain)
+    clock = re.fullmatch(r"(?:(\d+):)?(\d+):(\d\d(?:\.\d+)?)", plain)
+    if clock:
+        return str(Decimal(clock[3]) + 60 * int(clock[2]) + 3600 * int(clock[1] or 0))
+    return f"{12 * int(feet[1]) + float(feet[2] or 0):g} in" if feet else plain
+
+
+def _with_units_of_cells(
+    cells: list[str], unit: str, is_decimal_comma: bool
+) -> tuple[list[str], str]:
+    """Return the numbers of cells such as 1 meter, and their unit: the SI unit of several."""
+    found = [re.fullmatch(r"([-+−]?[\d.,]*\d)\s*([^\W\d]\S*|%)?", cell) for cell in cells]
+    parts = [each for each in found if each]
+    units = [SPELLED.get((each[2] or "").lower(), each[2]) or unit for each in parts]
+    si = next((each for each in _QUANTITIES if {*units} <= {*units_of(each)}), None)
+    if si is None or len(parts) < sum(map(bool, cells)) or not any(each[2] for each in parts):
+        return cells, unit
+    one = unit or (units[0] if len({*units}) == 1 else si)
+    scales = [Decimal(repr(in_si("unit", f"1 {each}", si))) for each in (one, *units)]
+    plain = (each[1].replace("−", "-") for each in parts)
+    numbers = iter(
+        str(Decimal(each.replace(",", "." if is_decimal_comma else "")) * scale / scales[0])
+        for each, scale in zip(plain, scales[1:], strict=True)
+    )
+    return [next(numbers) if each else "" for each in found], one
 
 
 def _with_units(columns: list[Column]) -> list[Column]:

@@ -26,6 +26,11 @@ def steps(data: xr.DataArray) -> NDArray:
     return data.sortby("frequency_ratio").diff("frequency_ratio").values
 
 
+def whole_change(data: xr.DataArray) -> NDArray:
+    """Return the changes from the most compliant contact to the stiffest."""
+    return steps(data.isel(frequency_ratio=[0, -1]))
+
+
 def between(curve: xr.DataArray) -> PchipInterpolator:
     """Interpolate a curve without gaps along ϖ, by a monotone piecewise cubic in ln ϖ."""
     return PchipInterpolator(np.log(curve["frequency_ratio"].values), curve.values)

@@ -110,21 +110,21 @@ VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' pyproject.toml)
 BUILD := import sys; from importlib import import_module; _, backend, folder = sys.argv; \
 	backend = import_module(backend); backend.build_wheel(folder); backend.build_sdist(folder)
 # What each archive has to stand alone.
-ABOUT := $(addprefix $(CURDIR)/,LICENSE CITATION.cff dist/README.txt)
+ABOUT := $(addprefix $(CURDIR)/,LICENSE CITATION.cff dist/bouncing-ball/README.txt)
 release: replication
 	$(MAKE) -C extras/beyond diff docs VENV=.venv
-	mkdir -p dist && rm -f dist/bouncing* dist/SHA256SUMS
+	rm -rf dist/bouncing* dist/SHA256SUMS && mkdir -p dist/bouncing-ball
 	$(VENV)/bin/python -c '$(BUILD)' setuptools.build_meta dist
 	for package in beyond contacts; do \
 	  (cd extras/$$package && ../beyond/.venv/bin/python -c '$(BUILD)' flit_core.buildapi ../../dist) || exit 1; done
-	printf '%s\n' "This is of bouncing-ball $(VERSION), made by commit $$(git describe --always --dirty --abbrev=40 --exclude '*')" \
-	  "of its repository, which has the files that are named and are not here." > dist/README.txt
+	printf '%s\n' "Results of bouncing-ball $(VERSION), made by commit $$(git describe --always --dirty --abbrev=40 --exclude '*')" \
+	  "of its repository, which has all files that are named and are not here." > dist/bouncing-ball/README.txt
 	$(RUN) zipfile --create dist/bouncing-ball-$(VERSION)-results.zip results $(ABOUT)
 	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
 	  $(CURDIR)/dist/bouncing-ball-beyond-$(VERSION)-results.zip figures records *.md $(ABOUT)
 	cd extras/beyond/results && $(abspath $(VENV))/bin/python -m zipfile --create \
 	  $(CURDIR)/dist/bouncing-ball-$(VERSION)-site.zip site $(ABOUT)
-	rm dist/README.txt
+	rm -r dist/bouncing-ball
 	cd dist && sha256sum bouncing* > SHA256SUMS
 
 # The packages of the lock files, for a machine without an index: docs/on-a-cluster.md.

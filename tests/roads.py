@@ -62,7 +62,10 @@ def walk(page: str) -> int:
         language, _, reason = info.partition(" ")
         named = re.findall(r"`(\w+\.yaml)`", paragraph)
         if language == "yaml" and named:
-            (ROOT / named[0]).write_text(content, "utf-8")
+            file = ROOT / named[0]
+            if file.exists() and file.read_text("utf-8") != content:
+                sys.exit(f"{file} is not that of {page}: move it elsewhere")
+            file.write_text(content, "utf-8")
         elif language in ("", "sh") and reason:
             print(f"{page}: not walked {reason}: {'; '.join(commands(content))}", flush=True)
         elif language in ("", "sh"):

@@ -71,7 +71,7 @@ accept: develop
 	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet $(filter-out tests/test_edges.py,$(JUDGES))
 	@$(SNAKEMAKE) $@
 
-replication: clean diff
+replication: environment clean diff
 
 # From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
 test-processors: develop

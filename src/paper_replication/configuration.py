@@ -161,7 +161,7 @@ def registered(file: Path) -> set[str]:
     The file is not imported: with conda, its libraries are in the environment of the jobs only.
     """
     text = file.read_text("utf-8") if file.is_file() else ""
-    nodes = ast.walk(ast.parse(text))
+    nodes = ast.walk(ast.parse(text, str(file)))
     keys = chain.from_iterable(node.keys for node in nodes if isinstance(node, ast.Dict))
     return {str(key.value) for key in keys if isinstance(key, ast.Constant)}
 

@@ -81,7 +81,7 @@ def test_the_makefiles_ask_it_before_they_install_and_take_no_folder_from_the_sh
     for folder in (ROOT, ROOT / "extras/beyond", ROOT / "extras/contacts"):
         shell = {"VENV": str(tmp_path), "PATH": "/usr/bin:/bin"}
         for arguments, named in [([], ".venv"), ([f"VENV={tmp_path}"], str(tmp_path))]:
-            command = ["make", "--dry-run", "--always-make", "-C", str(folder), "setup", *arguments]
+            command = ["make", "--dry-run", "--always-make", "-C", str(folder), *arguments]
             printed = subprocess.check_output(command, env=shell, text=True)
             asked, made = (
                 printed.index(f"environment.sh {each} {named}\n") for each in ("check", "new")

@@ -7,6 +7,7 @@ import pytest
 from integrated import SINE, contact, touching
 from own_laws import flores, hunt_crossley_linear, limited_damper, stepped_spring
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 from scipy.special import gamma
 
@@ -1078,6 +1079,9 @@ class TestLawsAsTheyAreWritten:
         assert np.isnan(ForceLaw(WRITTEN["sine"][0], {"k": 100.0}).depth(21.0))
 
 
+SPLINE = CubicSpline(np.linspace(0, 3, 20), np.linspace(0, 3, 20) ** 2)
+
+
 class TestRefusedForces:
     @pytest.mark.parametrize(
         ("force", "reason"),
@@ -1092,6 +1096,8 @@ class TestRefusedForces:
             (lambda p, v, k: k * p**1.5, "give root=2"),
             (lambda p, v, k: k * p**1.5 + p**0.25 * v, "give root=4"),
             (lambda p, v, k: k * float(p), "arrays of complex numbers: write np.where"),
+            (lambda p, v, k: k * SPLINE(p) + v, "a polynomial instead of a table or a spline"),
+            (lambda p, v, k: k * p + np.where(v.real > -3, v, np.nan), "the force is NaN during"),
             (lambda p, v, k: 3.0, "shape of p and v"),
             (lambda p, v, k: -k * p, "stops no ball"),
             (lambda p, v, k: k * p if p > 0 else 0 * p, r"np\.where\(...\) instead of 'if'"),

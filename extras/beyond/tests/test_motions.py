@@ -313,9 +313,9 @@ def test_a_summary_of_many_impacts_needs_no_history():
     most = []
     bounce = long_term.bounce
 
-    def watched(balls, impacts):
+    def watched(balls, impacts, *effort):
         most.append(impacts * balls.phase.size)
-        return bounce(balls, impacts)
+        return bounce(balls, impacts, *effort)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(long_term, "bounce", watched)

@@ -1,5 +1,7 @@
 """Pairs of multipliers that leave the unit circle, where faster impacts lose less energy."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -109,3 +111,38 @@ def test_thresholds_and_errors_say_where_the_orbit_is_unstable():
     law = LAW.at(w=2.0)
     assert bb.exact_errors(law, amplitude=0.7).unstable == "in both models"
     assert bb.law_errors(law, amplitude=0.7).unstable == "in the simple model"
+
+
+def test_ranges_on_a_table_with_several_saddle_nodes():
+    """In the restitution model w′ = C, and orbits with -w″ between 0 and 2(1 + r²)/(1 + r)² are."""
+    table, r = bb.Table([(1, 1.0, 0.0), (2, 0.3, 2.2)]), 0.6
+    assert table.next_low_slope > 0
+    ranges = bb.limits(bb.Rigid(r), table=table).stable_ranges
+    phase = np.linspace(0, 2 * np.pi, 100_001)
+    slopes, pushes = table(phase, 1), -table(phase, 2)
+    line, most = np.pi * (1 - r) / (1 + r), 2 * (1 + r**2) / (1 + r) ** 2
+    for amplitude in np.linspace(1.01 * line / table.slope, 1.2 * max(ranges)[1], 23):
+        at = np.diff(np.sign(slopes - line / amplitude)) != 0
+        push = amplitude * pushes[:-1][at]
+        expected = np.any((push > 0) & (push < most))
+        assert expected == any(low < amplitude < high for low, high in ranges)
+
+
+def test_limits_are_two_values_one_list_of_ranges_for_each_ball():
+    fold, doubling = bb.limits(bb.Rigid(0.5))
+    several = bb.limits(bb.Rigid([0.5, 0.7]))
+    both = [fold.amplitude, doubling.amplitude]
+    assert several[0].stable_ranges[0] == pytest.approx(both)
+    again = pickle.loads(pickle.dumps(several[1]))
+    assert again.stable_ranges == several[1].stable_ranges and len(again) == 2
+
+
+def test_a_steep_fall_of_r_makes_the_determinant_negative():
+    """r r̂ of the restitution model at the closing speed, where r falls faster than 1/u."""
+    ball = bb.Rigid(lambda u: 0.1 + 0.4 / (1 + np.exp(1.5 * (u - 4.8))))
+    impact = bb.free_impact(ball)
+    expected = float(impact.restitution * impact.slope)
+    low, _ = bb.limits(ball).stable_ranges[0]
+    one = bb.orbit(ball, amplitude=1.01 * low)
+    assert one.trace_and_determinant[1] == pytest.approx(expected) and expected < -0.05
+    assert one.stable

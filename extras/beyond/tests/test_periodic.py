@@ -23,11 +23,11 @@ from bouncing_ball_beyond.errors.error_law import (
     law_errors,
     law_thresholds,
 )
-from bouncing_ball_beyond.motions import effort
+from bouncing_ball_beyond.motions import bounces, effort
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
-from bouncing_ball_beyond.motions.long_term import lyapunov
+from bouncing_ball_beyond.motions.long_term import basins, lyapunov, motion_of
 from bouncing_ball_beyond.periodic.chains import dense, solve_bordered
-from bouncing_ball_beyond.periodic.continuation import limits
+from bouncing_ball_beyond.periodic.continuation import follow, limits
 from bouncing_ball_beyond.periodic.equations import OrbitEquations
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.periodic.orbits import (
@@ -402,3 +402,25 @@ def test_a_contact_that_does_not_end_is_named_before_a_search(ball, monkeypatch)
             ValueError, match=re.escape(f"= {brief(ball)}: its free impacts do not")
         ):
             call(ball, **arguments)
+
+
+def test_a_search_that_ended_is_an_entry_of_the_list():
+    given = {"amplitude": [0.3, 0.9], "evaluations": 1000}
+    ended, found = orbit(Rigid([0.3, 0.9]), **given)
+    assert isinstance(ended, effort.SearchEnded) and found.stable
+    assert follow([ended, found], to=1.5)[0] is ended
+    with pytest.raises(effort.SearchEnded, match="no answer after 1,000 evaluations"):
+        orbit(Rigid(0.3), amplitude=0.3, evaluations=1000)
+
+
+def test_progress_is_asked_first_and_a_compilation_is_reported(monkeypatch):
+    for search in (orbit, motion_of):
+        with pytest.raises(ValueError, match="progress = True: must be a function of a line of te"):
+            search(Rigid(0.5), amplitude=1.2, progress=True)
+    told = []
+    bounces.compile_loops.cache_clear()
+    motion_of(Rigid(0.5), amplitude=1.2, progress=told.append)
+    assert told[0].startswith("motion_of: numba compiles")
+    monkeypatch.setattr(effort, "EVERY", 0.0)
+    basins(hunt_crossley(1000.0, 0.3), amplitude=1.2, starts=4, impacts=25, progress=told.append)
+    assert sum(each.startswith("basins: the balls") for each in told) > 24

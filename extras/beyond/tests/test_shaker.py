@@ -203,3 +203,17 @@ def test_measured_pairs_of_speed_and_restitution():
         bb.on_shaker(restitution=[(3.0, 0.6), (4.0, 0.5)], **given)
     with pytest.raises(ValueError, match="restitution_of"):
         bb.Rigid(lambda u: np.interp(u, [0.0, 10.0], [0.9, 0.5]))
+
+
+def test_measured_pairs_that_no_damper_of_the_release_has():
+    pairs = [(0.1, 0.6), (0.2, 0.7), (0.4, 0.8)]
+    given = {"frequency": 50.0, "acceleration": 8.5, "mass": 0.02, "stiffness": 1e8}
+    with pytest.raises(ValueError, match=r"falls to r = 0\.11 at 0\.0029 m/s, but a damper whose"):
+        on_shaker(restitution=pairs, **given)
+    assert on_shaker(restitution=pairs, release="displacement", **given).bounces
+
+
+def test_a_stroke_that_few_shakers_have_is_asked_about():
+    given = {"frequency": 50.0, "restitution": 0.85, "contact_duration": 1e-4}
+    assert "Were millimetres meant?" in str(on_shaker(displacement=0.1, **given))
+    assert "meant" not in str(on_shaker(displacement=1e-4, **given))

@@ -578,3 +578,12 @@ def test_landings_just_before_a_lift_off_take_few_steps(monkeypatch, table):
         found = bounces.landings(table, *given)[0]
     known = 2 * speed / (gravity / 2 + np.sqrt(gravity**2 / 4 - 2 * speed * x / 3))
     assert found == pytest.approx(known, rel=np.finfo(float).eps / speed)
+
+
+def test_results_that_do_not_fit_into_memory():
+    for call, given, text in (
+        (bb.simulate, {"impacts": 10**15}, "impacts = 1000000000000000: the results do not fit"),
+        (bb.history, {"periods": 1e13}, r"periods = 1e\+13, samples = 200: the results do not fit"),
+    ):
+        with pytest.raises(ValueError, match=text):
+            call(bb.Rigid(0.5), amplitude=1.2, **given)

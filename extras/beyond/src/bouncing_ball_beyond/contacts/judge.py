@@ -13,6 +13,7 @@ allows. There it must
 Points are (p, v, load), arrays of the shape (3, ...).
 """
 
+import warnings
 from collections.abc import Callable
 from typing import Any
 
@@ -162,14 +163,16 @@ def _check_call(law: Force) -> None:
     functions |= {f"kinks[{i}]": kink for i, kink in enumerate(law.kinks)}
     for name, function in functions.items():
         try:
-            with np.errstate(all="ignore"):
+            # SciPy's splines leave out imaginary parts, and only warn.
+            with np.errstate(all="ignore"), warnings.catch_warnings():
+                warnings.simplefilter("error", np.exceptions.ComplexWarning)
                 value = function(p, v, **law.values)
         except Exception as error:
             reason = f"{type(error).__name__}: {error}"
             raise ValueError(
                 f"{name}: must accept its parameters by name, and arrays of complex numbers: write"
                 " np.where(...) instead of 'if', numpy functions instead of math, and a polynomial"
-                " instead of a table"
+                " instead of a table or a spline"
                 f" ({reason})"
             ) from None
         if not isinstance(value, np.ndarray) or value.shape != p.shape:
@@ -325,6 +328,12 @@ def _check_energy(law: Force, speed: float) -> None:
     speeds = speed * LADDER
     ends = law.after_free_impacts(speeds)
     keeps = ends <= NO_GAIN * speeds
+    if np.isnan(ends).any():
+        k = np.isnan(ends).argmax()
+        raise ValueError(
+            f"force: a ball with the closing speed {speeds[k]:.3g} never leaves: the force is NaN"
+            " during its contact, or the contact has no end"
+        )
     if not keeps.all():
         k = np.argmin(keeps)
         raise ValueError(

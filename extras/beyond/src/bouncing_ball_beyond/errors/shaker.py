@@ -20,6 +20,7 @@ from bouncing_ball_beyond.contacts.balls import (
     restitution_of,
     whole_number,
 )
+from bouncing_ball_beyond.contacts.judge import FIRST_SPEED, LADDER
 from bouncing_ball_beyond.contacts.laws import ForceLaw
 from bouncing_ball_beyond.contacts.named_laws import linear, tsuji
 from bouncing_ball_beyond.errors.error_law import (
@@ -161,6 +162,12 @@ class ShakerAnswer:
         ]
         return "\n".join([*lines, "", *self._sentences()])
 
+    def _doubt(self) -> list[str]:
+        """Question on the units of an acceleration that few shakers reach."""
+        if self.amplitude * self.table.acceleration < IMPLAUSIBLE:
+            return []
+        return ["Were millimetres meant? Displacements are in m, and accelerations in m/s²."]
+
     def _sentences(self) -> list[str]:
         begun = sum(value <= self.amplitude for value in self.saddle_node[:2])
         periods = "each period" if self.n == 1 else f"{self.n} periods"
@@ -170,13 +177,11 @@ class ShakerAnswer:
             f" (Λ = {self.amplitude:.4g})."
             f" A contact lasts {1e6 * self.contact_duration:.4g} µs,"
             f" {self.contact_duration * self.frequency:.2%} of a period.",
+            *self._doubt(),
             f"The ball {BOUNCES[begun]} once in {periods} of the table.",
         ]
         if self.bounces and np.isnan(self.error):
-            sentences.append(
-                "Its orbit on the contact is not found at this acceleration: check the units;"
-                " displacements are in m."
-            )
+            sentences.append("Its orbit on the contact is not found at this acceleration.")
         elif self.bounces:
             elastic = self.stable and self.ball.signature(1.0).restitution > ELASTIC
             how = (STABLE + LOST[self._way][1:])[sum(self._unstable)]
@@ -204,6 +209,9 @@ class ShakerAnswer:
             verdict = f"A restitution coefficient is not good enough: {reason}"
         return [*sentences, f"{verdict}."]
 
+
+IMPLAUSIBLE = 100.0
+"""Acceleration in units of gravity above which the answer asks for the units of the user."""
 
 WHERE: dict[tuple, str] = {
     (True, True): "in both models",
@@ -312,6 +320,8 @@ def on_shaker(
     measured = None
     if np.ndim(restitution):
         measured = _measured(restitution, fall / rate, n)
+        if release == "force" and youngs_modulus is None:
+            _check_measured(measured, fall / rate)
     else:
         checked("restitution", restitution, 0, 1, low_allowed=False)
     check_table(table)
@@ -381,6 +391,19 @@ def _measured(pairs: Values, unit: float, n: int) -> Callable:
             f" orbit closes at {closing:.3g} m/s: measure it there, or give a number"
         )
     return restitution
+
+
+def _check_measured(measured: Callable, unit: float) -> None:
+    """Raise ValueError if no damper has the r of a contact that is judged at these speeds."""
+    speeds = FIRST_SPEED * LADDER
+    lost = np.flatnonzero(~(measured(speeds) > np.exp(-2)))
+    if lost.size:
+        speed = speeds[lost[-1]]
+        raise ValueError(
+            f"restitution: a fit to these pairs falls to r = {float(measured(speed)):.2g} at"
+            f" {speed * unit:.2g} m/s, but a damper whose contacts end where the force vanishes has"
+            " r above e⁻² = 0.135: measure there, give a number, or release='displacement'"
+        )
 
 
 def _damped_by(law: ForceLaw, damping: Callable, other: str) -> ForceLaw:

@@ -8,6 +8,7 @@ ball must have a constant restitution coefficient, or a spring and a damper.
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
+from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 from bouncing_ball_beyond.contacts import one_ball
 from bouncing_ball_beyond.contacts.balls import FEW_BALLS, Ball, brief, safe_steps
 from bouncing_ball_beyond.contacts.one_ball import COLUMNS, STEPS
+from bouncing_ball_beyond.motions.effort import Effort
 from bouncing_ball_beyond.motions.impact_map import ImpactMap
 from bouncing_ball_beyond.tables.table import PERIOD, SINE, Table, Values
 
@@ -294,8 +296,10 @@ def bounce_each(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     return record, going, replace(balls, turns=turns, phase=phase, speed=speed).take(going)
 
 
-def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
-    """Follow each ball over a number of impacts.
+def bounce(
+    balls: Balls, impacts: int, effort: Effort | None = None
+) -> tuple[NDArray, NDArray, Balls]:
+    """Follow each ball over a number of impacts, which count as an effort.
 
     Returns
 
@@ -304,14 +308,20 @@ def bounce(balls: Balls, impacts: int) -> tuple[NDArray, NDArray, Balls]:
     2. the indices of the balls that still bounce;
     3. these balls before their next impacts.
     """
+    if effort and not compile_loops.cache_info().currsize and find_spec("numba"):
+        effort.report("numba compiles the functions of motions, or loads what it compiled before")
     compile_loops()
     if balls.phase.size < FEW_BALLS and balls.ball.loop_parameters(balls.table):
+        if effort:
+            effort.spend(impacts * balls.phase.size)
         return bounce_each(balls, impacts)
     record = np.full((impacts, len(COLUMNS), balls.phase.size), np.nan)
     todo = np.arange(balls.phase.size)
     for impact in record:
         if not todo.size:
             break
+        if effort:
+            effort.spend(todo.size)
         impact[:, todo], going, balls = step(balls)
         todo = todo[going]
     return record, todo, balls

@@ -26,11 +26,13 @@ class Effort:
     what : str
         Name of the search.
     evaluations : float
-        Number of contacts after which the search raises `SearchEnded`.
+        Number of contacts for each ball after which the search raises `SearchEnded`.
     progress : callable, optional
-        Function that receives a line of text every `EVERY` seconds.
+        Function that receives a line of text, between steps that are `EVERY` seconds apart.
     spent : int
         Number of contacts so far.
+    balls : int
+        Number of balls that are searched at once.
     tried : list of str
         Steps of the search so far. The last one is under way.
     """
@@ -39,19 +41,32 @@ class Effort:
     evaluations: float
     progress: Callable[[str], object] | None = None
     spent: int = 0
+    balls: int = 1
     tried: list[str] = field(default_factory=list)
     told: float = field(default_factory=time.monotonic)
+
+    def __post_init__(self) -> None:
+        if not (self.progress is None or callable(self.progress)):
+            raise ValueError(
+                f"progress = {self.progress!r:.60}: must be a function of a line of text, such as"
+                " print"
+            )
 
     def spend(self, contacts: int, step: str = "") -> None:
         """Count contacts before they are computed. A text begins a step of the search."""
         if step:
             self.tried.append(step)
         self.spent += contacts
-        if self.spent > self.evaluations:
+        if self.spent > self.evaluations * self.balls:
             raise SearchEnded(
                 f"{self.what}: no answer after {self.evaluations:,.0f} evaluations; tried:"
                 f" {', '.join(self.tried)}; give more evaluations"
             )
-        if self.progress and time.monotonic() - self.told >= EVERY:
-            self.told = time.monotonic()
-            self.progress(f"{self.what}: {self.tried[-1]}, {self.spent:,} evaluations")
+        if time.monotonic() - self.told >= EVERY:
+            self.report(f"{self.tried[-1]}, {self.spent:,} evaluations")
+
+    def report(self, text: str) -> None:
+        """Report a line of progress now."""
+        self.told = time.monotonic()
+        if self.progress:
+            self.progress(f"{self.what}: {text}")

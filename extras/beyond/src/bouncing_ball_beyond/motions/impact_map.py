@@ -20,6 +20,7 @@ from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import Ball
+from bouncing_ball_beyond.motions.effort import Effort
 from bouncing_ball_beyond.tables.table import Table
 
 MAP_FACTOR, MAP_DEGREE = 2.0, 15
@@ -145,7 +146,9 @@ def _sum(coefficients: NDArray, powers: NDArray, waves: NDArray) -> NDArray:
     return np.einsum("qmn,nm->qn", each, waves).real
 
 
-def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> ImpactMap:
+def impact_map(
+    ball: Ball, amplitude: float, table: Table, top: float, effort: Effort | None = None
+) -> ImpactMap:
     """Build the map of contacts with closing speeds up to ``top``.
 
     Pieces for lower and lower speeds are added until a piece is not analytic, or until there are
@@ -153,6 +156,8 @@ def impact_map(ball: Ball, amplitude: float, table: Table, top: float) -> Impact
     """
     pieces: list[Any] = []
     while len(pieces) < PIECES:
+        if effort:
+            effort.spend(0)
         piece = _piece(ball, amplitude, table, top * MAP_FACTOR ** -len(pieces))
         if piece is None:
             break

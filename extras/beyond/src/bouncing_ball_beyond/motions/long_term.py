@@ -264,14 +264,14 @@ def _follow_to_end(found: dict, balls: Balls, lane: NDArray, impacts: int, effor
         if not balls.map and is_worth_a_map(balls, impacts, seen):
             amplitude = float(balls.amplitude[0])
             top = np.fmax.reduce([fastest(balls.ball, amplitude, balls.table), *balls.speed])
-            balls = replace(balls, map=impact_map(balls.ball, amplitude, balls.table, float(top)))
+            mapped = impact_map(balls.ball, amplitude, balls.table, float(top), effort)
+            balls = replace(balls, map=mapped)
         count = min(
             max(seen // SECTION, 1),
             -(-(impacts - seen) // SECTION),
             max(IMPACTS_AT_ONCE // track["lane"].size // SECTION, 1),
         )
-        effort.spend(track["lane"].size * count * SECTION)
-        record, going, after = bounce(balls, count * SECTION)
+        record, going, after = bounce(balls, count * SECTION, effort)
         _store_resting(found, track["lane"], record, going, seen)
         balls = balls.take(going)
         track = _take(track, going)

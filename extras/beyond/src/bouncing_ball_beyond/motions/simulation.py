@@ -1,6 +1,7 @@
 """Simulate balls: compute their impacts or their heights over time, as labelled datasets."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -142,6 +143,16 @@ def described(found: xr.Dataset, descriptions: Mapping) -> xr.Dataset:
     return found
 
 
+@contextmanager
+def in_memory(given: str) -> Iterator:
+    """Raise a ValueError that names what was given, instead of a MemoryError."""
+    try:
+        yield
+    except MemoryError:
+        text = f"{given}: the results do not fit into memory; give less, or fewer balls"
+        raise ValueError(text) from None
+
+
 def simulate(
     ball: Ball,
     *,
@@ -202,7 +213,9 @@ def simulate(
     [0.0, 4.0, 6.0]
     """
     grid, balls = first_impacts(ball, amplitude, phase, velocity, relative_velocity, table)
-    record, going, _ = bounce(balls, whole_number("impacts", impacts))
+    impacts = whole_number("impacts", impacts)
+    with in_memory(f"impacts = {impacts}"):
+        record, going, _ = bounce(balls, impacts)
     turns, start, u, _, duration, _, w, flight_time = np.moveaxis(record, 1, 0)
     before = balls.amplitude * table(start, 1)
     after = balls.amplitude * table(start + np.where(duration < np.inf, duration, np.nan), 1)
@@ -335,10 +348,12 @@ def over_time(
     flights if the motions start with an impact.
     """
     periods = one_number("periods", periods)
-    times = np.linspace(0, PERIOD * periods, round(periods * whole_number("samples", samples)) + 1)
-    shape = balls.phase.size, times.size
-    found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
-    found["contact"] = np.empty(shape, bool)
+    samples = whole_number("samples", samples)
+    with in_memory(f"periods = {periods:g}, samples = {samples}"):
+        times = np.linspace(0, PERIOD * periods, round(periods * samples) + 1)
+        shape = balls.phase.size, times.size
+        found = {name: np.empty(shape) for name in ("ball", "ball_velocity", "table")}
+        found["contact"] = np.empty(shape, bool)
     for j, amplitude in enumerate(balls.amplitude):
         one = balls.take([j])
         records = [fall[:, :, j]]

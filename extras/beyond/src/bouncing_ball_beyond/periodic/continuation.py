@@ -17,7 +17,7 @@ from bouncing_ball_beyond.contacts.balls import (
     one_number,
     whole_number,
 )
-from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort
+from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort, SearchEnded
 from bouncing_ball_beyond.periodic.branches import FollowedBranch, followed, joined
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
@@ -64,7 +64,7 @@ def follow(
 
     Parameters
     ----------
-    orbit : PeriodicOrbit, or a sequence of PeriodicOrbit and OrbitNotFound
+    orbit : PeriodicOrbit, or a list from :func:`.orbit`
         Orbit, or several orbits, from which to start.
     along : str, optional
         "amplitude", "frequency", or a parameter of the ball or the table. "frequency" changes Ω at
@@ -82,8 +82,9 @@ def follow(
 
     Returns
     -------
-    FollowedBranch, or a list of FollowedBranch and OrbitNotFound
-        A list for a sequence of orbits. An OrbitNotFound gives the reason why a branch is missing.
+    FollowedBranch, or a list
+        A list for a sequence of orbits. Its entries are a FollowedBranch, or the OrbitNotFound or
+        SearchEnded with the reason why a branch is missing.
 
     Raises
     ------
@@ -99,7 +100,7 @@ def follow(
     [('period doubling', 1.526824)]
     """
     orbits = list(orbit) if isinstance(orbit, Iterable) else [orbit]
-    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound) for each in orbits):
+    if not all(isinstance(each, PeriodicOrbit | OrbitNotFound | SearchEnded) for each in orbits):
         raise ValueError(
             f"orbit = {brief(orbit)}: must be a periodic orbit, such as orbit(ball, amplitude=1.0),"
             " or a list of them"
@@ -278,17 +279,18 @@ class Limits(Sequence):
 
     Attributes
     ----------
-    saddle_node, period_doubling : PeriodicOrbit or OrbitNotFound
+    saddle_node, period_doubling : PeriodicOrbit, OrbitNotFound or SearchEnded
         Special orbit, or the reason why there is none.
     stable_ranges : tuple of (low, high)
         Ranges of Λ in which orbits of the branch are stable, in their order on the branch. With a
         constant r on a sine there is one range, from the saddle-node to the period doubling. If
         faster impacts lose less energy, a range may end at a Neimark-Sacker bifurcation, or there
-        may be none. A range also ends where the branch ends.
+        may be none. A range also ends where the branch ends, at Λ = 1e-6 or where it has turned
+        back and reaches twice the Λ at which it was entered.
     """
 
-    saddle_node: PeriodicOrbit | OrbitNotFound
-    period_doubling: PeriodicOrbit | OrbitNotFound
+    saddle_node: PeriodicOrbit | OrbitNotFound | SearchEnded
+    period_doubling: PeriodicOrbit | OrbitNotFound | SearchEnded
     stable_ranges: tuple[tuple[float, float], ...] = ()
 
     def __getitem__(self, i: Any) -> Any:
@@ -347,7 +349,7 @@ def limits(
     Raises
     ------
     SearchEnded
-        If the evaluations are used up.
+        If the evaluations for a single ball are used up.
 
     Examples
     --------
@@ -358,8 +360,11 @@ def limits(
     check_table(table)
     check_whole_numbers("n", n)
     row, (periods,), shape = rows_of(ball, n=n)
-    effort = Effort("limits", one_number("evaluations", evaluations) * periods.size, progress)
+    most = one_number("evaluations", evaluations)
+    effort = Effort("limits", most, progress, balls=periods.size)
     found = limits_of(OrbitEquations(row, 1, periods, table=table, effort=effort))
+    if not shape and isinstance(found[0].saddle_node, SearchEnded):
+        raise found[0].saddle_node
     return found if shape else found[0]
 
 
@@ -368,14 +373,15 @@ def limits_of(equations: OrbitEquations) -> list[Limits]:
     between = _between_limits(equations)
     equations.spend(0, "the branches of these orbits")
     rows = len(between)
-    # Where W′ has another maximum, the branch turns back, and may be stable again.
-    turns_back = equations.table.next_low_slope > 0
-    until = [None if turns_back else "saddle-node"] * rows + ["period doubling"] * rows
+    until: list = ["saddle-node"] * rows + ["period doubling"] * rows
+    if equations.table.next_low_slope > 0:
+        # Where W′ has another maximum, the branch turns back, and may be stable again.
+        until = [None] * (2 * rows)
     to = [LOWEST] * rows + [None] * rows
     branches = _follow_all(between * 2, "amplitude", to, 500, until, False, equations.effort)
     found = []
     for start, below, above in zip(between, branches[:rows], branches[rows:], strict=True):
-        if isinstance(below, OrbitNotFound):
+        if not isinstance(below, FollowedBranch):
             found.append(Limits(below, below))
             continue
         folds = [i for i, each in enumerate(below.special) if each.kind == "saddle-node"]
@@ -457,4 +463,5 @@ def _between_limits(equations: OrbitEquations) -> list:
         for row, each in zip(todo, orbits, strict=True):
             if each and (done[row] or isinstance(found[row], OrbitNotFound)):
                 found[row] = each
+            done[row] |= isinstance(each, SearchEnded)
     return found

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import Ball, H, Impact
-from bouncing_ball_beyond.motions.effort import Effort
+from bouncing_ball_beyond.motions.effort import Effort, SearchEnded
 from bouncing_ball_beyond.periodic.chains import product_of, solve_bordered, solved_or_nan
 from bouncing_ball_beyond.periodic.paths import AMPLITUDE, Path
 from bouncing_ball_beyond.tables.table import FUNDAMENTAL, SINE, Table
@@ -646,8 +646,8 @@ class OrbitNotFound(ValueError):
 
 
 def alone(found: Any) -> Any:
-    """Return the result for a single ball or orbit, or raise it if it is an OrbitNotFound."""
-    if isinstance(found, OrbitNotFound):
+    """Return the result for a single ball or orbit, or raise it if it is a reason why none is."""
+    if isinstance(found, OrbitNotFound | SearchEnded):
         raise found
     return found
 

@@ -19,7 +19,7 @@ from bouncing_ball_beyond.contacts.balls import (
     one_number,
     whole_number,
 )
-from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort
+from bouncing_ball_beyond.motions.effort import EVALUATIONS, Effort, SearchEnded
 from bouncing_ball_beyond.periodic.continuation import limits_of
 from bouncing_ball_beyond.periodic.equations import (
     OrbitEquations,
@@ -63,24 +63,25 @@ def orbit(
     table : Table
         Waveform of the table, by default a sine.
     evaluations : int
-        Number of contacts after which the search for one ball ends. The search for many balls may
-        compute as many for each.
+        Number of contacts after which the search for one ball ends.
     progress : callable, optional
-        Function that receives a line of text every two seconds, such as ``print``.
+        Function that receives a line of text, such as ``print``: every two seconds, or when a step
+        of the search that takes longer has ended.
 
     Returns
     -------
     PeriodicOrbit or list
         One orbit if all arguments are numbers. If arguments are arrays, a list with one entry for
-        each element of the broadcast arrays. The entry is an orbit, or an OrbitNotFound if the
-        orbit does not exist. If no ball follows an orbit, ``admissible`` of the orbit is False.
+        each element of the broadcast arrays. The entry is an orbit, an OrbitNotFound if the orbit
+        does not exist, or a SearchEnded if its evaluations are used up. If no ball follows an
+        orbit, ``admissible`` of the orbit is False.
 
     Raises
     ------
     OrbitNotFound
         If all arguments are numbers and the orbit does not exist.
     SearchEnded
-        If the evaluations are used up.
+        If all arguments are numbers and the evaluations are used up.
     ValueError
         If an argument is out of range.
 
@@ -96,7 +97,8 @@ def orbit(
     if side not in ("stable", "unstable"):
         raise ValueError(f"side = {side!r}: must be 'stable' or 'unstable'")
     row, (amplitudes, periods), shape = rows_of(ball, amplitude=amplitude, n=n)
-    effort = Effort("orbit", one_number("evaluations", evaluations) * amplitudes.size, progress)
+    most = one_number("evaluations", evaluations)
+    effort = Effort("orbit", most, progress, balls=amplitudes.size)
     equations = OrbitEquations(row, 1, periods, table=table, effort=effort)
     sign = 1 if side == "stable" else -1
     found, admissible = near_instants(equations, amplitudes.astype(float), sign)
@@ -110,7 +112,7 @@ def orbit(
 
 
 def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: list) -> list:
-    """Return one orbit, or an OrbitNotFound, for each row.
+    """Return one orbit, or the reason why there is none, for each row.
 
     The first possible result of this list is returned:
 
@@ -118,11 +120,12 @@ def _searched(equations: OrbitEquations, amplitude: NDArray, sign: int, near: li
        this orbit;
     2. an OrbitNotFound, if Λ is below the saddle-node of the branch;
     3. an orbit that no ball follows, from ``near`` or, if there is none, from the search;
-    4. an OrbitNotFound.
+    4. an OrbitNotFound, or a SearchEnded.
     """
     shortest, admissible = shortest_contacts(equations, amplitude, sign)
     found: list = [*shortest]
-    missing = np.flatnonzero(~admissible)
+    ended = np.array([isinstance(each, SearchEnded) for each in found])
+    missing = np.flatnonzero(~admissible & ~ended)
     ends = np.isfinite(equations.ball.free(1.5 * np.pi * equations.periods + 0 * amplitude))
     # Limits are slow to find if free impacts do not end, because the ball creeps off the table.
     ending = missing[ends[missing]]

@@ -12,6 +12,7 @@ from scipy.ndimage import maximum_filter, minimum_filter
 
 from bouncing_ball_beyond.contacts.balls import Ball, broadcast_named, check_ball
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
+from bouncing_ball_beyond.motions.effort import Effort, SearchEnded
 from bouncing_ball_beyond.periodic.equations import OrbitEquations, PeriodicOrbit, flight
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.tables.table import SINE, Table
@@ -109,20 +110,27 @@ def near_instants(
 
 def shortest_contacts(
     equations: OrbitEquations, amplitude: NDArray, sign: int
-) -> tuple[list[PeriodicOrbit | None], NDArray]:
+) -> tuple[list[PeriodicOrbit | SearchEnded | None], NDArray]:
     """For each row, find the orbit with the shortest contact on one side of the saddle-node.
 
-    Orbits that a ball follows come first. Returns the orbit of each row, or None, and whether a
-    ball follows it, shape (rows,).
+    Orbits that a ball follows come first. Returns the orbit of each row, None, or a SearchEnded,
+    and whether a ball follows the orbit, shape (rows,).
     """
-    found: list[PeriodicOrbit | None] = []
+    found: list[PeriodicOrbit | SearchEnded | None] = []
+    whole = equations.effort or Effort("", np.inf)
     for i, each in enumerate(amplitude):
-        alone = single(equations, i)
-        orbits = [alone.orbit(z) for z in all_orbits(alone, float(each))]
+        effort = replace(whole, spent=0, balls=1, tried=[*whole.tried])
+        alone = replace(single(equations, i), effort=effort)
+        try:
+            orbits = [alone.orbit(z) for z in all_orbits(alone, float(each))]
+        except SearchEnded as reason:
+            found.append(reason)
+            continue
+        whole.told = effort.told
         on_side = [each for each in orbits if sign * (1 - each.turn) > -AT_FOLD]
         on_side.sort(key=lambda each: (not each.admissible, each.contact_duration))
         found.append(on_side[0] if on_side else None)
-    return found, np.array([each is not None and each.admissible for each in found])
+    return found, np.array([isinstance(each, PeriodicOrbit) and each.admissible for each in found])
 
 
 def single(equations: OrbitEquations, i: int) -> OrbitEquations:

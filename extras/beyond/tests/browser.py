@@ -15,13 +15,15 @@ BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 
 
 class Frame(NamedTuple):
-    """A page, its address, its first picture, and the size of the screen in CSS pixels."""
+    """A page, its address, its main picture, and the size of the screen in CSS pixels."""
 
     page: str
     address: str = ""
     picture: str = "motion"
     width: int = 1280
     height: int = 900
+    states: tuple[str, ...] = ()
+    """Addresses that are shown one after the other, each on all tabs."""
 
 
 OBSERVER = """<!doctype html>
@@ -51,7 +53,12 @@ function look(frame) {
     return ["acc", "k"].map(name => page.getElementById(name).value);
   };
   return {
+    ...answerOf(frame),
     top: picture.getBoundingClientRect().top,
+    // Where the picture, the answer and the first slider end.
+    ends: [picture, page.getElementById("verdict"),
+      [...page.querySelectorAll("input[type=range]")].find(slider => slider.clientWidth)]
+      .map(part => part.getBoundingClientRect().bottom),
     curves: picture.querySelectorAll("path, circle").length,
     axes: [...picture.querySelectorAll(".name")].map(text => text.textContent),
     scrolled: view.scrollY, wide: root.scrollWidth,
@@ -63,16 +70,34 @@ function look(frame) {
     worst: Number(page.getElementById("badge").dataset.worst),
     warned: !page.getElementById("warning").hidden,
     tab: page.querySelector("[role=tab][aria-selected=true]").textContent,
-    call: page.getElementById("call").textContent,
-    verdict: page.getElementById("verdict").textContent,
     position: page.getElementById("position").textContent,
     starts: page.getElementById("starts").textContent,
-    refused: page.getElementById("refused").textContent,
     others: [...page.querySelectorAll("#others button")].map(button => button.textContent),
+    switched: switched(),
+    states: JSON.parse(frame.dataset.states).map(address => onAllTabs(frame, address)),
+  };
+}
+function answerOf({contentDocument: page, contentWindow: view}) {
+  const text = name => page.getElementById(name).textContent;
+  return {
+    hash: view.location.hash, call: text("call"), verdict: text("verdict"), refused: text("refused"),
+    speed: text("impact-speed"),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
       ({dataset: {key, value}}) => [key, isNaN(value) ? value : Number(value)])),
-    switched: switched(),
+    motions: [...page.querySelectorAll("#stage-ends data")].map(({value}) => JSON.parse(value)),
   };
+}
+// What each tab answers when its button is pressed, from the tab of the address to this tab again.
+function onAllTabs(frame, address) {
+  const {contentDocument: page, contentWindow: view} = frame;
+  view.location.replace(address);
+  view.explorer.show(address);
+  const tabs = [...page.querySelectorAll("[role=tab]")];
+  const first = tabs.findIndex(tab => tab.ariaSelected === "true");
+  return [0, 1, 2, 3].map(k => {
+    if (k) tabs[(first + k) % 3].click();
+    return answerOf(frame);
+  });
 }
 addEventListener("load", () => {
   const seen = {};
@@ -99,6 +124,7 @@ def shown(frames: dict[str, Frame], folder: Path) -> dict[str, dict]:
         page.write_text(frame.page, encoding="utf-8")
         texts.append(
             f'<iframe id="{name}" data-picture="{frame.picture}" width="{frame.width}" '
+            f'data-states="{html.escape(json.dumps(frame.states))}" '
             f'height="{frame.height}" style="border: 0" '
             f'src="{page.name}{html.escape(frame.address)}"></iframe>'
         )

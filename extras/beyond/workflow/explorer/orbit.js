@@ -16,21 +16,21 @@ function insteadOf({amplitude, phase, impact_velocity}, {contact}) {
 function verdictOf(found, question) {
   const {n, physical, tolerance} = question, {states: [ofContact, ofSimple, ofCorrected]} = found;
   const [exact, simple] = found.orbits, error = found.errors.max_height, other = found.corrected.max_height;
-  const heights = [simple, exact].map(orbit => orbit.max_height * (physical?.length ?? 1));
+  const heights = [exact, simple].map(orbit => orbit.max_height * (physical?.length ?? 1));
   const instead = exact.exists && !exact.is_stable ? ` A ball that starts next to it ${insteadOf(exact, found)}.` : "";
   if (ofContact === ofSimple && !exact.is_stable)
     return ["none", "Whether the restitution model is good enough has no answer: no ball stays on the "
       + `${n}-T orbit of either model (${ofContact}).${instead}`];
-  const predicted = `for the greatest height of the ${ofContact} ${n}-T orbit it predicts `
-    + `${inPlaceOf(...heights, physical && "m")}, ${signed(error, tolerance)}`;
-  if (ofContact === ofSimple && Math.abs(error) <= tolerance)
-    return [true, `The restitution model is good enough: ${predicted}, within ${nearest(100 * tolerance, 6)} %.`];
+  const within = Math.abs(error) <= tolerance;
+  const compared = `on the ${ofContact} ${n}-T orbit the maximum height is ${lowerBy(error, tolerance)} a restitution `
+    + `coefficient, ${within ? "within" : "beyond"} the tolerance of ${shown(100 * tolerance)}% `
+    + `(${heightsOf(...heights, physical && "m")})`;
+  if (ofContact === ofSimple && within) return [true, `The restitution model is good enough: ${compared}.`];
   const corrected = ofContact !== ofCorrected || !(Math.abs(other) <= tolerance)
-    ? "; nor is the corrected one: simulate the contact."
-    : `; the corrected restitution model ${exact.is_stable ? `is good enough: its error is ${signed(other, tolerance)}.`
-      : "agrees with the contact."}`;
-  return [false, "The restitution model is not good enough: " + (ofContact === ofSimple
-    ? `${predicted}, beyond ${nearest(100 * tolerance, 6)} %`
+    ? ". The corrected model is not good enough, either: simulate the contact."
+    : exact.is_stable ? `. The height is ${lowerBy(other, tolerance)} the corrected model, which is good enough.`
+      : ". The corrected model agrees with the contact.";
+  return [false, "The restitution model is not good enough: " + (ofContact === ofSimple ? compared
     : `the ${n}-T orbit in this model: ${ofSimple}, on the contact: ${ofContact}`) + corrected + instead];
 }
 
@@ -73,7 +73,7 @@ function drawMotion(found, {n, amplitude, physical: scales}) {
   const height = heightAxis("height", "Ω²z/g", scales, high - low);
   const across = t => clockAxis.factor * t, up = z => height.factor * z;
   const plot = new Plot("motion", [0, across(end)], [up(low - room), up(high + room)], clockAxis.name, height.name,
-    `Height of the ball over one cycle in the models, and of the table. Greatest heights: `
+    `Height of the ball over one cycle in the models, and of the table. Maximum heights: `
     + NAMES.map((name, k) => `${name} ${shown(up(found.orbits[k].max_height), 4)}`).join(", ") + ".");
   plot.line(times.map(t => [across(t), up(amplitude * Math.sin(t))]), "curve table");
   curves.forEach((curve, k) => curve
@@ -123,7 +123,7 @@ function row(name, cells) {
 const ORBIT_ROWS = {
   phase: "phase of impact φ", contact_duration: "duration of contact τ_b",
   impact_velocity: "velocity before, z′_i", bounce_velocity: "bouncing-off velocity z′_b",
-  apparent_restitution: "apparent restitution r_a", max_height: "greatest height max z",
+  apparent_restitution: "apparent restitution r_a", max_height: "maximum height max z",
 };
 // The same quantities in the units of the physical tab.
 const IN_UNITS = {
@@ -176,10 +176,10 @@ function physical(found, {amplitude, physical: {mass, time, length, stiffness, d
     ["largest time step, a fiftieth of it", start / 50, "s", "largest"],
     ["static deflection", weight / stiffness, "m", "static_deflection"],
     ["permanent contact up to Λ", found.thresholds[0], "", "permanent_contact"],
-    ["greatest height", orbit.max_height * length, "m", "max_height"],
+    ["maximum height", orbit.max_height * length, "m", "max_height"],
     ["duration of contact", orbit.contact_duration * time, "s", "contact_duration"],
-    ["impact speed", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
-    ["greatest compression (sampled)", depth * length, "m", "greatest_compression"],
+    ["impact speed on the contact", -orbit.relative_impact_velocity * GRAVITY * time, "m/s", "impact_speed"],
+    ["maximum compression (sampled)", depth * length, "m", "greatest_compression"],
     ["peak force (sampled)", force * weight, "N", "peak_force"],
     ["peak force over weight (sampled)", force, "", "peak_force_over_weight"],
     ["corrected model: delay t_c", found.signature.delay * time, "s", "delay"],

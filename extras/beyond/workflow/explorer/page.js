@@ -50,19 +50,19 @@ function show(hash, kept = DEFAULTS) {
   }
   const onStage = state.tab === "stage";
   for (const id of ["starts", "position", "others"]) $(id).hidden = onStage;
-  $("sides").hidden = state.tab === "design";
+  $("sides").hidden = state.tab !== "orbit";
   $("design-answer").hidden = state.tab !== "design";
-  for (const id of ["contact-choice", "motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
-  for (const id of ["stage-views", "slice-views"]) $(id).hidden = !onStage;
+  for (const id of ["motion-view", "branch-view", "orbit-key", "orbit-views"]) $(id).hidden = onStage;
+  for (const id of ["stage-views", "slice-views", "look", "stage-key"]) $(id).hidden = !onStage;
   $("call-name").textContent = "The same with bouncing_ball_beyond in Python:";
   if (why) return refuse(why);
-  $("refused").textContent = refused.length ? `Not a value here, and left out: ${refused.join(", ")}.` : "";
+  $("refused").textContent = refused.length ? `Left out: ${refused.join(", ")}.` : "";
   document.body.toggleAttribute("data-refused", false);
   $("call").textContent = callOf(state);
   if (onStage) {
     const {units, f} = state;
-    const same = scene => hashOf({...DEFAULTS, tab: "stage", ...scene.state, units, f}) === hashOf(state);
-    $("look").textContent = Object.values(SCENES).find(same)?.look ?? "Balls on one table.";
+    const same = name => hashOf({...parse(`#scene=${name}`).state, units, f}) === hashOf(state);
+    $("look").textContent = SCENES[Object.keys(SCENES).find(same)]?.look ?? "Balls on one table.";
     return showStage(state);
   }
   play(false);
@@ -94,6 +94,9 @@ function show(hash, kept = DEFAULTS) {
       return item;
     }));
   }
+  const speed = state.n * GRAVITY / ((1 + state.r) * state.f);
+  $("impact-speed").textContent = "Contact times depend on the impact speed: "
+    + `n g/((1 + r) f) = ${shown(speed, 3)} m/s on the ${state.n}-T orbit of the restitution model.`;
   $("table-moves").textContent = question.physical ? "Stroke of the table, from its lowest to its highest point: "
     + `${prefixed(2 * question.amplitude * question.physical.length, "m", 3)}.` : "";
   drawOrbit = () => {

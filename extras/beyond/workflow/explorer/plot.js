@@ -12,30 +12,24 @@ function nearest(x, digits) {
     : Number(x.toPrecision(digits));
 }
 const shown = (x, digits = 6) => Number.isFinite(x) ? String(nearest(x, digits)) : "none";
-// A share in two digits, and above 99.5 % as a whole number.
-const percent = x => !Number.isFinite(x) ? "none"
-  : x > 0 && x < 1e-5 ? "less than 0.001 %"
-    : `${nearest(100 * x, x < 0.995 ? 2 : String(Math.trunc(100 * x)).length)} %`;
-
-// An error with its sign; next to the tolerance it has as many digits
+// The size of an error in percent, as `on_shaker` prints it; next to the tolerance it has as many digits
 // as tell the two apart.
-function signed(x, tolerance) {
-  const size = percent(Math.abs(x));
-  if (!Number.isFinite(x) || x === 0 || size.startsWith("less")) return size;
-  const sign = x > 0 ? "+" : "-";
-  if (size === percent(tolerance))
-    for (let digits = 3; digits < 15; digits++) {
-      const found = nearest(100 * Math.abs(x), digits);
-      if (found !== nearest(100 * tolerance, digits)) return `${sign}${found} %`;
-    }
-  return sign + size;
+function percent(x, tolerance) {
+  const [size, limit] = [x, tolerance].map(share => 100 * Math.abs(share));
+  if (!Number.isFinite(size)) return "none";
+  let digits = 3;
+  while (size !== limit && digits < 15 && nearest(size, digits) === nearest(limit, digits)) digits++;
+  return `${nearest(size, digits)}%`;
 }
+// A height on the contact next to the height of a model, in words of `on_shaker`.
+const lowerBy = (x, tolerance) => `${percent(x, tolerance)} ${x < 0 ? "lower" : "higher"} than with`;
+const signed = (x, tolerance) => (x && Number.isFinite(x) ? x > 0 ? "+" : "-" : "") + percent(x, tolerance);
 // Two values that are compared, in as many digits as show that they differ.
-function inPlaceOf(predicted, exact, unit) {
+function heightsOf(exact, predicted, unit) {
   const error = exact ? Math.abs(predicted / exact - 1) : 1;
   const digits = error ? Math.min(12, Math.max(4, 2 - Math.floor(Math.log10(error)))) : 4;
   const power = powerOf(Math.max(Math.abs(predicted), Math.abs(exact)), unit);
-  return [predicted, exact].map(x => unit ? prefixed(x, unit, digits, power) : shown(x, digits)).join(" in place of ");
+  return [exact, predicted].map(x => unit ? prefixed(x, unit, digits, power) : shown(x, digits)).join(" instead of ");
 }
 
 const prefixPower = x => x === 0 ? 0

@@ -34,8 +34,8 @@ const WAYS = {moves: {acceleration: "acc", stroke: "stroke"}, touch: {stiffness:
 const GRAVITY = 9.80665;
 
 // The models whose balls are on the stage.
-const modelsOf = ({model, r, w}) => Object.fromEntries(
-  [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, "displacement")}]]
+const modelsOf = ({model, r, w, release}) => Object.fromEntries(
+  [["restitution", {r}], ["spring-damper", {contact: contactOf(r, w, release)}]]
     .filter(([name]) => model === "both" || model === name));
 
 // The units in which a value may be given, in that of the page, which is the first.
@@ -57,21 +57,21 @@ function numberOf(text, name) {
 
 // The state of a hash, and what in it was no value: that has its default. Names that are not in the
 // hash have the values of `kept`. A scene is a state of the stage by its name. A hash with values and
-// without a tab is a dimensionless case, whose contact ends as in the paper.
+// without a tab is a dimensionless case. Its contact ends as in the paper, as that of a scene or of a
+// stage without a release does. What the tab does not use is left out, too.
 function parse(hash, kept = DEFAULTS) {
   const given = new URLSearchParams(hash.replace(/^#/, "")), scene = SCENES[given.get("scene")];
   const state = {...kept, ...scene?.state}, refused = [];
   if (scene) state.tab = "stage";
   else if (![...given].every(([name]) => name === "scene")) state.tab = "orbit";
-  if (state.tab === "orbit" && !given.has("tab")) state.release = "displacement";
   const tab = given.get("tab") ?? state.tab;
+  if (tab === "stage" || (tab === "orbit" && !given.has("tab"))) state.release = "displacement";
   if (given.has("scene") && !scene)
     refused.push(`scene = ${given.get("scene")} (the scenes are ${Object.keys(SCENES).join(", ")})`);
   given.delete("scene");
   for (const [choice, names] of Object.entries(WAYS)) {
     const found = Object.keys(names).filter(way => given.has(names[way]));
     if (found.length) state[choice] = found.at(-1);
-    if (found.length > 1) refused.push(`${names[found[0]]} beside ${names[found[1]]}`);
   }
   for (const [name, text] of given) {
     const value = numberOf(text, name), range = rangeOf(name, tab);
@@ -80,10 +80,13 @@ function parse(hash, kept = DEFAULTS) {
         && (!WHOLE.includes(name) || Number.isInteger(value)))
       state[name] = name in CHOICES ? text : value;
     else {
-      refused.push(`${name} = ${text}` + (name in DEFAULTS ? ` (in its place ${DEFAULTS[name]})` : ""));
+      refused.push(`${name} = ${text}` + (name in DEFAULTS ? ` (not a value here; ${DEFAULTS[name]} in its place)` : ""));
       if (name in DEFAULTS) state[name] = DEFAULTS[name];
     }
   }
+  const used = TABS[state.tab](state), isDropped = name => name in DEFAULTS && !used.includes(name)
+    && (given.has(name) || (ASKED.includes(name) && state[name] !== DEFAULTS[name]));
+  for (const name of Object.keys(DEFAULTS).filter(isDropped)) refused.push(`${name} = ${state[name]} (not used here)`);
   return {state, refused};
 }
 
@@ -119,14 +122,16 @@ function givenBy(a, w, state) {
     time: 1000 * freeTime(state) * time / w};
 }
 
-// The same case on another tab, or given by other values, which are filled in with four digits. A value
-// that belongs to the case already, within these digits, keeps its own.
+// The same case on another tab, or given by other values, which are filled in with six digits. A value
+// that belongs to the case already, within these digits, keeps its own. The stage is drawn in the units
+// of the tab before it.
 function likewise(state, changed) {
-  const next = {...state, ...changed}, [table, contact] = givenOf(next);
+  const units = changed.tab === "stage" && {design: "physical", orbit: "dimensionless"}[state.tab] || state.units;
+  const next = {...state, units, ...changed}, [table, contact] = givenOf(next);
   const a = amplitudeOf(state), w = frequencyRatioOf(state), given = givenBy(a, w, next);
-  const differs = (found, wanted) => Math.abs(found - wanted) > 5e-4 * wanted;
-  if (differs(amplitudeOf(next), a)) next[table] = nearest(given[table], 4);
-  if (differs(frequencyRatioOf(next), w)) next[contact] = nearest(given[contact], 4);
+  const differs = (found, wanted) => Math.abs(found - wanted) > 5e-6 * wanted;
+  if (differs(amplitudeOf(next), a)) next[table] = nearest(given[table], 6);
+  if (differs(frequencyRatioOf(next), w)) next[contact] = nearest(given[contact], 6);
   return next;
 }
 
@@ -141,7 +146,7 @@ function caseOf(state) {
 // Why a state has no answer: no damping gives r, Λ or ϖ is out of range, or a ball rises.
 function impossible(state) {
   const {tab, a, r, w, phi, v, dv, dphi, release} = state;
-  if (tab !== "stage" && Number.isNaN(dampingOf(r, release)))
+  if (!(tab === "stage" && state.model === "restitution") && Number.isNaN(dampingOf(r, release)))
     return `r = ${r} is not above e⁻² = ${shown(Math.exp(-2), 3)}: a contact that ends where its force is zero `
       + "then needs a damping ratio of 1 or more, which this page has not. Choose the end at δ = 0.";
   if (tab === "design") {
@@ -166,16 +171,16 @@ function impossible(state) {
   return "";
 }
 
+// What each tab uses, in the order of its address, and what an orbit is asked for.
 const TABS = {
-  orbit: state => ["tab", "r", "w", "a", "n", "release", "side",
-    ...(state.t === DEFAULTS.t ? [] : ["t"])],
-  design: state => ["tab", "m", "f", ...givenOf(state), "r", "n", "release",
-    ...(state.t === DEFAULTS.t ? [] : ["t"])],
-  stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "phi",
-    "v", "balls", "dv", "dphi", "from", "pace", "view", "units", "f"],
+  orbit: () => ["tab", "r", "w", "a", "n", "release", "side", "t"],
+  design: state => ["tab", "m", "f", ...givenOf(state), "r", "n", "release", "t"],
+  stage: ({model}) => ["tab", "model", "r", ...(model === "restitution" ? [] : ["w"]), "a", "release",
+    "phi", "v", "balls", "dv", "dphi", "from", "pace", "view", "units", "f"],
 };
-const hashOf = state => "#" + TABS[state.tab](state).map(
-  name => `${name}=${encodeURIComponent(state[name])}`).join("&");
+const ASKED = ["n", "side", "t"];
+const hashOf = state => "#" + TABS[state.tab](state).filter(name => name !== "t" || state.t !== DEFAULTS.t)
+  .map(name => `${name}=${encodeURIComponent(state[name])}`).join("&");
 
 // The arguments of the models: of the physical tab, its dimensionless groups. The tolerance is given
 // in percent.
@@ -192,7 +197,8 @@ function questionOf(state) {
 function callOf(state) {
   const {tab, r, n, release, side} = state;
   if (tab === "stage") {
-    const balls = {restitution: `Rigid(${r})`, "spring-damper": `SpringDamper(${state.w}, restitution=${r})`};
+    const balls = {restitution: `Rigid(${r})`, "spring-damper": `SpringDamper(${state.w}, restitution=${r}, `
+      + `release="${release}")`};
     return Object.keys(modelsOf(state)).map(model => `motion_of(${balls[model]}, amplitude=${state.a}, `
       + `phase=${state.phi}, velocity=${state.v})`).join("\n");
   }

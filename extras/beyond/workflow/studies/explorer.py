@@ -26,7 +26,7 @@ BOUND = 1e-11
 largest that was seen."""
 
 QUANTITIES = {
-    "max_height": "greatest height",
+    "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
     "phase": "phase of impact, share of a period",
     "apparent_restitution": "apparent restitution",

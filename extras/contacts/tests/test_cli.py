@@ -78,6 +78,15 @@ def test_a_recording_is_piped(tmp_path):
     assert "r = 0.8000" in done.stdout
 
 
+def test_several_files_have_an_answer_each(typed, tmp_path):
+    one, other = tmp_path / "a.csv", tmp_path / "b.csv"
+    one.write_text("time (s)\n0.1\n0.9\n1.5")
+    other.write_text("height (cm)\n100\n64\n41")
+    out = typed(f"fit {one} {other}")[1]
+    assert "a.csv: r = 0.75" in out and "b.csv: r = 0.80" in out
+    assert "are no heights or times with one unit" in typed(f"fit {one} none.csv")[2]
+
+
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a full device")
 def test_a_full_device_is_one_line():
     code = "from bouncing_ball_contacts.cli import run; run()"
@@ -143,6 +152,9 @@ MISTAKES = {
     f'{BALL} --stiffness "1 kN/m" --contact-time "1 ms"': "the stiffness or the contact time",
     f'{BALL} --stiffness "1,500 N/m"': "can be read as",
     f'{BALL} --stiffness "1 kN/m" --engine lammps-hertz': "no stiffness in N/m",
+    f"{BALL} --diameter 6cm": "No such option '--diameter'. Did you mean '--radius'?",
+    f"{BALL} --dt 1ms": "Did you mean '--time-step'?",
+    f"{BALL} --contact-time 1s": "deeper than the radius of 11.5 mm: give a shorter one",
     f"{BALL} --density cheese": "or 'rubber'",
     f"{BALL} --points 0": "no whole number from 1 to 1000",
     f"{BALL} --points two": "is not a valid integer",

@@ -262,15 +262,18 @@ def fit_command(
 
     RECORDING is a file, - for what is piped, a published experiment, such as croquet, or numbers
     and their unit: successive heights such as 1.80 1.21 0.82 m, or times in s or ms. Of a sound,
-    drop.wav, the impacts are heard, and written to drop.txt and drop.svg.
+    drop.wav, the impacts are heard, and written to drop.txt and drop.svg. Several files have an
+    answer each.
     """
     from bouncing_ball_contacts.fits import fit
     from bouncing_ball_contacts.recordings import read
     from bouncing_ball_contacts.tables import typed_readings
 
-    source = typed_readings(recording) if len(recording) > 1 else recording[0]
+    are_files = len(recording) > 1 and all(Path(each).is_file() for each in recording)
+    is_typed = len(recording) > 1 and not are_files
+    source = typed_readings(recording) if is_typed else recording[0]
     heard = None
-    if isinstance(source, str) and source.lower().endswith(".wav"):
+    if not are_files and isinstance(source, str) and source.lower().endswith(".wav"):
         heard, (labels, picture) = _hear(Path(source), begin, end)
         if not as_json:
             click.echo(f"{source}: {heard}; written to {labels.name} and {picture.name}")
@@ -279,8 +282,14 @@ def fit_command(
         of_fit["resolution"] = of_fit["resolution"] or f"{heard.resolution:.2g} s"
     elif (begin, end) != (None, None):
         raise Refused("--from and --to are of a sound in a file, such as drop.wav")
-    path = "/dev/stdin" if source == "-" else source
-    balls = read(path, leave_out, ball, of_fit["resolution"], _assigned(columns))
+    sources = recording if are_files else ["/dev/stdin" if source == "-" else source]
+    balls = {
+        f"{path} {name}".strip() if are_files else name: one
+        for path in sources
+        for name, one in read(
+            path, leave_out, ball, of_fit["resolution"], _assigned(columns)
+        ).items()
+    }
     fits = {name: fit(one, **of_fit) for name, one in balls.items()}
     if engine is None:
         if time_step is not None:
@@ -288,7 +297,7 @@ def fit_command(
         _print(fits if len(fits) > 1 else fits[next(iter(fits))], as_json, explain, heard=heard)
         return
     if len(fits) > 1:
-        raise Refused(f"the file has {', '.join(fits)}: a contact is written for one, --ball")
+        raise Refused(f"there are {', '.join(fits)}: a contact is written for one, --ball")
     (found,) = fits.values()
     # The contact time of a recording is for springs.
     bounce = found.bounce(is_spring=rows_of(engine)[1] is None)
@@ -319,11 +328,30 @@ def engines_command(name: str | None) -> None:
         click.echo(f"    two bodies: {each.pair.text}")
 
 
+_MEANT = {
+    "--diameter": "--radius",
+    "--radius": "--diameter",
+    "--dt": "--time-step",
+    "--step": "--time-step",
+    "--height": "--drop-height",
+    "--velocity": "--speed",
+    "--e": "--restitution",
+    "--cor": "--restitution",
+    "--depth": "--penetration",
+}
+"""Options by other names that people type."""
+
+
 def run() -> None:
     """Run the command; a mistake is one line with the exit status 2."""
     try:
         sys.exit(main(standalone_mode=False))
     except (Refused, click.ClickException, OSError, ArithmeticError) as mistake:
+        if isinstance(mistake, click.NoSuchOption) and mistake.option_name in _MEANT:
+            meant = _MEANT[mistake.option_name]
+            mistake = click.UsageError(
+                f"No such option '{mistake.option_name}'. Did you mean '{meant}'?"
+            )
         text = mistake.format_message() if isinstance(mistake, click.ClickException) else mistake
         is_far = isinstance(mistake, ArithmeticError)
         said = "a quantity is too large or too small to be computed: " if is_far else ""

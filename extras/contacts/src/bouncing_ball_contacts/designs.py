@@ -45,7 +45,7 @@ from bouncing_ball_contacts.schemes import (
     drop,
     nearby,
 )
-from bouncing_ball_contacts.units import LONGEST_STEP, holding, refuse, show, span
+from bouncing_ball_contacts.units import LONGEST_STEP, Refused, holding, refuse, show, span
 
 LEAST_RESTITUTION = 0.01
 """Below it a damping, and what it makes of a depth, hardly depend on r."""
@@ -390,6 +390,12 @@ def design_spring(bounce: Bounce, engine: Engine, time_step: Quantity = None) ->
         elif not bounce.gives_contact:
             chosen = problem.between(asked, short)
     found = answer(problem, chosen, asked)
+    deepest = found.outcome.depth[1]
+    if bounce.contact_time and deepest > bounce.size:
+        raise Refused(
+            f"this contact sinks {show(deepest, 'm')}, deeper than the {bounce.size_name} of "
+            f"{show(bounce.size, 'm')}: give a shorter one, or the size"
+        )
     # A row for what is given, or one that is not deeper than permitted.
     also: tuple[Answer, ...] = ()
     if short.step < chosen.step and not problem.keeps(found.outcome, problem.permitted):

@@ -248,6 +248,8 @@ class ByNumber:
         Height in m above which a body that rises flies freely, and below which a contact is found.
     ignored_by : str
         A backend of the product that ignores the number.
+    own_step : float
+        Default time step in s; 0 if a program has to choose one.
     """
 
     name: str
@@ -280,6 +282,7 @@ class ByNumber:
     reach: float = 0.06
     borrows: str = ""
     ignored_by: str = ""
+    own_step: float = 0.0
     notes: tuple[str, ...] = ()
     not_for: tuple[str, ...] = ()
 

@@ -411,6 +411,7 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
                 f"at some instants it does not bounce: {show(speed, 'm/s')} is near the threshold "
                 f"of {limit}",
             ),
+            *((True, said) for said in _by_assumptions(case, written, r)),
             (r.high >= 1.0005, f"at some instants the ball gains energy: r is up to {r.high:.3f}"),
             (
                 speed / 3 > slowest and abs(slower.mean - r.mean) > TOLERANCE / 2,
@@ -431,6 +432,30 @@ def _warnings(case: Case, written: float, r: Range) -> list[str]:
             ),
         ]
     )
+
+
+def _by_assumptions(case: Case, written: float, r: Range) -> Iterator[str]:
+    """Yield what was assumed, and r with another value if that is outside of the range."""
+    row = case.engine
+    bounce = case.bounce
+    others: dict[str, Case] = {}
+    if row.pixels and row.pixels == BY_NUMBER[row.name].scaled(bounce.gravity).pixels:
+        fewer = replace(row.scaled(bounce.gravity, row.pixels / 6), pair=row.pair)
+        others[f"{row.pixels:.3g} pixels per metre; with {fewer.pixels:.3g}"] = case._replace(
+            engine=fewer, threshold=case.threshold * row.pixels / fewer.pixels
+        )
+    if bounce.radius is None and bounce.density is None:
+        smaller = replace(bounce, radius=bounce.size / 5)
+        both = f"{show(bounce.size, 'm')}; with {show(smaller.size, 'm')}"
+        others[f"a {bounce.size_name} of {both}"] = case._replace(bounce=smaller)
+    if row.depends_on_mass and bounce.mass is None:
+        others["a mass of 1 kg; with 50 g"] = case._replace(
+            bounce=replace(bounce, mass=0.05, radius=bounce.size)
+        )
+    for assumed, other in others.items():
+        differs = Range.of(other.restitutions(written, bounce.impact_speed))
+        if max(r.low - differs.low, differs.high - r.high) > TOLERANCE / 2:
+            yield f"r is for {assumed} it is {differs}"
 
 
 def _remarks(case: Case, written: float, r: Range) -> list[str]:
@@ -525,13 +550,14 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     """
     _refuse_ignored(bounce, engine)
     engine = engine.scaled(bounce.gravity)
-    if time_step is None and engine.springs:
+    is_free = time_step is None and not engine.own_step and bool(engine.springs)
+    if is_free:
         # The body moves by less than it may sink, and gravity adds less than the tolerance.
         speed = bounce.impact_speed
         slow = TOLERANCE * speed / bounce.gravity if bounce.gravity else math.inf
         asked = float(f"{min(0.9 * bounce.limit / speed, slow, LONGEST_STEP):.3g}")
     else:
-        asked = _step(time_step)
+        asked = _step(time_step, engine)
     step = asked
     # A body that moves farther than its radius passes a table.
     while engine.springs and bounce.impact_speed * step > bounce.size:
@@ -539,7 +565,7 @@ def design_number(bounce: Bounce, engine: ByNumber, time_step: Quantity) -> Answ
     case = Case(engine, bounce, step, engine.threshold, engine.settings)
     best = case.wanted()
     also = _other_step(best)
-    if time_step is None and also:
+    if is_free and also:
         # No step was asked for.
         return also[0]
     found = best.answer()
@@ -614,7 +640,7 @@ def diagnose_number(
     _refuse_ignored(bounce, engine, other is not None)
     given = _given(engine, parameters)
     differs = _given(engine, other or {}, is_other=True)
-    step = _step(time_step)
+    step = _step(time_step, engine)
     if "number" not in given and not engine.springs:
         raise Refused(f"{engine.parameter} is missing: give {engine.parameter}=0.8")
     engine = replace(
@@ -661,10 +687,11 @@ def _later(engine: ByNumber, bodies: Sequence[Mapping[str, Any]]) -> Rule:
     return max((body.get("combine", MEAN) for body in bodies), key=list(MODES.values()).index)
 
 
-def _step(time_step: Quantity) -> float:
-    if time_step is None:
+def _step(time_step: Quantity, engine: ByNumber) -> float:
+    """Return the time step in s, by default that of the engine."""
+    if time_step is None and not engine.own_step:
         raise Refused("the time step is missing: --time-step 1/60 or time_step='2 ms'")
-    return step_in_si(time_step)
+    return engine.own_step if time_step is None else step_in_si(time_step)
 
 
 _READ: Mapping[str, Callable[[str, Any], Any]] = {

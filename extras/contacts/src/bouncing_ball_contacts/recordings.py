@@ -192,9 +192,11 @@ def _refuse_durations(table: Table, flights: Array, lines: Lines, another: str) 
     half = len(flights) // 2
     # Flights get shorter, even if r is 0.997.
     if half >= 10 and flights[half:].mean() > 0.97 * flights[:half].mean():
+        others = [each.name for each in table.columns if each.role not in ("time", *TEXTS)]
         raise Refused(
-            f"{table.name}: evenly spaced times are those of samples: of what? name the columns t "
-            "and y"
+            f"{table.name}: evenly spaced times are those of samples ({', '.join(others)}): "
+            "positions, y (m), are read, and sounds as WAV, but neither accelerations nor forces; "
+            + COLUMNS
         )
     table.refuse(
         flights <= 0,
@@ -489,6 +491,9 @@ def _clock(columns: list[Column], gravity: Any, fall: Any) -> tuple[float, str, 
 
 def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
+    unit = columns[1].unit
+    if unit not in ("", "px", *units_of("m")):
+        raise Refused(f"{table.name}: {columns[1].name!r} is in {unit}, and is no position, y (m)")
     films = _films(table, columns)
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]

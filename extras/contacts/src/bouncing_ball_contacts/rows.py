@@ -670,6 +670,7 @@ _PHYSX = ByNumber(
     name="physx",
     rule=partial(step_rules.physx, ahead=0.04),
     ran="PhysX 5.6.1 (physx-js-webidl 2.7.3)",
+    own_step=1 / 60,
     threshold=2.0,
     set_by="bounceThresholdVelocity",
     lines={
@@ -715,6 +716,7 @@ _DART = ByNumber(
     name="dart",
     rule=step_rules.dart,
     ran="DART 6.20 (dartpy)",
+    own_step=1e-3,
     lines={
         "restitution": "dynamicsAspect->setRestitutionCoeff({value});  // of {bodies}",
         "step": "world->setTimeStep({value});",
@@ -731,6 +733,7 @@ _RAPIER = ByNumber(
     name="rapier",
     rule=step_rules.rapier,
     ran="Rapier 0.36 (Python) and 0.21 (JavaScript)",
+    own_step=1 / 60,
     lines={
         "restitution": "ColliderBuilder::ball(radius).restitution({value})  // of {bodies}",
         "step": "integration_parameters.dt = {value};",
@@ -755,6 +758,7 @@ BY_NUMBER = {
         replace(
             _JOLT,
             name="godot-jolt",
+            own_step=1 / 60,
             parameter="bounce",
             pair=Rule("added, and at most 1", lambda a, b: min(a + b, 1.0), lambda x: x / 2),
             set_by=_GODOT,
@@ -773,6 +777,7 @@ BY_NUMBER = {
         replace(
             _PHYSX,
             name="unity",
+            own_step=0.02,
             rule=partial(step_rules.physx, ahead=0.02),
             parameter="bounciness",
             set_by="Physics.bounceThreshold",
@@ -897,6 +902,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="matter-js",
+            own_step=1 / 60,
             rule=step_rules.matter,
             ran="matter-js 0.20.0",
             pair=LARGER,
@@ -927,6 +933,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="pybullet",
+            own_step=1 / 240,
             rule=step_rules.pybullet,
             ran=ENGINES["pybullet"].ran,
             pair=PRODUCT,
@@ -987,6 +994,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="gazebo",
+            own_step=1e-3,
             rule=step_rules.gazebo,
             ran=ENGINES["gazebo"].ran,
             parameter="restitution_coefficient",
@@ -1027,6 +1035,7 @@ BY_NUMBER = {
         ),
         ByNumber(
             name="cannon-es",
+            own_step=1 / 60,
             rule=step_rules.cannon,
             ran="cannon-es 0.20.0",
             pair=PAIR,
@@ -1066,6 +1075,7 @@ NAMES = {
     "bullet3": "pybullet",
     "cannon": "cannon-es",
     "dartpy": "dart",
+    "dmcontrol": "mujoco",
     "dartsim": "dart",
     "drakelagged": "drake",
     "gazeboclassic": "gazebo",
@@ -1078,9 +1088,12 @@ NAMES = {
     "isaac": "isaac-sim",
     "jbox2d": "box2d-2.3",
     "matter": "matter-js",
+    "mjlab": "mujoco-warp",
     "mjwarp": "mujoco-warp",
     "mjx": "mujoco",
     "mujocomjx": "mujoco",
+    "mujocoplayground": "mujoco",
+    "robosuite": "mujoco",
     "newtonsemiimplicit": "newton",
     "newtonfeatherstone": "newton",
     "nvidiaphysx": "physx",

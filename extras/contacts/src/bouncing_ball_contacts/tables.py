@@ -471,7 +471,8 @@ def _line_of_headings(lines: Mapping[int, str], named: Mapping[str, str]) -> int
 
 def _is_reading(cell: str) -> bool:
     """Return whether a cell has a number, which may have a unit."""
-    return bool(re.fullmatch(r"[-+−]?[.,]?\d\S*( ?[^\W\d]\S*)?", cell))
+    found = re.fullmatch(r"[-+−]?[.,]?\d[-+−\d.,:/'\"± eE]*?([^\W\d]*|%)", cell)
+    return bool(found and (not found[1] or SPELLED.get(found[1].lower(), found[1]) in _KNOWN_UNITS))
 
 
 def _divided_by_spaces(name: str, table: dict[int, str]) -> dict[int, list[str]]:
@@ -509,8 +510,10 @@ def _series_in(headings: list[str]) -> list[tuple[str, str]]:
     """
     found = [_name_in(each) for each in headings]
     plain = [each for _, each in found]
+    again = [each for each in plain if each and headings.count(each) > 1]
+    are_runs = any(_heading(each)[2] not in ("", *TEXTS) for each in again)
     for i, each in enumerate(plain):
-        if each and headings.count(each) > 1:
+        if are_runs and each in again:
             found[i] = str(headings[: i + 1].count(each)), each
     return found
 
@@ -536,7 +539,7 @@ def _below_each_other(
     alike = [each for each in dict.fromkeys(common) if each]
     if not any(_heading(each)[2] not in ("", *TEXTS) for each in alike):
         both = " and ".join(f"{each} has {', '.join(kind)}" for each, kind in kinds.items())
-        raise Refused(f"{name}: {both}: leave the same columns of each")
+        raise Refused(f"{name}: {both}: leave the same columns of each, {COLUMNS}")
     numbers: list[int] = []
     stacked: list[list[str]] = []
     for each, of_series in series.items():
@@ -555,7 +558,9 @@ def _with_row_of_units(rows: dict[int, list[str]]) -> list[str]:
     begin, first = list(rows)[:2]
     headings = rows.pop(begin)
     units = [re.sub(r"[()\[\]]", "", cell).strip("-") for cell in rows[first]]
-    if not any(units) or not {*map(str.lower, filter(None, units))} <= _KNOWN_UNITS:
+    are_known = {*map(str.lower, filter(None, units))} <= _KNOWN_UNITS
+    are_bracketed = all(re.fullmatch(r"[(\[].*[)\]]|", cell) for cell in rows[first])
+    if not any(units) or not (are_known or are_bracketed):
         return headings
     del rows[first]
     padded = itertools.zip_longest(headings, units, fillvalue="")
@@ -628,11 +633,13 @@ def table_of(
 
 def _with_names(name: str, headings: list[str], named: Mapping[str, str]) -> list[str]:
     """Return the headings that are given for columns; those of other columns are remarks."""
-    plain = [each.lower() for each in headings]
+    plain = [_heading(each)[0].lower() for each in headings]
+    whole = [each.lower() for each in headings]
     found = ["remark"] * len(headings)
     for key, heading in named.items():
-        is_there = key.lower() in plain
-        i = plain.index(key.lower()) if is_there else int(key) - 1 if key.isdecimal() else -1
+        names = whole if key.lower() in whole else plain
+        is_there = key.lower() in names
+        i = names.index(key.lower()) if is_there else int(key) - 1 if key.isdecimal() else -1
         refuse(
             [
                 (

@@ -438,24 +438,31 @@ def _by_assumptions(case: Case, written: float, r: Range) -> Iterator[str]:
     """Yield what was assumed, and r with another value if that is outside of the range."""
     row = case.engine
     bounce = case.bounce
-    others: dict[str, Case] = {}
-    if row.pixels and row.pixels == BY_NUMBER[row.name].scaled(bounce.gravity).pixels:
-        fewer = replace(row.scaled(bounce.gravity, row.pixels / 6), pair=row.pair)
-        others[f"{row.pixels:.3g} pixels per metre; with {fewer.pixels:.3g}"] = case._replace(
-            engine=fewer, threshold=case.threshold * row.pixels / fewer.pixels
-        )
-    if bounce.radius is None and bounce.density is None:
-        smaller = replace(bounce, radius=bounce.size / 5)
-        both = f"{show(bounce.size, 'm')}; with {show(smaller.size, 'm')}"
-        others[f"a {bounce.size_name} of {both}"] = case._replace(bounce=smaller)
-    if row.depends_on_mass and bounce.mass is None:
-        others["a mass of 1 kg; with 50 g"] = case._replace(
-            bounce=replace(bounce, mass=0.05, radius=bounce.size)
-        )
-    for assumed, other in others.items():
-        differs = Range.of(other.restitutions(written, bounce.impact_speed))
-        if max(r.low - differs.low, differs.high - r.high) > TOLERANCE / 2:
-            yield f"r is for {assumed} it is {differs}"
+    smaller = replace(bounce, radius=bounce.size / 5)
+    light = replace(bounce, mass=0.05, radius=bounce.size)
+    fewer = replace(row.scaled(bounce.gravity, row.pixels / 6), pair=row.pair)
+    is_own_scale = row.pixels == BY_NUMBER[row.name].scaled(bounce.gravity).pixels
+    others = [
+        (
+            row.pixels and is_own_scale,
+            f"{row.pixels:.3g} pixels per metre; with {fewer.pixels:.3g}",
+            case._replace(engine=fewer, threshold=6 * case.threshold),
+        ),
+        (
+            bounce.radius is bounce.density is None,
+            f"a radius of {show(bounce.size, 'm')}; with {show(smaller.size, 'm')}",
+            case._replace(bounce=smaller),
+        ),
+        (
+            row.depends_on_mass and bounce.mass is None,
+            "a mass of 1 kg; with 50 g",
+            case._replace(bounce=light),
+        ),
+    ]
+    for is_assumed, assumed, other in others:
+        r_other = Range.of(other.restitutions(written, bounce.impact_speed)) if is_assumed else r
+        if max(r.low - r_other.low, r_other.high - r.high) > TOLERANCE / 2:
+            yield f"r is for {assumed} it is {r_other}"
 
 
 def _remarks(case: Case, written: float, r: Range) -> list[str]:

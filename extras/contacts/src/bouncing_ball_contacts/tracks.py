@@ -86,16 +86,12 @@ def copies(t: Array, y: Array, digit: float) -> NDArray[np.bool_]:
     """
     begins = np.flatnonzero(np.diff(y, prepend=math.nan) != 0)
     moves = np.diff(y[begins])
-    copied = np.zeros((2, len(y)), bool)
-    for is_copy, least in zip(
-        copied, (2.5 * digit, 10 * _noise(t[begins], y[begins])), strict=True
-    ):
-        ways = np.sign(moves) * (np.abs(moves) > max(least, 2.5 * digit))
-        goes_on = np.zeros(len(begins), bool)
-        goes_on[1:-1] = ways[:-1] * ways[1:] > 0
-        is_copy[:] = np.repeat(goes_on, np.diff([*begins, len(y)]))
-        is_copy[begins] = False
-    return copied[0] & copied[1].any()
+    ways = np.zeros(len(begins))
+    ways[1:-1] = np.minimum(*np.abs([moves[:-1], moves[1:]])) * (moves[:-1] * moves[1:] > 0)
+    around = np.repeat(ways, np.diff([*begins, len(y)]))
+    around[begins] = 0
+    has_copies = around.max(initial=0) > 10 * _noise(t[begins], y[begins])
+    return has_copies & (around > 2.5 * digit)
 
 
 def outliers(t: Array, y: Array, digit: float) -> NDArray[np.bool_]:

@@ -268,7 +268,8 @@ def content_of(path: Path) -> Any:
 def differences(name: str, old: Any, new: Any) -> list[str]:
     """What differs in the contents of a file, which are those of `content_of`."""
     if isinstance(old, xr.Dataset):
-        return changes(about(old), about(new)) or values_that_differ(old, new)
+        described = [*labels(old, new), *changes(about(old), about(new))]
+        return described or values_that_differ(old, new)
     if old is None:
         return ["the picture differs"]
     # An empty line follows the last line feed.
@@ -308,6 +309,22 @@ def about(data: xr.Dataset) -> dict:
         for name, variable in data.variables.items()
     }
     return plain(attributes | variables)
+
+
+def labels(old: xr.Dataset, new: xr.Dataset) -> list[str]:
+    """Name the texts along dimensions that only one of two datasets has.
+
+    >>> old, new = (xr.Dataset(coords={"claim": names}) for names in (["high"], ["high", "low"]))
+    >>> labels(old, new), labels(new, old)
+    (['claim low is new'], ['claim low is missing'])
+    """
+    lines = []
+    for dim in sorted(map(str, old.dims)):
+        if dim in new.dims and old[dim].dtype.kind in "UO":
+            before, after = (each[dim].values.tolist() for each in (old, new))
+            lines += [f"{dim} {label} is new" for label in after if label not in before]
+            lines += [f"{dim} {label} is missing" for label in before if label not in after]
+    return lines
 
 
 def values_that_differ(old: xr.Dataset, new: xr.Dataset) -> list[str]:

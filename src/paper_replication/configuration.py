@@ -56,33 +56,53 @@ def mistakes(config: Mapping, schema: Mapping) -> Iterator[str]:
         yield f"{', '.join(missing)} missing: leave out --replace-workflow-config to change parts"
         return
     yield from impossible_numbers(config)
-    settings_in_entries = [
-        f"{stage}.{name}.{key}"
-        for stage, section in stages(config).items()
-        for name in names(section)
-        for key in (section[name] if isinstance(section[name], Mapping) else ())
-        if key in config.keys() - stages(config)
-    ]
-    yield from (
-        f"{path}: a setting of the whole run, not of an entry" for path in settings_in_entries
-    )
-    described = schema.get("$defs", {}).get("described", {}).get("properties", {})
+    misplaced = settings_in_entries(config)
+    yield from (f"{path}: a setting of the whole run, not of an entry" for path in misplaced)
     for error in Draft202012Validator(schema).iter_errors(config):
-        where = ".".join(str(key) for key in error.absolute_path)
         if error.validator in ("additionalProperties", "unevaluatedProperties"):
-            more = described if error.validator == "unevaluatedProperties" else ()
-            known = [*error.schema["properties"], *more]
-            for key in error.instance.keys() - {*known}:
-                path = ".".join(filter(None, (where, str(key))))
-                if path not in settings_in_entries:
-                    yield f"{path}: unknown key{meant(str(key), known)}"
+            lines = unknown_keys(error, schema)
+            yield from (line for path, line in lines.items() if path not in misplaced)
         elif error.validator == "required" and error.validator_value == ["title"]:
-            stage, name = error.absolute_path
-            known = schema["properties"][stage]["properties"]
-            unknown = "" if name in known else f"unknown key{meant(name, known)} "
-            yield f"{where}: {unknown}({error.schema['description']})"
+            yield untitled(error, schema)
         else:
+            where = dotted(error.absolute_path)
             yield ": ".join(filter(None, (where, f"{error.message}{reason(error)}")))
+
+
+def settings_in_entries(config: Mapping) -> list[str]:
+    """Return the paths of settings of the whole run that stand in an entry."""
+    settings = config.keys() - stages(config)
+    return [
+        dotted((stage, name, key))
+        for stage, section in stages(config).items()
+        for name, entry in section.items()
+        if isinstance(entry, Mapping)
+        for key in entry
+        if key in settings
+    ]
+
+
+def unknown_keys(error: ValidationError, schema: Mapping) -> dict[str, str]:
+    """Return a line for each key that the schema does not know, by its path."""
+    known = [*error.schema["properties"]]
+    if error.validator == "unevaluatedProperties":
+        known += schema.get("$defs", {}).get("described", {}).get("properties", ())
+    paths = {dotted((*error.absolute_path, key)): str(key) for key in error.instance}
+    unknown = {path: key for path, key in paths.items() if key not in known}
+    return {path: f"{path}: unknown key{meant(key, known)}" for path, key in unknown.items()}
+
+
+def untitled(error: ValidationError, schema: Mapping) -> str:
+    """Return the line for an entry without a title: a new one, or one whose name is misspelled."""
+    stage, name = error.absolute_path
+    known = schema["properties"][stage]["properties"]
+    unknown = "" if name in known else f"unknown key{meant(str(name), known)} "
+    return f"{stage}.{name}: {unknown}({error.schema['description']})"
+
+
+def dotted(path: Iterable[object]) -> str:
+    """Return the path of a key, such as `continuation.table1.n`."""
+    return ".".join(map(str, path))
 
 
 def stages(config: Mapping) -> dict[str, Mapping]:

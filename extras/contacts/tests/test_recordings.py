@@ -227,6 +227,41 @@ def test_columns_are_named_where_no_synonym_is_known(tmp_path, typed):
     assert fit(path, columns={"1": "t (s)", "2": "y (m)"}).result.endswith(said)
 
 
+# Headings in several lines, names that no list has, and a position in millimetres or pixels.
+OTHERS = {
+    "Vicon": (
+        "# frame rate: 60\nTrajectories\n60\n,,ball,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n"
+        + track("{0:.3f},0,12,3,{1:.3f}", slow=60, shown=lambda y: 1000 * y),
+        {"Frame": "frame", "Z": "y (mm)"},
+    ),
+    "TrackMate": (
+        "LABEL,QUALITY,POSITION_Y,POSITION_T\nLabel,Quality,Y,T\n,(quality),(micron),(sec)\n"
+        + track("ID,4.5,{1:.3f},{0:.4f}", shown=lambda y: 900 - 700 * y),
+        {"T": "t (s)", "Y": "y (px)"},
+    ),
+    "Raven": (
+        "Selection\tView\tBegin Time (s)\tEnd Time (s)\n"
+        + "\n".join(f"{i}\tSpectrogram 1\t{t:.4f}\t{t + 0.02:.4f}" for i, t in enumerate(TIMES)),
+        {"Begin Time (s)": "time (s)"},
+    ),
+    "Motive": (
+        "Format Version,1.23,Take Name,Take 1\n\n,,ball,ball,ball\n,,1A,1A,1A\n"
+        "Frame,Time (Seconds),X,Y,Z\n" + track("7,{:.6f},0.1,{:.6f},0.2"),
+        {"Time": "t (s)", "Y": "y (m)"},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_files_of_other_programs_are_read_by_their_columns(name, tmp_path):
+    path = tmp_path / "other.csv"
+    text, columns = OTHERS[name]
+    path.write_text(text)
+    with pytest.raises(Refused, match="--columns"):
+        fit(path)
+    assert fit(path, columns=columns).restitution == pytest.approx(0.82, abs=3e-3)
+
+
 def test_an_archive_with_one_table_is_that_table(tmp_path):
     path = tmp_path / "phyphox.zip"
     with zipfile.ZipFile(path, "w") as archive:

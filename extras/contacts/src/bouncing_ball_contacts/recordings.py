@@ -493,7 +493,8 @@ def _of_track(table: Table, columns: list[Column]) -> Recording:
     """Return the tracks of impacts of one film or several, scaled by gravity."""
     unit = columns[1].unit
     if unit not in ("", "px", *units_of("m")):
-        raise Refused(f"{table.name}: {columns[1].name!r} is in {unit}, and is no position, y (m)")
+        said = f"{columns[1].name!r} is in {unit}, and is no position, y (m)"
+        raise Refused(f"{table.name}: {said}, {COLUMNS}")
     films = _films(table, columns)
     # Upside down no flight is a parabola.
     ways = [[film.impacts(way) for film in films] for way in (1, -1)]

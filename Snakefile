@@ -70,6 +70,12 @@ def files(name):
     return [f"results/figures/{name}.{kind}" for kind in kinds]
 
 
+def shown_by(name):
+    """The dataset of a figure, if it has one: its own, or the `data` of another entry."""
+    data = ENTRIES[name].get("data", name)
+    return [] if data in config["schematics"] else [f"results/figures/{data}.nc"]
+
+
 # An entry without a function is found here, because a job would remove its stage's results first.
 FUNCTIONS = {f"src/carbonelli2011/stages/{stage}.py": names(config[stage]) for stage in COMPUTED}
 FUNCTIONS |= {"src/carbonelli2011/figures.py": FIGURES, "src/carbonelli2011/tables.py": TABLES}
@@ -97,7 +103,7 @@ def stage(name):
 
 MODELS = checkout(*sorted(TOP.glob("src/bouncing_ball/[!_]*.py"))) + modules("datasets")
 PAPER = modules("paper")
-DRAWING = modules("figures", "curves", "paper", "drawing", "texts", "datasets")
+DRAWING = modules("figures", "motion", "curves", "paper", "drawing", "texts", "datasets")
 JUDGING = MODELS + PAPER + modules("claims", "measures", "verdicts", "judgements", "texts")
 WRITING = JUDGING + modules("tables", "article", "index", "pages", "origins", "templates")
 # The stages that the study of choices computes again.
@@ -282,7 +288,7 @@ for name in FIGURES:
         name:
             name
         input:
-            data=[file for file in files(name) if file.endswith(".nc")],
+            data=shown_by(name),
             code=PICTURES,
         output:
             png=report(

@@ -32,7 +32,9 @@ def reference() -> dict[str, xr.Dataset]:
 
     A test that reads them is skipped if they are not those of today's configuration.
     """
-    if new := sorted(ENTRIES.keys() - {path.stem for path in FIGURES.iterdir()}):
+    # A new figure of a dataset that exists changes no number.
+    needed = {name for name, entry in ENTRIES.items() if "data" not in entry}
+    if new := sorted(needed - {path.stem for path in FIGURES.iterdir()}):
         why = f"new, and not accepted yet: {', '.join(new)}. Run make accept, then make test"
         pytest.skip(why, allow_module_level=True)
     datasets = {path.stem: read(path) for path in FIGURES.glob("*.nc")}

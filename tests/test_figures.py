@@ -1,5 +1,6 @@
 """The figures: what is drawn is what the datasets have."""
 
+import re
 import subprocess
 import sys
 from functools import cache
@@ -11,6 +12,7 @@ import pytest
 import xarray as xr
 from matplotlib.contour import QuadContourSet
 from matplotlib.text import Text
+from tests.reference import with_more
 
 from bouncing_ball import restitution
 from carbonelli2011 import curves, figures, paper
@@ -33,7 +35,8 @@ def reference(name):
 
 def data_of(name):
     """The datasets that a figure shows, to be changed."""
-    return [reference(name).copy(deep=True)] if name in figures.PLOTS else []
+    shown = "fig12" if name == "motion" else name
+    return [reference(shown).copy(deep=True)] if name in figures.PLOTS else []
 
 
 @cache
@@ -173,6 +176,44 @@ def test_a_motion_repeats_before_and_after_its_cycle():
     assert body.get_label() == "table $w$"
     edges = {tuple(point) for point in body.get_paths()[0].vertices}
     assert {tuple(point) for point in axes.lines[0].get_xydata()} <= edges
+
+
+def moved(sheet, name):
+    """The numbers of the keyframes of a part: shares of the cycle in per cent, and values."""
+    (steps,) = re.findall(rf"@keyframes {name}\{{(.*)\}}", sheet)
+    pairs = re.findall(r"([\d.]+)%\{(?:translate:0|scale:1) ([-\d.]+)(?:px)?\}", steps)
+    return np.array(pairs, dtype=float).T
+
+
+def test_the_balls_of_the_moving_figure_move_as_in_the_dataset():
+    """In a contact a ball is on its spring, and in flight as high above it as above the table."""
+    data = reference("fig12")
+    sheet = figures.moving("motion", data)
+    parts = {part.get_gid(): part for part in of_reference("motion").axes[0].patches}
+    heights = [data.restitution_ball, *data.ball.sortby("frequency_ratio", ascending=False)]
+    unit = np.ptp(moved(sheet, "table")[1]) / np.ptp(data.table.values)
+    for k, height in enumerate(heights):
+        time, down = moved(sheet, f"ball{k}")
+        phase = data.restitution_phase.item() + 2 * np.pi * time / 100
+        table, ball = (
+            np.interp(phase, data.table_phase, each, period=2 * np.pi)
+            for each in (data.table, height)
+        )
+        # Positions have tenths of a point, and times hundredths of a per cent of the cycle.
+        assert down == pytest.approx(unit * (ball[0] - ball), abs=0.2)
+        foot, *_, plate = np.sort(parts[f"contact{k}"].get_xy()[:, 1])
+        at, scale = moved(sheet, f"contact{k}") if k else (time, np.ones_like(time))
+        spring = foot + unit * (table - table[0]) + (plate - foot) * np.interp(time, at, scale)
+        bottom = parts[f"ball{k}"].center[1] - parts[f"ball{k}"].radius - down
+        assert bottom - spring == pytest.approx(unit * np.maximum(ball - table, 0), abs=0.3)
+    assert sheet.count("@media screen and (prefers-reduced-motion:no-preference)") == 1
+
+
+def test_another_curve_of_figure_12_changes_no_byte_of_the_moving_figure():
+    (data,) = data_of("fig12")
+    more = with_more(data, paper.PARAMETERS["fig12"], 2)
+    assert figures.moving("motion", more) == figures.moving("motion", data)
+    assert words(figures.draw("motion", more)) == words(of_reference("motion"))
 
 
 def test_the_poincare_map_shows_both_ends_of_contact_and_the_restitution_model():
@@ -352,7 +393,10 @@ SETTINGS = {
 def saved(folder, name):
     """The bytes of both pictures of a figure."""
     paths = folder / f"{name}.png", folder / f"{name}.svg"
-    drawing.save_picture(figures.draw(name, *data_of(name)), *paths, curves.SALT)
+    data = data_of(name)
+    drawing.save_picture(
+        figures.draw(name, *data), *paths, curves.SALT, figures.moving(name, *data)
+    )
     return [path.read_bytes() for path in paths]
 
 

@@ -87,6 +87,7 @@ def test_pages_need_no_network_and_no_script(texts, read):
 def test_links_lead_to_pages_and_files_that_exist(read):
     # What is new is not in the reference yet.
     files = {f"figures/{path.name}" for path in FIGURES.iterdir()}
+    files |= {f"figures/{name}.{kind}" for name in CAPTIONS for kind in ("png", "svg")}
     for name, page in read.items():
         assert len(page.places["id"]) == len({*page.places["id"]})
         for target in page.places["href"] + page.places["src"]:

@@ -36,6 +36,7 @@ from carbonelli2011.curves import (
     spring_damper_branch,
     title,
 )
+from carbonelli2011.motion import motion, movement
 from paper_replication.datasets import other_parameters, parameters
 from paper_replication.drawing import (
     COLOURS,
@@ -748,6 +749,7 @@ PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig14": fig14,
     "fig15": fig15,
     "fig16": fig16,
+    "motion": motion,
     "validity_map": validity_map,
     "regimes": regimes,
 }
@@ -766,6 +768,11 @@ def draw(name: str, *data: xr.Dataset) -> Figure:
             raise Empty(f"{name} would be empty: {without_orbit(each)}")
     with style():
         return FIGURES[name](*data)
+
+
+def moving(name: str, *data: xr.Dataset) -> str:
+    """Return the style sheet that moves a figure in its SVG, or an empty one."""
+    return movement(*data) if name == "motion" else ""
 
 
 def without_orbit(data: xr.Dataset) -> str:

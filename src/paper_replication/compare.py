@@ -220,6 +220,15 @@ class Side:
     hash: str = ""
     record: Mapping[str, Any] = field(default_factory=lambda: {key: {} for key in RECORD})
 
+    @property
+    def shows(self) -> str:
+        """The name of the dataset that a picture or a table shows: its own, or the only one that
+        it was made of.
+        """
+        used = [*self.record["data"]]
+        has_own = self.path.with_suffix(".nc").is_file() or len(used) != 1
+        return Path(self.path if has_own else used[0]).stem
+
 
 def side(run: Run, file: str, checkout: Checkout | None = None) -> Side:
     """A file of one run, which a checkout, if there is one, must make today."""
@@ -522,20 +531,21 @@ def rounded(old: Side, new: Side, checkout: Checkout | None) -> bool:
     """Whether files differ only because numbers of their dataset, which agree, are rounded
     differently: the same code made both files, or today's code makes that of the reference again.
     """
-    data, other = (each.path.with_suffix(".nc") for each in (old, new))
+    data, other = (each.path.with_name(f"{new.shows}.nc") for each in (old, new))
     if not data.is_file() or read(data).equals(read(other)):
         return False
     if checkout is None:
         return what_differs(old, new, None, ()) == SAME
-    return remade(checkout.project.make, data, content(data)).get(old.path.name) == old.hash
+    again = remade(checkout.project.make, old.path.stem, data, content(data))
+    return again.get(old.path.name) == old.hash
 
 
 @cache
-def remade(make: Callable, path: Path, _made: str) -> dict[str, str]:
-    """The hashes of the files that follow from a dataset, made again."""
+def remade(make: Callable, name: str, path: Path, _made: str) -> dict[str, str]:
+    """The hashes of the files of a name that follow from a dataset, made again."""
     with TemporaryDirectory() as folder:
         try:
-            make(path.stem, read(path), Path(folder))
+            make(name, read(path), Path(folder))
         except OSError as error:
             raise OSError(f"{folder}, TMPDIR names another folder: {error}") from error
         return {each.name: content(each) for each in Path(folder).iterdir()}
@@ -660,7 +670,7 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     """Make results the reference, and return the files that were written or removed.
 
     `inputs` are the files that the rules make, in the folder of the results. If one file of a
-    figure or a table is written, all its files are, with its dataset: then the reference agrees on
+    figure or a table is written, all files of its dataset are: then the reference agrees on
     processors that round numbers differently. If all agree, they stay as they are, and only the
     code and the libraries that gave them again are noted. Files that no rule makes any more are
     removed if git tracks them and the record of the reference names them. Raises ValueError if a
@@ -679,11 +689,13 @@ def accept(project: Project, results: Path, inputs: Iterable[str]) -> list[str]:
     for reason in refusals(project, report, made, committed):
         raise ValueError(f"nothing is accepted, {reason}")
     accepted = {file: report.sides[file] for file in report.found if file in made}
-    changed = {Path(file).stem for file in accepted if report.found[file].verdict != "agrees"}
+    changed = {
+        new.shows for file, (_, new) in accepted.items() if report.found[file].verdict != "agrees"
+    }
     written = [
         file
         for file, (before, after) in accepted.items()
-        if Path(file).stem in changed and before.hash != after.hash
+        if after.shows in changed and before.hash != after.hash
     ]
     removed = [
         file
@@ -826,7 +838,8 @@ def pictures_of(project: Project, report: Report, file: str) -> list[bytes]:
     paths = [side.path for side in report.sides[file]]
     if report.found[file].verdict == "follows":
         with suppress(Exception):  # Whatever reading and drawing a dataset of other code raises.
-            data = [read(path.with_suffix(".nc")) for path in paths]
+            shown = report.sides[file][1].shows
+            data = [read(path.with_name(f"{shown}.nc")) for path in paths]
             return project.side_by_side(paths[0].stem, data)
     return [path.read_bytes() for path in paths if path.is_file()]
 

@@ -156,13 +156,17 @@ def captions(name: str, entry: Mapping) -> dict[str, str]:
 def named(config: Mapping, targets: Iterable[str]) -> list[str]:
     """The figures, tables and datasets that targets name; none for all.
 
-    Claims and texts follow from all datasets: with them, everything is compared.
+    Claims and texts follow from all datasets: with them, everything is compared. A figure may show
+    the `data` of another entry, which is compared, too.
     """
+    known = entries(config)
     found: set[str] = set()
     sections = stages(config)
     for target in {*targets} - {"diff"}:
         found.update(names(sections[target]) if target in sections else [Path(target).stem])
-    return sorted(found) if found <= {*entries(config)} else []
+    if not found <= known.keys():
+        return []
+    return sorted(found.union(known[name].get("data", name) for name in found))
 
 
 def without_function(top: Path, needed: Mapping[str, Iterable[str]]) -> Iterator[str]:

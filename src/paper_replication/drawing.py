@@ -190,10 +190,13 @@ def on_the_same_axes(figures: Sequence[Figure]) -> list[bytes]:
     return pictures
 
 
-def save_picture(figure: Figure, png: str | Path, svg: str | Path, salt: str) -> None:
+def save_picture(
+    figure: Figure, png: str | Path, svg: str | Path, salt: str, css: str = ""
+) -> None:
     """Save a figure as PNG and SVG, which name the version of matplotlib.
 
-    The salt, which is any word, gives the SVG the same identifiers in each run.
+    The salt, which is any word, gives the SVG the same identifiers in each run. A style sheet `css`
+    may move its parts: an artist has its `gid` as identifier.
     The SVG of a figure with a label has this as its title, which a browser shows and reads aloud,
     and its texts as texts, which can be searched and depend on the fonts of the reader. The same
     figure gives the same bytes, and the file appears whole or not at all. Raises OSError if a file
@@ -209,5 +212,9 @@ def save_picture(figure: Figure, png: str | Path, svg: str | Path, salt: str) ->
         for path, kind in ((Path(png), "png"), (Path(svg), "svg")):
             with whole(path) as unfinished:
                 figure.savefig(unfinished, format=kind, metadata=metadata[kind])
+                if css and kind == "svg":
+                    still = unfinished.read_text("utf-8")
+                    moving = still.replace("</style>", f"{css}</style>", 1)
+                    unfinished.write_text(moving, "utf-8", newline="\n")
             # The SVG has the layout of the PNG: sizes of texts differ a little between the two.
             figure.set_layout_engine("none")

@@ -21,14 +21,15 @@ def make(name: str, data: xr.Dataset | None, folder: Path) -> None:
     """Write the pictures and the tables of a dataset into a folder, for a comparison."""
     # A stage depends on neither figures nor tables.
     from carbonelli2011.curves import SALT
-    from carbonelli2011.figures import FIGURES, draw
+    from carbonelli2011.figures import FIGURES, draw, moving
     from carbonelli2011.tables import TABLES
     from paper_replication.drawing import save_picture
     from paper_replication.texts import save_table
 
     if name in FIGURES:
-        figure = draw(name) if data is None else draw(name, data)
-        save_picture(figure, folder / f"{name}.png", folder / f"{name}.svg", SALT)
+        shown = [] if data is None else [data]
+        pictures = [folder / f"{name}.{kind}" for kind in ("png", "svg")]
+        save_picture(draw(name, *shown), *pictures, SALT, moving(name, *shown))
     if name in TABLES:
         save_table(TABLES[name](data), folder / f"{name}.md", folder / f"{name}.csv")
 

@@ -143,7 +143,7 @@ def test_every_figure_has_its_picture_its_caption_and_its_data(read):
             assert entry["caption"] in page.places["alt"] and entry["caption"] in page.texts
             assert f"figures/{name}.svg" in page.places["src"]
         if name not in ("fig01", "fig04"):
-            assert f"figures/{name}.nc" in page.places["href"]
+            assert f"figures/{entry.get('data', name)}.nc" in page.places["href"]
 
 
 def test_the_exceptions_are_those_of_the_map(data):

@@ -301,7 +301,7 @@ def test_a_force_release_has_orbits_from_the_saddle_node_of_its_stiff_limit():
     ],
 )
 def test_a_walk_ends_where_its_orbits_cease(n, r, release, amplitude):
-    ratios = np.geomspace(0.7, 100, 60)
+    ratios = np.geomspace(0.4, 100, 60)
     contact = Contact.of_restitution(ratios, r, release)
     walks = [continuation.stable_orbits(n, r, amplitude, ratios, release)[:, 0]]
     for kind in continuation.SPECIAL[:2]:
@@ -324,6 +324,14 @@ def test_the_tangent_turns_by_at_most_14_degrees_in_a_step():
     tangents = vectors[:, -1]
     turns = np.abs(np.sum(tangents[1:-1] * tangents[:-2], axis=1))
     assert np.degrees(np.arccos(turns.min())) < 14.1
+
+
+def test_a_continuation_has_a_limit_and_says_so(monkeypatch):
+    monkeypatch.setattr(continuation, "MOST_ORBITS", 9)
+    family = Family(1, Contact.of_restitution(2.0, 0.85))
+    branch = continuation.branch(family, 1.3, 20)
+    expected = f"stops after 9 orbits at amplitude = {branch.orbits[0, 0]:.6g}"
+    assert branch.ends[0] == ("inside", f"the continuation {expected}")
 
 
 def test_the_corrector_gives_nan_where_it_fails_and_only_there():

@@ -69,6 +69,13 @@ def test_a_variable_without_description_is_refused(small, project, tmp_path):
         datasets.save(unknown, tmp_path / "fig02.nc", "", {}, NOTHING, project)
 
 
+def test_large_numbers_are_compressed(project, tmp_path):
+    path = tmp_path / "fig02.nc"
+    numbers = xr.Dataset({"phase": ("n", np.zeros(10_000))}, {"n": np.arange(10_000)})
+    datasets.save(numbers, path, "", {}, NOTHING, project)
+    assert path.stat().st_size < numbers.nbytes / 2
+
+
 def test_a_failed_save_leaves_the_old_file(small, project, tmp_path, monkeypatch):
     path = tmp_path / "fig02.nc"
     path.write_text("old")

@@ -360,6 +360,14 @@ def test_several_cases_of_the_poincare_map():
     assert {"$\\Lambda=1$", "$\\Lambda=1.2$"} <= set(words(figure))
 
 
+def test_labels_at_the_right_do_not_overlap():
+    figure, axes = drawing.panels(2.0)
+    drawing.name_at_right(axes, [("low", 0.50, "black"), ("high", 0.55, "black")])
+    figure.draw_without_rendering()
+    low, high = (text.get_window_extent() for text in axes.texts)
+    assert not low.overlaps(high)
+
+
 def test_two_figures_have_the_same_axes():
     one = figures.draw("fig14", *data_of("fig14"))
     (data,) = data_of("fig14")

@@ -80,6 +80,8 @@ def test_conditions_take_the_worst_number_and_a_missing_one_is_not_judged():
     assert verdicts.at_most("", [1.0, 3.0], 2.0)[1:3] == (False, 3.0)
     assert verdicts.at_least("", [1.0, 3.0], 2.0)[1:3] == (False, 1.0)
     assert verdicts.above("", [0.0, 3.0])[1:3] == (False, 0.0)
+    assert verdicts.within("", [0.01, 0.5], 0.5)[1:5] == (True, 0.5, "at most 50 %", True)
+    assert verdicts.beyond("", [0.9, 0.5], 0.5)[1:5] == (True, 0.5, "at least 50 %", True)
     for condition in (
         partial(verdicts.at_most, bound=0.0),
         partial(verdicts.at_least, bound=0.0),

@@ -39,6 +39,10 @@ points up to the largest Λ of the schema, 100, need 170."""
 SMALLEST_STEP = 1e-6
 """Step length at or below which a continuation ends."""
 
+MOST_ORBITS = 10_000
+"""Maximum number of orbits of a continuation, which would not end on a closed curve of orbits. The
+branch of Figure 8 needs 72 with the step of the configuration."""
+
 LEAST_FLIGHT = 8e-4
 """Duration of the flight below which a branch counts as merged with permanent contact. At this
 duration, Λ exceeds the threshold of permanent contact by less than the square of the duration,
@@ -406,7 +410,7 @@ def branch(family: Family, amplitude_max: float, points: int, largest_step: floa
     amplitude_max : float
         Amplitude Λ at which the branch begins on the stable side. The unstable side ends at the
         same amplitude. It ends earlier if the flight vanishes, if Λ vanishes (undamped contacts
-        only), or if the steps become too small.
+        only), if the steps become too small, or after MOST_ORBITS.
     points : int
         Number of orbits.
     largest_step : float
@@ -466,19 +470,19 @@ def _follow(
     Otherwise the next step is longer by a factor of 1.5, up to the largest step.
 
     Returns the orbits, shape (4, steps), and the end of the branch, or None if it ends at
-    `amplitude_max`.
+    `amplitude_max`. There are at most MOST_ORBITS.
     """
     path = [start]
     y = start
     step = largest_step / 8
     direction = _tangent(family, y)
     direction = direction * -np.sign(direction[0])
-    while step > SMALLEST_STEP:
+    while step > SMALLEST_STEP and len(path) < MOST_ORBITS:
         guess = y + step * direction
         new = correct(family, guess, on_plane(guess, direction), iterations=5)
         # Near Λ = 0 the branch turns sharply in φ. A long step can cross to Λ < 0, where the branch
         # describes the same orbits again.
-        if np.isnan(new).any() or np.linalg.norm(new - y) > 1.5 * step or new[0] < 0:
+        if np.isnan(new).any() or new[0] < 0:
             step = step / 2
             continue
         if family.period - new[3] / family.contact.frequency_ratio < LEAST_FLIGHT:
@@ -496,7 +500,8 @@ def _follow(
         y = new
         direction = following
         step = min(1.5 * step, largest_step)
-    lost = End("inside", f"the continuation does not get beyond amplitude = {y[0]:.6g}")
+    what = f"stops after {MOST_ORBITS} orbits at" if step > SMALLEST_STEP else "does not get beyond"
+    lost = End("inside", f"the continuation {what} amplitude = {y[0]:.6g}")
     return np.stack(path, axis=1), VANISHES if y[0] < 10 * SMALLEST_STEP else lost
 
 
@@ -546,14 +551,9 @@ def _zeros(family: Family, path: NDArray, test: Callable[[NDArray], NDArray]) ->
 
         def orbit(part, before=before, chord=chord):
             guess = before + part * chord
-            found = correct(family, guess, on_plane(guess, chord))
-            return guess if np.isnan(found).any() else found
+            return correct(family, guess, on_plane(guess, chord))
 
-        zero = orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15))
-        # Skip poles of the test function, where its sign changes but its value is large. Skip
-        # Λ = 0, where the phase is undefined.
-        if zero[0] > 1e-6 and abs(test(zero)) < 1e-3 * np.abs(values[i : i + 2]).max():
-            found.append(zero)
+        found.append(orbit(brentq(lambda part: float(test(orbit(part))), 0, 1, xtol=1e-15)))
     return found
 
 

@@ -303,6 +303,11 @@ def selected(data: xr.Dataset, needed: Mapping) -> xr.Dataset:
 
     A value is found by its coordinate, which has the name of the list or of the dimension. The
     result has the parameters of what is left.
+
+    >>> data = xr.Dataset({"height": ("ratio", [3.0, 2.0, 1.0])}, {"ratio": [5.0, 10.0, 20.0]})
+    >>> part = selected(data, {"ratio": Among("ratio", [20.0, 5.0])})
+    >>> part.height.values.tolist(), parameters(part)
+    ([1.0, 3.0], {'ratio': [20.0, 5.0]})
     """
     given = parameters(data)
     for key, value in needed.items():

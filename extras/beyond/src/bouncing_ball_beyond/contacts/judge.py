@@ -328,14 +328,13 @@ def _check_energy(law: Force, speed: float) -> None:
     speeds = speed * LADDER
     ends = law.after_free_impacts(speeds)
     keeps = ends <= NO_GAIN * speeds
-    if np.isnan(ends).any():
-        k = np.isnan(ends).argmax()
-        raise ValueError(
-            f"force: a ball with the closing speed {speeds[k]:.3g} never leaves: the force is NaN"
-            " during its contact, or the contact has no end"
-        )
     if not keeps.all():
         k = np.argmin(keeps)
+        if np.isnan(ends[k]):
+            raise ValueError(
+                f"force: a ball with the closing speed {speeds[k]:.3g} never leaves: the force is"
+                " NaN during its contact, or the contact has no end"
+            )
         raise ValueError(
             f"force: adds energy: a ball with the closing speed {speeds[k]:.3g} leaves with"
             f" {ends[k]:.4g}: check the sign of the damping"

@@ -1,6 +1,6 @@
 """Branches of orbits along one parameter, and curves of special orbits along two parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import itemgetter
@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from bouncing_ball_beyond.periodic.equations import (
     KINDS,
@@ -140,6 +141,36 @@ class FollowedBranch:
                 return each
         others = ", ".join(dict.fromkeys(each.kind for each in self.special)) or "none"
         raise OrbitNotFound(f"no {kind} here; special orbits: {others}")
+
+    def zeros(self, function: Callable[[PeriodicOrbit], float]) -> list[PeriodicOrbit]:
+        """Find the orbits at which a function of the orbit is zero, in order.
+
+        Parameters
+        ----------
+        function : callable
+            Continuous function of an orbit, such as ``lambda orbit: orbit.max_height - 5.0``. A
+            zero is found if its sign changes between two successive orbits of the branch.
+
+        Examples
+        --------
+        >>> from bouncing_ball_beyond import Rigid, follow, orbit
+        >>> branch = follow(orbit(Rigid(0.5), amplitude=1.4), to=1.1)
+        >>> [round(each.amplitude, 6) for each in branch.zeros(lambda one: one.max_height - 5.5)]
+        [1.189988]
+        """
+        values = np.array([function(each) for each in self.orbits])
+        found = []
+        for i in np.flatnonzero(np.diff(values >= 0)).tolist():
+            share = brentq(lambda share, i=i: function(self._inside(i, share)), 0, 1, xtol=1e-14)
+            found.append(self._inside(i, share))
+        return found
+
+    def _inside(self, i: int, share: float) -> PeriodicOrbit:
+        """Orbit at a share of the step from orbit i to the next one."""
+        chord = self.z[[i + 1]] - self.z[[i]]
+        normal = chord / self.equations.scales(self.z[[i]]) ** 2
+        solution = newton(self.equations, self.z[[i]] + share * chord, normal)
+        return self.equations.orbit(solution.z[0], self.equations.kind)
 
     def with_special(self) -> list[PeriodicOrbit]:
         """All orbits and special orbits in order.

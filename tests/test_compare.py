@@ -476,7 +476,7 @@ def test_a_mistake_in_yaml_names_its_file_and_a_full_disk_its_folder(project, ca
 
     data = project.top / "results/figures/fig14.nc"
     with pytest.raises(OSError, match=r"TMPDIR names another folder: .* No space left on device"):
-        compare.remade(full, data, "")
+        compare.remade(full, "fig14", data, "")
     (project.top / "config/config.yaml").write_text("caption: a: b", "utf-8")
     with pytest.raises(SystemExit):
         compare.main(project, [str(project.top)])

@@ -40,6 +40,9 @@ CALLS = {
     "`basins` of 100 × 100 starts, r = 0.5": lambda: bb.basins(
         bb.Rigid(0.5), amplitude=1.2, starts=100
     ),
+    "`basins` of 8 × 8 starts, Hunt and Crossley's law": lambda: bb.basins(
+        HERTZ, amplitude=1.2, starts=8
+    ),
     "`error_thresholds` of six quantities": lambda: bb.error_thresholds(SPRING, amplitude=1.0),
     "`error_thresholds` of six quantities, Tsuji's law": lambda: bb.error_thresholds(
         TSUJI, amplitude=1.0
@@ -100,11 +103,11 @@ The integration of contact laws uses arrays. This is efficient for many balls, b
 ball. Nearly all of the 3 ms of one contact are calls of numpy on arrays of 20 numbers.
 
 An orbit that is not near the orbit of instantaneous impacts is searched from thousands of impacts.
-The search for an orbit that does not exist also finds the saddle-node, for its message. Laws with a
-kink take ten times as long.
+Laws with a kink take ten times as long.
 
-The first motion after the installation takes a few seconds longer, because numba compiles the
-functions and stores them.
+The first motion after the installation takes up to 20 s longer, because numba compiles the
+functions and stores them. Searches and motions report their `progress` every two seconds, or when a
+longer step ends.
 """,
         encoding="utf-8",
     )

@@ -80,7 +80,8 @@ function look(frame) {
 function answerOf({contentDocument: page, contentWindow: view}) {
   const text = name => page.getElementById(name).textContent;
   return {
-    hash: view.location.hash, call: text("call"), verdict: text("verdict"), refused: text("refused"),
+    hash: view.location.hash, call: text("call"), verdict: text("verdict"),
+    refused: text("refused"),
     speed: text("impact-speed"),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
       ({dataset: {key, value}}) => [key, isNaN(value) ? value : Number(value)])),

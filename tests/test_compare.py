@@ -483,6 +483,16 @@ def test_a_mistake_in_yaml_names_its_file_and_a_full_disk_its_folder(project, ca
     assert 'config/config.yaml", line 1' in capsys.readouterr().err
 
 
+def test_a_new_label_is_named_and_the_values_of_the_others_are_compared():
+    about = {"tolerance": 1e-9, "floor": 1e-3}
+    old, new = (
+        xr.Dataset({"height": ("claim", values, about)}, {"claim": names})
+        for names, values in ((["high"], [1.0]), (["high", "low"], [2.0, 3.0]))
+    )
+    expected = ["claim low is new", "height 1 → 2 at claim = high (tolerance 1e-09)"]
+    assert compare.differences("claims.nc", old, new) == expected
+
+
 def test_of_several_workflows_in_a_zip_each_takes_its_own_results(project, tmp_path):
     for folder in ("results/figures", "extras/other/results/figures"):
         (tmp_path / "all" / folder).mkdir(parents=True)

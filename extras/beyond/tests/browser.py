@@ -80,9 +80,8 @@ function look(frame) {
 function answerOf({contentDocument: page, contentWindow: view}) {
   const text = name => page.getElementById(name).textContent;
   return {
-    hash: view.location.hash, call: text("call"), verdict: text("verdict"),
-    refused: text("refused"),
-    speed: text("impact-speed"),
+    hash: view.explorer.hash(), call: text("call"), verdict: text("verdict"),
+    refused: text("refused"), speed: text("impact-speed"),
     values: Object.fromEntries([...page.querySelectorAll("[data-key]")].map(
       ({dataset: {key, value}}) => [key, isNaN(value) ? value : Number(value)])),
     motions: [...page.querySelectorAll("#stage-ends data")].map(({value}) => JSON.parse(value)),
@@ -91,7 +90,6 @@ function answerOf({contentDocument: page, contentWindow: view}) {
 // What each tab answers when its button is pressed, from the tab of the address to this tab again.
 function onAllTabs(frame, address) {
   const {contentDocument: page, contentWindow: view} = frame;
-  view.location.replace(address);
   view.explorer.show(address);
   const tabs = [...page.querySelectorAll("[role=tab]")];
   const first = tabs.findIndex(tab => tab.ariaSelected === "true");

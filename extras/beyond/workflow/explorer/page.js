@@ -22,9 +22,10 @@ function refuse(text) {
   play(false);
 }
 
-// The balls with other starts are followed a moment, in ms, after the rest is shown.
+// The balls with other starts are followed, and the address is written, a moment, in ms, after the rest
+// is shown: browsers limit how often an address changes.
 const PATIENCE = 200;
-let counting = 0, count = () => {};
+let counting = 0, citing = 0, count = () => {};
 
 // The verdict; what is before its colon stands out.
 function say([good, text]) {
@@ -36,6 +37,7 @@ function say([good, text]) {
 
 function show(hash, kept = DEFAULTS) {
   clearTimeout(counting);
+  clearTimeout(citing);
   count = () => {};
   const {state, refused} = parse(hash, kept), why = impossible(state);
   current = state;
@@ -140,8 +142,8 @@ function setControl(name, value) {
 function change(name, value) {
   const next = LIKEWISE.includes(name) ? likewise(current, {[name]: value}) : {...current, [name]: value};
   const hash = hashOf(next);
-  history.replaceState(null, "", hash);
   show(hash, next);
+  citing = setTimeout(() => history.replaceState(null, "", hash), PATIENCE);
 }
 
 document.querySelectorAll("input[inputmode]").forEach(typed => typed.addEventListener("input", () => {
@@ -192,6 +194,6 @@ function check() {
   $("badge").dataset.worst = String(worst);
 }
 
-window.explorer = Object.freeze({show, parse, answer, check, count: () => count(), scenes: SCENES, stage: () => stage, place});
+window.explorer = Object.freeze({show, parse, answer, check, count: () => count(), hash: () => hashOf(current), scenes: SCENES, stage: () => stage, place});
 check();
 show(location.hash);

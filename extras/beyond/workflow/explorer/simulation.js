@@ -159,7 +159,7 @@ function departByContact(contact, amplitude, phase, u, d = 0) {
   const [leftX, leftY] = tableAt(end, amplitude), {speed} = contactState(contact, point, duration);
   const v = lag > 0 ? speed : Math.max(speed, 0);
   return {point, phase: end, v, d: -lag * v, x: leftX, y: leftY, duration, settling: 0,
-    sticks: duration * damped > TURN, stays};
+    sticks: duration * damped > 2 * freeAngle(contact), stays};
 }
 
 // All impacts of a ball, from the first one on, until it stays on the table: when and at which

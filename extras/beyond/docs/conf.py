@@ -48,6 +48,7 @@ html_title = "A ball on a vibrating table"
 html_static_path = ["site.css"]
 html_css_files = ["site.css"]
 html_extra_path = ["../figures/explorer.html"]
+html_show_copyright = False
 html_show_sourcelink = False
 html_copy_source = False
 html_math_renderer = "mathml"
@@ -110,7 +111,9 @@ def title_of(table):
 
 
 def prepare(app, name, text):
-    """What the forge's pages have and a site has not: links to folders, tables without a title."""
+    """What the forge's pages have and a site has not: links to folders, pages to download, tables
+    without a title.
+    """
     folder = Path(name).parent
 
     def link(found):
@@ -124,6 +127,7 @@ def prepare(app, name, text):
         return found[1] if (ROOT / target).is_dir() else found[0]
 
     text[0] = re.sub(r"(?<!!)\[([^]]*)\]\(([^):\s]+)\)", link, text[0])
+    text[0] = text[0].replace("</a> (download and open it)", "</a>")
     if not text[0].lstrip().startswith("#"):
         text[0] = f"# {title_of(name)}\n\n{text[0]}"
     if name == root_doc:

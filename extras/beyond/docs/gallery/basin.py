@@ -3,9 +3,12 @@
 import matplotlib.pyplot as plt
 
 import bouncing_ball_beyond as bb
+from paper_replication.drawing import SETTINGS, legend_below, panels
+
+plt.style.use(SETTINGS)
 
 found = bb.basins(bb.Rigid(0.85), amplitude=0.95, starts=120)
-figure, axes = plt.subplots(layout="constrained")
+figure, axes = panels(3.6)
 found.destination.plot(ax=axes, add_colorbar=False, cmap="viridis")
 colours = plt.get_cmap("viridis")
 count = max(found.sizes["motion"] - 1, 1)
@@ -15,6 +18,10 @@ for motion in found.motion.values:
     if one.impacts > 0:
         label += f": k = {one.impacts.item()}, m = {one.periods.item()}"
     axes.scatter([], [], color=colours(motion / count), label=label)
-figure.legend(loc="outside lower center", ncols=2)
-axes.set_title("Λ = 0.95, r = 0.85: k impacts in m periods of the table")
+legend_below(figure)
+axes.set(
+    title="Λ = 0.95, r = 0.85: k impacts in m periods",
+    xlabel="phase of the first impact",
+    ylabel="closing speed of the first impact",
+)
 figure.savefig("basin.png")

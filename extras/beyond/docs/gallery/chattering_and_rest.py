@@ -4,16 +4,19 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import bouncing_ball_beyond as bb
+from paper_replication.drawing import COLOURS, GUIDE, SETTINGS, panels
+
+plt.style.use(SETTINGS)
 
 ball = bb.Rigid(0.7)
 found = bb.drop(ball, height=8.0, amplitude=0.6, periods=5.0, samples=4000)
 periods = found.time / (2 * np.pi)
 gap = found.ball - found.table
-figure, (above, below) = plt.subplots(2, sharex=True, layout="constrained")
-above.plot(periods, found.ball, label="ball")
-above.plot(periods, found.table, "--", color="grey", label="table")
-above.set(title="Λ = 0.6, r = 0.7: each flight is shorter than the one before", ylabel="height")
+figure, (above, below) = panels(3.6, rows=2, sharex=True)
+above.plot(periods, found.ball, color=COLOURS[1], label="ball")
+above.plot(periods, found.table, **GUIDE, label="table")
+above.set(title="Λ = 0.6, r = 0.7", ylabel="height")
 above.legend()
-below.semilogy(periods, gap.where(gap > 0))
+below.semilogy(periods, gap.where(gap > 0), color=COLOURS[1])
 below.set(xlabel="time in periods of the table", ylabel="height above the table", ylim=(1e-6, 10))
 figure.savefig("chattering_and_rest.png")

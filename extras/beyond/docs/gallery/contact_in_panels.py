@@ -5,6 +5,10 @@ import numpy as np
 
 import bouncing_ball_beyond as bb
 from bouncing_ball_beyond.contacts import root_time
+from paper_replication import drawing
+from paper_replication.drawing import GUIDE, SETTINGS, colours, legend_below
+
+plt.style.use(SETTINGS)
 
 law = bb.simscape_contact(stiffness=700.0, damping=6.0, depth=0.03)
 panels = []
@@ -24,25 +28,30 @@ impact = law.first_impact(1.0, 2.0, 0.9)[1]
 starts = [start for start, _, _ in panels[1:]] + [np.inf]
 accepted = [each for each, after in zip(panels, starts, strict=True) if after > each[0]]
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6), layout="constrained")
-for number, (_, panel, event) in enumerate(accepted, 1):
-    colour = f"C{number - 1}"
+figure, (above, below) = drawing.panels(5.0, rows=2)
+shades = colours(len(accepted))
+for number, ((_, panel, event), colour) in enumerate(zip(accepted, shades, strict=True), 1):
     q, v, t = (y[:, 0] for y in panel.nodes)
     end = float(panel.end[2][0])
-    left.plot(t, q, ".-", color=colour, markersize=4)
+    above.plot(t, q, ".-", color=colour, markersize=4)
     names = ["kink: p = depth", "release: p + κp′ = 0"]
     text = names[event] if event >= 0 else ""
-    left.axvline(end, color="grey", linewidth=0.8, linestyle=":")
-    beside = {"textcoords": "offset points", "rotation": 90, "fontsize": 8}
-    left.annotate(text, (end, 0.07), (-3, 0), ha="right", va="top", **beside)
+    above.axvline(end, **GUIDE)
+    beside = {"textcoords": "offset points", "rotation": 90}
+    above.annotate(text, (end, 0.12), (-3, 0), ha="right", va="top", **beside)
     sizes = np.abs(root_time.PANEL.coefficients @ v) / np.abs(v).max()
-    right.semilogy(sizes, ".-", color=colour, label=f"panel {number}")
-right.axhline(root_time.RESOLVED, color="grey", linewidth=0.8, linestyle=":")
-right.annotate("largest last coefficient", (11.5, 1.5 * root_time.RESOLVED), fontsize=8)
-right.set(xticks=range(0, 20, 4), ylim=(1e-17, 10))
-left.set(xlabel="time t after the start", ylabel="penetration p", title="Panels and their nodes")
-right.set(
+    below.semilogy(sizes, ".-", color=colour, label=f"panel {number}")
+below.axhline(root_time.RESOLVED, **GUIDE)
+below.annotate("largest last coefficient", (20, 1.5 * root_time.RESOLVED), ha="right")
+below.set(xticks=range(0, 20, 4), ylim=(1e-17, 10))
+above.set(
+    xlabel="time t after the start",
+    ylabel="penetration p",
+    title="Panels and their nodes",
+    ylim=(-0.005, 0.12),
+)
+below.set(
     xlabel="degree", ylabel="Legendre coefficient of v / max |v|", title="How they are judged"
 )
-right.legend(fontsize=8)
+legend_below(figure, columns=3)
 figure.savefig("contact_in_panels.png")

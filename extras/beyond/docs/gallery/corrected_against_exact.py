@@ -4,6 +4,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import bouncing_ball_beyond as bb
+from paper_replication.drawing import COLOURS, DASHES, GUIDE, SETTINGS, legend_below, panels
+
+plt.style.use(SETTINGS)
 
 ratios = np.geomspace(3, 300, 100)
 balls = bb.SpringDamper(frequency_ratio=ratios, restitution=0.85)
@@ -15,11 +18,12 @@ def heights(ball):
 
 exact = heights(balls)
 simple = bb.orbit(bb.Rigid(0.85), amplitude=1.0).max_height
-figure, axes = plt.subplots(layout="constrained")
-axes.loglog(ratios, abs(exact / simple - 1), label="restitution model")
-axes.loglog(ratios, abs(exact / heights(bb.Corrected(balls)) - 1), "--", label="corrected model")
-axes.axhline(0.01, color="grey", linestyle=":", label="1 %")
-axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="relative error of the greatest height")
+figure, axes = panels(2.8)
+axes.loglog(ratios, abs(exact / simple - 1), color=COLOURS[1], label="restitution model")
+errors = abs(exact / heights(bb.Corrected(balls)) - 1)
+axes.loglog(ratios, errors, color=COLOURS[2], linestyle=DASHES[1], label="corrected model")
+axes.axhline(0.01, **GUIDE, label="1 %")
+axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="error of the greatest height")
 axes.set_title("1-T orbit at Λ = 1, r = 0.85")
-axes.legend()
+legend_below(figure)
 figure.savefig("corrected_against_exact.png")

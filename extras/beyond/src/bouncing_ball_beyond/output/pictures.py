@@ -98,10 +98,18 @@ def plot(*found: Any, quantity: str = "phase", ax: Axes | None = None) -> Figure
         entries: dict[str, Any] = {}
         lines: dict[str, Any] = {}
         title, differences = _texts(branches)
-        coloured = zip(branches, colours(len(branches)), differences, strict=True)
-        for branch, colour, difference in coloured:
-            entries |= _draw(axes, branch, quantity, colour)
-            lines[difference] = sample(color=colour)
+        # Orbits of the same parameters share a colour, and curves if their kind is also the same.
+        keys = [
+            (difference, getattr(branch, "kind", ""))
+            for difference, branch in zip(differences, branches, strict=True)
+        ]
+        kinds = dict.fromkeys(keys)
+        # Several colours leave out black, in which the legend has what branches share.
+        black = int(len(kinds) > 1)
+        palette = dict(zip(kinds, colours(len(kinds) + black)[black:], strict=True))
+        for branch, key in zip(branches, keys, strict=True):
+            entries |= _draw(axes, branch, quantity, palette[key])
+            lines[key[0]] = sample(color=palette[key])
         entries = dict(sorted(entries.items(), key=_order)) | (lines if len(lines) > 1 else {})
         axes.set(xlabel=_label(names[0]), ylabel=_label(names[1]), title=title)
         if ax is None:

@@ -41,9 +41,23 @@ def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = Fal
         "numbers.html": numbers(marked, origin, datasets, article.TEMPLATES),
     }
     for name, text in marked.items():
-        found[f"{name}.md"] = bare(text)
+        found[f"{name}.md"] = described(bare(text), captions)
         found[f"{name}.html"] = page_of(text, name, captions, origin[name])
     return found
+
+
+def described(text: str, captions: Mapping[str, str]) -> str:
+    """Describe the pictures of a text in Markdown by their captions.
+
+    >>> print(described("![Figure 8](figures/fig08.png)", {"fig08": "Phases [rad], φ + τ_b."}))
+    ![Phases \\[rad\\], φ + τ\\_b.](figures/fig08.png)
+    """
+
+    def picture(found: re.Match) -> str:
+        plain = re.sub(r"([\\`*_$<\[\]])", r"\\\1", captions[found[1]])
+        return f"![{plain}](figures/{found[1]}.png)"
+
+    return re.sub(r"!\[[^]]*\]\(figures/(\w+)\.png\)", picture, text)
 
 
 def filled_in(

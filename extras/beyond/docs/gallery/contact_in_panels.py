@@ -42,7 +42,7 @@ for number, ((_, panel, event), colour) in enumerate(zip(accepted, shades, stric
     sizes = np.abs(root_time.PANEL.coefficients @ v) / np.abs(v).max()
     below.semilogy(sizes, ".-", color=colour, label=f"panel {number}")
 below.axhline(root_time.RESOLVED, **GUIDE)
-below.annotate("largest last coefficient", (20, 1.5 * root_time.RESOLVED), ha="right")
+below.annotate("largest last coefficient", (19.5, 1.5 * root_time.RESOLVED), ha="right")
 below.set(xticks=range(0, 20, 4), ylim=(1e-17, 10))
 above.set(
     xlabel="time t after the start",

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from markdown_it import MarkdownIt
+from tests.checkout import ROOT
 from tests.reference import ENTRIES, FIGURES, TOP, reference, with_parameters
 
 from carbonelli2011 import article, index, tables
@@ -95,7 +96,7 @@ def test_links_lead_to_pages_and_files_that_exist(read):
             if file.startswith("https://doi.org/"):
                 continue
             # From results/ into the repository.
-            inside = file.startswith("../") and (TOP / file.removeprefix("../")).is_file()
+            inside = file.startswith("../") and (ROOT / file.removeprefix("../")).is_file()
             assert inside or file in files or (file or name) in read, target
             assert not anchor or anchor in read[file or name].places["id"], target
 

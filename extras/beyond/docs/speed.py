@@ -100,7 +100,7 @@ Machine: {os.cpu_count()} processors, {processor()}, {platform.machine()}, at a 
 {chr(10).join(rows)}
 
 The integration of contact laws uses arrays. This is efficient for many balls, but slow for a single
-ball. Nearly all of the 3 ms of one contact are calls of numpy on arrays of 20 numbers.
+ball. Nearly all of the time of one contact is that of calls of numpy on arrays of 20 numbers.
 
 An orbit that is not near the orbit of instantaneous impacts is searched from thousands of impacts.
 Laws with a kink take ten times as long.

@@ -87,6 +87,7 @@ def written(name: str, datasets: Datasets) -> str:
         departure=measures.departure,
         spread=measures.spread,
         restitution_at_rest=measures.restitution_at_rest,
+        end_of_range=paper.end_of_range,
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
         crossing=measures.crossing,

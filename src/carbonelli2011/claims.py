@@ -42,6 +42,7 @@ from carbonelli2011.paper import (
     STIFF,
     TABLE_1,
     TOLERANCES,
+    end_of_range,
     printed_table,
 )
 from paper_replication.datasets import Datasets, parameters
@@ -1039,7 +1040,7 @@ def table1_ends(
                 remark = "a value of Eq. 7, to which every stiff contact tends"
             ends.append(
                 Claim(
-                    f"Table 1: {ratio:g}, {n}, {bound}",
+                    end_of_range(ratio, n, bound),
                     TABLE,
                     f"Λ of the {bound} of the {n}-T orbits at ϖ = {ratio:g}",
                     {"table1": PARAMETERS["table1"]},

@@ -47,6 +47,15 @@ TABLE_1 = {
 """Table 1: Λ at both ends of the ranges, by (ϖ, n). The exponent of the largest ϖ is illegible."""
 
 
+def end_of_range(ratio: float, n: int, bound: str) -> str:
+    """Return the name of a number of Table 1.
+
+    >>> end_of_range(10.0, 3, "saddle-node")
+    'Table 1: 10, 3, saddle-node'
+    """
+    return f"Table 1: {ratio:g}, {n}, {bound}"
+
+
 def printed_table() -> xr.DataArray:
     """Return Table 1 as texts, over frequency_ratio, n and bound; `astype(float)` gives numbers."""
     ratios, families = (list(dict.fromkeys(each)) for each in zip(*TABLE_1, strict=True))

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from carbonelli2011.claims import table1_ends
-from carbonelli2011.paper import QUANTITIES
+from carbonelli2011.paper import QUANTITIES, end_of_range
 from paper_replication.datasets import parameters
 from paper_replication.judgements import computed_text, distance_text
 from paper_replication.texts import each, number
@@ -30,9 +30,9 @@ def table1(data: xr.Dataset) -> list[list[str]]:
     rows = [["ϖ", "n", "end", "computed", "printed", "distance", "verdict"]]
     ends = {claim.name: claim for claim in table1_ends()}
     for end in each(data, "frequency_ratio", "n", "bound"):
-        place = [number(end["frequency_ratio"], "g"), str(end["n"].item()), end["bound"].item()]
+        ratio, n, bound = (end[name].item() for name in ("frequency_ratio", "n", "bound"))
         printed = number(end["printed"], ".3f", "")
-        claim = ends.get(f"Table 1: {', '.join(place)}") if printed else None
+        claim = ends.get(end_of_range(ratio, n, bound)) if printed else None
         judged = answer(claim, {"table1": data}) if claim else {}
         distance = distance_text(judged.get("deviation_units", np.nan), judged.get("deviation", 0))
         if judged.get("verdict") == "reproduced":
@@ -40,7 +40,8 @@ def table1(data: xr.Dataset) -> list[list[str]]:
         computed = number(end["computed"], ".5f", "no such bifurcation")
         if not end["admissible"] and np.isfinite(end["computed"]):
             computed += NOT_FOLLOWED
-        rows.append([*place, computed, printed, distance, judged.get("verdict", "")])
+        named = [number(ratio, "g"), str(n), bound]
+        rows.append([*named, computed, printed, distance, judged.get("verdict", "")])
     return rows
 
 

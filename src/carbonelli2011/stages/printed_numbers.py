@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.optimize.elementwise import find_root
 
 from bouncing_ball import restitution
@@ -24,7 +24,14 @@ from bouncing_ball.errors import (
 )
 from bouncing_ball.orbits import Family
 from bouncing_ball.spring_damper import RELEASES, Contact, damping_ratio
-from carbonelli2011.paper import BOUNDS, LIMIT, PARAMETERS, PRINTED, printed_table
+from carbonelli2011.paper import (
+    BOUNDS,
+    LIMIT,
+    PARAMETERS,
+    PRINTED,
+    end_of_range,
+    printed_table,
+)
 from paper_replication.verdicts import ROUNDING
 
 DIGIT = 0.001
@@ -37,7 +44,6 @@ SCAN = np.geomspace(2.0, 500.0, 25)
 EXPONENTS = (1, 2, 3, 4, 5, 6)
 """Exponents that the largest frequency ratio may have."""
 AS_THEY_STAND = "equations as they stand"
-CUT_OFF = "digits cut off"
 
 
 def reproduced(units: NDArray) -> NDArray[np.bool_]:
@@ -170,45 +176,75 @@ def damping_of_82() -> NDArray:
 # All of them
 
 
+@dataclass(frozen=True)
+class Hypothesis:
+    """The printed numbers that the authors would have found, and whose contact they had.
+
+    Attributes
+    ----------
+    ends : the ends of Table 1, shape (ϖ, n, 2).
+    others : the numbers of `other_numbers`.
+    contact : the name of the contact in `IMPACTS`, "" without one.
+    """
+
+    ends: NDArray
+    others: dict[str, float]
+    contact: str = AS_THEY_STAND
+
+    def numbers(self) -> NDArray:
+        """All of them, first those of Table 1."""
+        return np.append(self.ends, [*self.others.values()])
+
+    def cut_off(self, digits: NDArray) -> "Hypothesis":
+        """The same after the last printed digit was not rounded."""
+        cut = np.floor(self.numbers() / digits) * digits
+        ends, others = np.split(cut, [self.ends.size])
+        return Hypothesis(
+            ends.reshape(self.ends.shape), dict(zip(self.others, others.tolist(), strict=True))
+        )
+
+
+def all_hypotheses(n: NDArray, ratios: NDArray) -> dict[str, Hypothesis]:
+    """Each hypothesis but that of digits that were cut off, by its name."""
+    ends = ends_of_ranges(n, ratios)
+    hypotheses = {
+        name: Hypothesis(ends[name], other_numbers(impact), name)
+        for name, impact in IMPACTS.items()
+    }
+
+    plain = hypotheses[AS_THEY_STAND]
+    approximate = np.stack([plain.ends[..., 0], high_bounce_doublings(n, ratios)], axis=-1)
+    in_one_row = np.concatenate([approximate[:1], plain.ends[1:]])
+    hypotheses["high-bounce stability"] = Hypothesis(approximate, plain.others)
+    hypotheses["high-bounce stability of the stiff row"] = Hypothesis(in_one_row, plain.others)
+
+    first = restitution.saddle_node(n, R_OF_TABLE_1)
+    last = restitution.holmes_period_doubling(n, R_OF_TABLE_1)
+    formulas = np.broadcast_to(np.stack([first, last], axis=-1), plain.ends.shape)
+    unknown = dict.fromkeys(plain.others, np.nan)
+    hypotheses["Eqs. 7 and 8 in all rows"] = Hypothesis(formulas, unknown, "")
+    return hypotheses
+
+
 def hypotheses(parameters: dict) -> xr.Dataset:
     """All printed numbers under each hypothesis, in order of decreasing agreement."""
     printed = printed_table()
     n = printed.n.values
     ratios = printed.frequency_ratio.values
-    table = ends_of_ranges(n, ratios)
-    others = {name: other_numbers(impact) for name, impact in IMPACTS.items()}
+    ends = printed.stack(number=printed.dims).number.values
+    table = all_hypotheses(n, ratios)
     plain = table[AS_THEY_STAND]
-    approximate = np.stack([plain[..., 0], high_bounce_doublings(n, ratios)], axis=-1)
-    first = restitution.saddle_node(n, R_OF_TABLE_1)
-    last = restitution.holmes_period_doubling(n, R_OF_TABLE_1)
-    formulas = np.broadcast_to(np.stack([first, last], axis=-1), plain.shape)
-    known = [*others[AS_THEY_STAND].values()]
-    further: dict[str, tuple[NDArray, ArrayLike]] = {
-        "high-bounce stability": (approximate, known),
-        "high-bounce stability of the stiff row": (
-            np.concatenate([approximate[:1], plain[1:]]),
-            known,
-        ),
-        "Eqs. 7 and 8 in all rows": (formulas, np.full(len(known), np.nan)),
-    }
-    found = {name: np.append(table[name], [*others[name].values()]) for name in IMPACTS}
-    found |= {name: np.append(*both) for name, both in further.items()}
-    contact_of = dict.fromkeys([*further, CUT_OFF], AS_THEY_STAND) | {
-        name: name for name in IMPACTS
-    }
-    contact_of["Eqs. 7 and 8 in all rows"] = ""
-
-    places = printed.stack(number=printed.dims).number.values
-    decided = others[AS_THEY_STAND].keys()
-    names = [f"Table 1: {ratio:g}, {family}, {bound}" for ratio, family, bound in places]
-    row = [*(ratio for ratio, _, _ in places), *[np.nan] * len(decided)]
+    decided = [*plain.others]
     texts = [*printed.values.ravel().tolist(), *(PRINTED[name] for name in decided)]
     digits = np.array([10.0 ** -len(text.partition(".")[2]) for text in texts])
-    found[CUT_OFF] = np.floor(found[AS_THEY_STAND] / digits) * digits
-    computed = np.stack(list(found.values()))
+
+    table["digits cut off"] = plain.cut_off(digits)
+
+    computed = np.stack([each.numbers() for each in table.values()])
     units = (computed - np.array(texts, dtype=float)) / digits
     # The rows of the compliant contacts, in which most hypotheses differ.
-    compliant = units[:, plain[0].size : plain.size]
+    compliant = units[:, plain.ends[0].size : plain.ends.size]
+    distances = (plain.ends - printed.values.astype(float)) / DIGIT
     over = ("hypothesis", "number")
     data = xr.Dataset(
         {
@@ -220,19 +256,20 @@ def hypotheses(parameters: dict) -> xr.Dataset:
             "rms_difference": ("hypothesis", np.sqrt((compliant**2).mean(axis=1))),
             "largest_difference": ("hypothesis", abs(compliant).max(axis=1)),
             "printed_text": ("number", texts),
-            "row": ("number", row),
-            "contact_of": ("hypothesis", [contact_of[name] for name in found]),
+            "row": ("number", [*(ratio for ratio, _, _ in ends), *[np.nan] * len(decided)]),
+            "contact_of": ("hypothesis", [each.contact for each in table.values()]),
             "damping_of_82": ("end", damping_of_82()),
+            "stiff_reproduced": ("exponent", stiff_reproduced(n, printed.values[0].astype(float))),
+            "below_orbits": int((distances[..., 0] > 0.5 + ROUNDING).sum()),
+            "mean_difference": ("n", distances[1:].mean(axis=(0, 2))),
         },
-        {"hypothesis": list(found), "number": [*names, *decided]},
+        {
+            "hypothesis": list(table),
+            "number": [*(end_of_range(*end) for end in ends), *decided],
+            "exponent": list(EXPONENTS),
+            "n": n,
+        },
     )
-    data["stiff_reproduced"] = "exponent", stiff_reproduced(n, printed.values[0].astype(float))
-    data["exponent"] = list(EXPONENTS)
-    nodes = (plain - printed.values.astype(float))[..., 0] / DIGIT
-    data["below_orbits"] = int((nodes > 0.5 + ROUNDING).sum())
-    rows = (plain[1:] - printed.values[1:].astype(float)) / DIGIT
-    data["mean_difference"] = "n", rows.mean(axis=(0, 2))
-    data["n"] = n
     return data.sortby([-data.reproduced, data.rms_difference])
 
 

@@ -41,56 +41,71 @@ def validity_map(parameters: dict, release: str) -> xr.Dataset:
     r = r[np.isfinite(damping_ratio(r, release))]
     if r.size < 2:
         raise NoOrbit(f"restitution = {parameters['restitution']}: {NO_CONTACT}")
+    n = np.array(parameters["n"])
     place = np.linspace(0, 1, parameters["places"]) ** 3
 
-    # One column of orbits for all n, r and places, the places fastest.
-    shape = (len(parameters["n"]), r.size, place.size)
-    mesh = np.meshgrid(parameters["n"], r, place, indexing="ij")
-    n_all, r_all, place_all = (each.reshape(-1, 1) for each in mesh)
-    first = restitution.saddle_node(n_all, r_all)
-    last = restitution.period_doubling(n_all, r_all)
-    amplitude = first + place_all * (last - first)
-    family = Family(n_all, Contact.of_restitution(ratios, r_all, release))
-    orbits = orbits_along(family, amplitude)
-    enough = enough_from(family, orbits, r_all, amplitude, tolerance)
-    errors = errors_of_orbits(family, orbits, r_all, amplitude)
-    enough = enough.reshape(-1, *shape)
-    errors = errors[..., ratios >= advised].reshape(-1, *shape, (ratios >= advised).sum())
-
-    # The range of stable orbits of the contact, in the range of the restitution model.
-    ends = place_all[:, 0] == 1
-    contact = Contact.of_restitution(advised, r_all[ends], release)
-    node, doubling = (bifurcations(n_all[ends, 0], kind, contact)[0] for kind in SPECIAL[:2])
-    width = last[ends] - first[ends]
-    doubled = ((last[ends] - doubling) / width).reshape(shape[:2])
+    enough, errors = along_ranges(n, r, place, ratios, tolerance, release)
+    errors = errors[..., ratios >= advised]
+    doubled, below = shifts(n, r, advised, release)
     # The period doubling of a compliant contact may be at a larger Λ than in the other model.
     end_place = np.clip(1 - doubled, 0, 1)
-    inside = (place > 0) & (place < end_place[..., np.newaxis])
-    doubled_mean = [mean_share(r, each) for each in doubled]
-    # The contact may double its period below the saddle-node of the restitution model.
-    below = ((np.minimum(first[ends], doubling) - node) / width).reshape(shape[:2])
-    below_mean = [mean_share(r, each, np.inf) for each in below]
-
-    over = ("quantity", "n", "restitution", "place")
     share, mean, up_to, largest = failures(errors, r, place, end_place, tolerance)
+    over = ("quantity", "n", "restitution", "place")
     return xr.Dataset(
         {
             # Single precision is more than a picture shows, in half the space.
             "enough_from": (over, enough.astype("float32")),
             "stiff_error": (over, np.abs(errors).max(axis=-1).astype("float32")),
-            "stable": (over[1:], inside),
+            "stable": (over[1:], (place > 0) & (place < end_place[..., np.newaxis])),
             "largest_error": (over[:2], largest),
             "not_reached": (over[:2], np.isnan(enough).sum(axis=(2, 3))),
             "failing_share": (over[:3], share),
             "failing_mean": (over[:2], mean),
             "failing_up_to": (over[:2], up_to),
             "doubled_share": (over[1:3], np.clip(doubled, 0, 1)),
-            "doubled_mean": (over[1:2], doubled_mean),
+            "doubled_mean": (over[1:2], [mean_share(r, line) for line in doubled]),
             "below_share": (over[1:3], np.maximum(below, 0)),
-            "below_mean": (over[1:2], below_mean),
+            "below_mean": (over[1:2], [mean_share(r, line, np.inf) for line in below]),
         },
-        {"quantity": list(COMPARED), "n": parameters["n"], "restitution": r, "place": place},
+        {"quantity": list(COMPARED), "n": n, "restitution": r, "place": place},
     )
+
+
+def along_ranges(
+    n: NDArray, r: NDArray, place: NDArray, ratios: NDArray, tolerance: float, release: str
+) -> tuple[NDArray, NDArray]:
+    """The ϖ from which on the errors of the orbits at some places stay within a tolerance, shape
+    (quantities, n, r, places), and the errors, shape (quantities, n, r, places, ratios).
+    """
+    shape = (n.size, r.size, place.size)
+    # One column of orbits for all n, r and places, the places fastest.
+    n, r, place = (axis.reshape(-1, 1) for axis in np.meshgrid(n, r, place, indexing="ij"))
+    first = restitution.saddle_node(n, r)
+    last = restitution.period_doubling(n, r)
+    amplitude = first + place * (last - first)
+    family = Family(n, Contact.of_restitution(ratios, r, release))
+    orbits = orbits_along(family, amplitude)
+    enough = enough_from(family, orbits, r, amplitude, tolerance)
+    errors = errors_of_orbits(family, orbits, r, amplitude)
+    return enough.reshape(-1, *shape), errors.reshape(-1, *shape, ratios.size)
+
+
+def shifts(n: NDArray, r: NDArray, ratio: float, release: str) -> tuple[NDArray, NDArray]:
+    """How far the contact doubles its period below the upper end of the range of stable orbits of
+    the restitution model, and has stable orbits below its lower end; shape (n, r).
+
+    Both are shares of this range, negative where the contact's end is on the other side.
+    """
+    n, r = np.meshgrid(n, r, indexing="ij")
+    first = restitution.saddle_node(n, r)
+    last = restitution.period_doubling(n, r)
+    contact = Contact.of_restitution(ratio, r.reshape(-1, 1), release)
+    node, doubling = (
+        bifurcations(n.ravel(), kind, contact)[0].reshape(n.shape) for kind in SPECIAL[:2]
+    )
+    # The contact may double its period below the saddle-node of the restitution model.
+    below = np.minimum(first, doubling) - node
+    return (last - doubling) / (last - first), below / (last - first)
 
 
 def failures(

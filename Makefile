@@ -8,10 +8,6 @@ VENV := .venv
 RUN := $(VENV)/bin/python -m
 SNAKEMAKE := $(RUN) snakemake --cores 2 --logger rich --
 ENVIRONMENT := sh ./environment.sh
-# Errors only: pip's notices on options that it will change are not for users.
-PIP := $(RUN) pip --quiet --quiet --disable-pip-version-check
-LOCKED := $(PIP) install --require-hashes
-BUILT := --only-binary :all: --no-build-isolation --no-binary "$$(sh ./python.sh --builds $$(ls $(VENV)/lib))"
 UV := uv pip compile --universal --python-version 3.11 --fork-strategy fewest --generate-hashes --no-header --no-annotate --no-emit-package bouncing-ball $(UPGRADE)
 # Sets of processor instructions that numpy uses here, for NPY_DISABLE_CPU_FEATURES.
 FOUND := import numpy; print(*numpy.show_config(mode="dicts")["SIMD Extensions"]["found"])
@@ -24,32 +20,19 @@ endif
 
 # Targets run one after another, because they share results/.
 .NOTPARALLEL:
-.PHONY: all environment setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
+.PHONY: all setup develop test test-processors lint diff replication accept newest lowest lock wheels release wheelhouse clean
 
 all: setup
 	@echo "Computing every figure, table and text into results/, in about half a minute."
 	@$(SNAKEMAKE)
 	@echo "Open results/index.html"
 
-# One line says what is wrong with an environment that was installed, and which command cures it.
-environment:
-	@$(ENVIRONMENT) check $(VENV)
+setup:
+	@$(ENVIRONMENT) install $(VENV) .installed requirements-build.lock requirements.lock -- .
 
-setup: $(VENV)/.installed
-$(VENV)/.installed: | environment
-	@$(ENVIRONMENT) new $(VENV)
-	@echo "Setting up $(VENV) from requirements.lock, in about a minute."
-	@$(LOCKED) --only-binary :all: --requirement requirements-build.lock
-	@$(LOCKED) $(BUILT) --requirement requirements.lock
-	@$(PIP) install --no-deps --no-build-isolation --editable .
-	@$(ENVIRONMENT) note $@ requirements-build.lock requirements.lock
-
-# Tools that only developers need.
-develop: $(VENV)/.developing
-$(VENV)/.developing: | $(VENV)/.installed
-	@echo "Adding the tools for tests and style from requirements-develop.lock."
-	@$(LOCKED) $(BUILT) --requirement requirements-develop.lock
-	@$(ENVIRONMENT) note $@ requirements-develop.lock
+# Tools that only developers need, for tests and style.
+develop: setup
+	@$(ENVIRONMENT) install $(VENV) .developing requirements-develop.lock
 
 test: develop
 	OMP_NUM_THREADS=1 $(RUN) pytest --numprocesses 2
@@ -70,7 +53,7 @@ accept: develop
 	CANDIDATE=results OMP_NUM_THREADS=1 $(RUN) pytest --quiet --ignore tests/test_edges.py
 	@$(SNAKEMAKE) $@
 
-replication: environment clean diff
+replication: setup clean diff
 
 # From nothing, with the code of numpy and OpenBLAS for another processor, one without AVX-512.
 test-processors: develop
@@ -128,7 +111,8 @@ release: replication
 
 # The packages of the lock files, for a machine without an index: docs/on-a-cluster.md.
 wheelhouse: setup
-	$(PIP) download --require-hashes $(BUILT) --dest wheelhouse \
+	$(RUN) pip --quiet --quiet --disable-pip-version-check download --require-hashes \
+	  --only-binary :all: --no-build-isolation --no-binary "$$(sh ./python.sh --builds $$(ls $(VENV)/lib))" --dest wheelhouse \
 	  --requirement requirements-build.lock --requirement requirements.lock
 
 clean:

@@ -13,7 +13,7 @@ then of order one for any stiffness of the contact:
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import solve_ivp
+from scipy.integrate import simpson, solve_ivp
 from scipy.optimize import brentq
 
 ACCURACY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
@@ -164,6 +164,11 @@ class Contact:
     times: np.ndarray
     gaps: np.ndarray
     rates: np.ndarray
+
+    def centroid(self, zeta):
+        """Centroid of the force -ϖ²δ - 2ζϖδ′, of which a factor ϖ does not matter."""
+        force = -self.gaps - 2 * zeta * self.rates
+        return simpson(force * self.times, self.times) / simpson(force, self.times)
 
 
 def integrate_contact(ratio, zeta, release, amplitude, phase, u, weight=1.0, duration=None):

@@ -196,6 +196,18 @@ CASES = [
     ("time_histories", "fig12", {"frequency_ratio": [0.3, 20.0]}),
     (
         "time_histories",
+        "impact_instant",
+        {
+            "cases": [
+                {"restitution": 1.0, "amplitude": 0.0123, "frequency_ratio": 0.5},
+                {"restitution": 0.65, "amplitude": 0.3, "frequency_ratio": 20.0},
+                {"restitution": 0.05, "amplitude": 3.0, "frequency_ratio": 1e6},
+            ],
+            "samples": 2,
+        },
+    ),
+    (
+        "time_histories",
         "fig12",
         {"restitution": 0.3, "amplitude": 1.8, "frequency_ratio": [0.5, 20.0]},
     ),

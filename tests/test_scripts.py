@@ -449,6 +449,40 @@ def test_the_cycle_of_figure_7_is_that_of_the_integrated_motion(release):
     assert data.ball[-1] == pytest.approx(float(data.ball[0]), abs=1e-8)
 
 
+@pytest.mark.parametrize("release", RELEASES)
+def test_depth_and_rise_of_the_table_are_the_difference_of_the_heights(release):
+    """The terms are those of an integrated contact, whose flights meet at the centroid with the
+    velocities of the restitution model, and no other term is left.
+    """
+    places = [(0.65, 1.0, 5.0), (0.65, 0.6667, 100.0), (0.2, 2.2, 30.0), (0.65, 3.0, 5.0)]
+    names = ("restitution", "amplitude", "frequency_ratio")
+    given = [dict(zip(names, place, strict=True)) for place in places]
+    data = time_histories.STAGE["impact_instant"]({"n": 1, "cases": given, "samples": 401}, release)
+    higher = data.summit - data.restitution_max_height
+    assert (data.depth + data.table_rise).values == pytest.approx(higher.values, abs=1e-12)
+    outside = data.time.where((data.time < data.touch) | (data.time > data.release))
+    assert outside.notnull().sum("sample").values.tolist() == [200] * len(places)
+    apart = (data.ball - data.instant_ball).where(outside.notnull())
+    assert abs(apart).max().item() < 1e-12
+    for k, (r, amplitude, ratio) in enumerate(places):
+        case = data.isel(case=k)
+        rigid = np.arccos(np.pi * (1 - r) / (1 + r) / amplitude)
+        phase = rigid + float(case.touch)
+        zeta = independent.restitution_to_damping(r, release)
+        velocity = -np.pi + float(case.centroid - case.touch)
+        moved = independent.cycle(ratio, zeta, release, amplitude, phase, velocity)
+        since = moved.contact.centroid(zeta)
+        assert moved.time == pytest.approx(2 * np.pi, abs=1e-8)
+        assert float(case.centroid - case.touch) == pytest.approx(since, abs=1e-7)
+        before = moved.contact.duration - since
+        assert moved.bounce + before == pytest.approx(np.pi, abs=1e-7)
+        turn = moved.heights[400] - moved.bounce * before - before**2 / 2
+        there = amplitude * np.sin(phase + since)
+        assert float(case.depth) == pytest.approx(turn - there, abs=1e-6)
+        assert float(case.table_rise) == pytest.approx(there - amplitude * np.sin(rigid), abs=1e-6)
+        assert case.force.sum() > 0 and float(case.force[0]) == float(case.force[-1]) == 0
+
+
 def test_the_heights_of_figure_12_are_those_of_the_closed_form_with_both_ends_of_each_contact():
     given = registered("time_histories", "fig12", samples=101)
     data = time_histories.STAGE["fig12"](given, "displacement")

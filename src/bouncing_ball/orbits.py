@@ -401,6 +401,24 @@ class Family:
         """Duration τ_b of the contact (Eq. 23)."""
         return y[3] / self.contact.frequency_ratio
 
+    def centroid(self, y: NDArray) -> NDArray:
+        """Centroid ∫F s ds/∫F ds of the contact force F, as a time after the start of the contact.
+
+        The flights before and after the contact, continued into it, meet at the centroid, and on an
+        n-T orbit they have the velocities -nπ and nπ there. Outside of the contact the motion is
+        therefore that of a ball with an instantaneous impact at the centroid, for any F.
+        """
+        return y[2] + np.pi * self.n
+
+    def centroid_gap(self, y: NDArray) -> NDArray:
+        """Height above the table at which the continued flights meet (`centroid`); negative if they
+        meet below the table.
+        """
+        x, impact_height, _ = self.start(y)
+        since = self.centroid(y)
+        ball = impact_height + y[2] * since - since**2 / 2
+        return ball - x * np.sin(since) - impact_height * np.cos(since)
+
     def observables(self, y: NDArray, names: Iterable[str]) -> dict[str, NDArray]:
         """Quantities of orbits by name, any of `OBSERVABLES`."""
         return {name: OBSERVABLES[name](self, y) for name in names}
@@ -415,6 +433,9 @@ OBSERVABLES: Mapping[str, Callable[[Family, NDArray], NDArray]] = {
     "bounce_velocity": Family.bounce_velocity,
     "apparent_restitution": Family.apparent_restitution,
     "max_height": Family.max_height,
+    "summit": Family.summit,
+    "centroid": Family.centroid,
+    "centroid_gap": Family.centroid_gap,
     "stable": lambda family, y: is_stable(*family.trace_and_determinant(y)),
     "admissible": lambda family, y: family.clearance(y) > 0,
 }

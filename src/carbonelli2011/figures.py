@@ -449,6 +449,80 @@ def show_summit(axes: Axes, data: xr.Dataset) -> None:
     axes.set(xlim=(centre - reach, centre + reach), ylim=(top - below, top + 0.15 * below))
 
 
+def impact_instant(data: xr.Dataset) -> Figure:
+    """The impact that is equivalent to a contact outside of it, and the two terms of its height.
+
+    A column for each contact: motions, force, and terms.
+    """
+    columns = data.sizes["case"]
+    figure, grid = panels(5.0, rows=3, columns=columns, squeeze=False, height_ratios=(5, 3, 3))
+    for k, column in enumerate(grid.T):
+        draw_instant(column, data.isel(case=k), float(restitution_turn(data)[k]))
+    for axes, words in zip(grid[:, 0], ("height $z$, $w$", "force", "difference"), strict=True):
+        axes.set_ylabel(words)
+    figure.align_ylabels(grid[:, 0])
+    grid[1, columns // 2].set_xlabel(r"time $\tau-\varphi_{CR}$")
+    legend_below(figure)
+    return figure
+
+
+def restitution_turn(data: xr.Dataset) -> xr.DataArray:
+    """Height at which the ball of the restitution model hits the table: Λ sin φ_CR."""
+    return data.restitution_max_height - (parameters(data)["n"] * np.pi) ** 2 / 2
+
+
+def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
+    """Draw one contact of `impact_instant` in its three panels."""
+    motions, force, terms = column
+    names = ("frequency_ratio", "restitution", "amplitude")
+    motions.set_title("\n".join(label(**{name: case[name].item()}) for name in names))
+    terms.set_xticks([])
+    if case.summit.isnull():
+        for axes in column:
+            axes.set(xticks=[], yticks=[])
+        terms.set_title("no orbit")
+        return
+    motions.plot(case.time, case.table, color=TABLE, linewidth=2.0, label="table $w$")
+    motions.plot(case.time, case.ball, color="black", label="ball $z$")
+    dashed: Look = {"color": CONTACT, "linestyle": DASHES[1], "label": "equivalent impact"}
+    motions.plot(case.time, case.instant_ball, **dashed)
+    motions.plot(case.centroid, case.instant_ball.min(), "o", color=CONTACT, markersize=4)
+    star: Look = {"marker": "*", "markersize": 8, "linestyle": "none", "color": COLOURS[2]}
+    motions.plot(0, rigid, label="impact, restitution model", zorder=4, **star)
+    motions.tick_params(labelbottom=False)
+    force.fill_between(case.time, case.force, color="0.8", linewidth=0, label="contact force")
+    force.axvline(case.centroid, color=CONTACT, linewidth=1.0, label="its centroid")
+    force.sharex(motions)
+    force.set_xticks([0, first_digit(case.time.max().item())])
+    force.xaxis.set_major_formatter("{x:g}")
+    parts = {
+        "depth of the impact": (case.depth, CONTACT),
+        "rise of the table": (case.table_rise, TABLE),
+        "sum": (case.depth + case.table_rise, "black"),
+    }
+    for k, (name, (value, colour)) in enumerate(parts.items()):
+        terms.bar(k, value, color=colour, label=name)
+    terms.axhline(0, color="black", linewidth=0.6)
+    higher = 100 * (case.summit / case.restitution_max_height - 1).item()
+    usual = "" if case.stable else "\n(unstable)"
+    kind = usual if case.admissible else "\n(inadmissible)"
+    terms.set_title(f"height\n${higher:+.1f}$ %{kind}")
+    for axes in column:
+        axes.yaxis.set_major_locator(MaxNLocator(3))
+
+
+def first_digit(value: float) -> float:
+    """Round a positive number down to its first digit.
+
+    Examples
+    --------
+    >>> first_digit(0.187), first_digit(2.9)
+    (0.1, 2.0)
+    """
+    unit = 10 ** np.floor(np.log10(value))
+    return float(np.floor(value / unit) * unit)
+
+
 # Branches of the spring-damper model
 
 
@@ -749,6 +823,7 @@ PLOTS: Mapping[str, Callable[[xr.Dataset], Figure]] = {
     "fig14": fig14,
     "fig15": fig15,
     "fig16": fig16,
+    "impact_instant": impact_instant,
     "motion": motion,
     "validity_map": validity_map,
     "regimes": regimes,

@@ -201,6 +201,23 @@ OF_DATASET: dict[str, dict[str, Variable]] = {
             "standard error of the largest Lyapunov exponent", tolerance=0.5
         ),
     },
+    "impact_instant": {
+        "sample": Variable("number of the sample around the contact"),
+        "time": Variable("time since the impact of the restitution model", "τ - φ_CR"),
+        "instant_ball": Variable("height of the ball with the equivalent impact at an instant"),
+        "force": Variable("contact force on the ball, divided by its weight", "F"),
+        "touch": Variable("start of the contact: time since the impact of the restitution model"),
+        "centroid": Variable(
+            "centroid of the contact force: time since the impact of the restitution model"
+        ),
+        "release": Variable("end of the contact: time since the impact of the restitution model"),
+        "depth": Variable("height of the ball above the table at the equivalent impact", "z - w"),
+        "table_rise": Variable(
+            "height of the table at the equivalent impact minus its height at the impact of the "
+            "restitution model"
+        ),
+        "summit": Variable("maximum height of the ball in flight"),
+    },
     "hypotheses": {
         "hypothesis": Variable("hypothesis on what the authors computed"),
         # A distance in units of the last digit is a difference of two close numbers, and has fewer

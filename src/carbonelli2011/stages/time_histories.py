@@ -1,4 +1,4 @@
-"""Stage: heights of ball and table over a cycle (Figs. 7 and 12)."""
+"""Stage: heights of ball and table over a cycle (Figs. 7 and 12), and around one contact."""
 
 import numpy as np
 import xarray as xr
@@ -10,6 +10,16 @@ from bouncing_ball.spring_damper import Contact
 
 # Quantities of each orbit in the datasets.
 STATE = ("phase", "contact_duration", "impact_velocity", "bounce_velocity")
+INSTANT = (
+    "phase",
+    "contact_duration",
+    "centroid",
+    "centroid_gap",
+    "summit",
+    "stable",
+    "admissible",
+)
+"""Quantities of a contact that the dataset of its equivalent impact needs."""
 
 
 def fig07(parameters: dict, release: str) -> xr.Dataset:
@@ -88,4 +98,60 @@ def fig12(parameters: dict, release: str) -> xr.Dataset:
     )
 
 
-STAGE = {"fig07": fig07, "fig12": fig12}
+def impact_instant(parameters: dict, release: str) -> xr.Dataset:
+    """A contact in each case, and the impact at an instant that is equivalent outside of it.
+
+    Times are counted from the impact of the restitution model, and half of the samples are in the
+    contact. The equivalent impact is at the centroid of the contact force (`Family.centroid`).
+    """
+    n = parameters["n"]
+    cases = parameters["cases"]
+    r, amplitude, ratio = (
+        np.array([case[name] for case in cases])
+        for name in ("restitution", "amplitude", "frequency_ratio")
+    )
+    family = Family(n, Contact.of_restitution(ratio, r, release))
+    along, position = np.unique(ratio, return_inverse=True)
+    y = stable_orbits(n, r, amplitude, along, release)[:, np.arange(ratio.size), position]
+    orbit = family.observables(y, INSTANT)
+    quarter = max(1, parameters["samples"] // 4)
+    part = np.arange(-quarter, 3 * quarter + 1)[:, np.newaxis] / (2 * quarter)
+    since = part * orbit["contact_duration"]
+    table = amplitude * np.sin(orbit["phase"] + since)
+    x, impact_height, u = family.start(y)
+    acceleration = family.contact.motion(since, u, x, impact_height).acceleration
+    touching = (part >= 0) & (part <= 1)
+    table_there = amplitude * np.sin(orbit["phase"] + orbit["centroid"])
+    turn = table_there + orbit["centroid_gap"]
+    rigid_phase = restitution.impact_phase(n, r, amplitude)
+    touch = orbit["phase"] - rigid_phase
+    shape = ("sample", "case")
+    names = zip(r, amplitude, ratio, strict=True)
+    return xr.Dataset(
+        {
+            "time": (shape, touch + since),
+            "ball": (shape, family.motion(y, np.mod(since, family.period))[0]),
+            "table": (shape, table),
+            "instant_ball": (shape, restitution.height(n, turn, abs(since - orbit["centroid"]))),
+            # z″ = w″ + δ″ = -1 + F.
+            "force": (shape, np.where(touching, 1 + acceleration - table, 0)),
+            "touch": ("case", touch),
+            "centroid": ("case", touch + orbit["centroid"]),
+            "release": ("case", touch + orbit["contact_duration"]),
+            "depth": ("case", orbit["centroid_gap"]),
+            "table_rise": ("case", table_there - amplitude * np.sin(rigid_phase)),
+            "summit": ("case", orbit["summit"]),
+            "restitution_max_height": ("case", restitution.max_height(n, r, amplitude)),
+            "stable": ("case", orbit["stable"]),
+            "admissible": ("case", orbit["admissible"]),
+        },
+        {
+            "case": [f"r = {one:g}, Λ = {two:g}, ϖ = {three:g}" for one, two, three in names],
+            "restitution": ("case", r),
+            "amplitude": ("case", amplitude),
+            "frequency_ratio": ("case", ratio),
+        },
+    )
+
+
+STAGE = {"fig07": fig07, "fig12": fig12, "impact_instant": impact_instant}

@@ -144,7 +144,8 @@ def test_every_figure_has_its_picture_its_caption_and_its_data(read):
         assert name in page.places["id"]
         assert any(entry["title"] in text for text in page.texts)
         if "caption" in entry:
-            assert entry["caption"] in page.places["alt"] and entry["caption"] in page.texts
+            assert entry["title"].partition(":")[0] in page.places["alt"]
+            assert page.texts.count(entry["caption"]) == 1
             assert f"figures/{name}.svg" in page.places["src"]
         if name not in ("fig01", "fig04"):
             assert f"figures/{entry.get('data', name)}.nc" in page.places["href"]
@@ -200,7 +201,7 @@ def test_a_new_figure_and_a_new_claim_follow_from_registry_and_dataset(data):
     text = index.filled_in("html", every, ENTRIES | {"fig17": entry})
     found = Page(text[text.index('<section id="fig17"') : text.index("</main>")])
     assert "Figure 17: <another>" in found.texts
-    assert found.places["alt"][0] == "Another & more."
+    assert found.places["alt"][0] == "Figure 17" and "Another & more." in found.texts
     assert claims.statement[0].item() in found.texts
 
 
@@ -234,7 +235,7 @@ def test_the_article_of_another_run_is_a_page_with_links_to_its_results(data):
     changed = data | {"fig14": with_parameters(data["fig14"], n=2)}
     changed["fig03"] = with_parameters(data["fig03"], n=[7])
     for name in ("paper", "supplement"):
-        page = Page(text_pages.page_of(article.written(name, changed), name, CAPTIONS))
+        page = Page(text_pages.page_of(article.written(name, changed), name))
         assert "fig03: n lacks 1, 2, 3, 4, 5" in page.texts
         assert "fig14: n is 2 instead of 1" in page.texts
         assert {"index.html", "claims.html"} <= {*page.places["href"]}
@@ -277,10 +278,20 @@ def test_only_a_formula_and_its_punctuation_are_kept_on_one_line(texts):
         assert units and all(one.match(unit) for unit in units)
 
 
-def test_figures_and_tables_of_the_article_can_be_read_without_sight_and_on_a_telephone(read):
+def test_a_picture_has_a_name_and_below_it_a_caption(data, read, listed):
+    """The caption is a text that everybody reads, and the alternative text does not repeat it."""
+    shown = re.findall(
+        r"^!\[(.+)\]\(figures/\w+\.png\)\n\*\*.+\*\* \S", article.written("paper", data), re.M
+    )
+    assert read["paper.html"].places["alt"] == shown and len(shown) > 16
+    for name, caption in CAPTIONS.items():
+        picture = f'<a href="{name}.svg"><img src="{name}.png"'
+        below = listed.partition(picture)[2].split("\n\n")[1]
+        assert below.replace("\\_", "_") == caption
+
+
+def test_tables_of_the_article_can_be_read_on_a_telephone(read):
     page = read["paper.html"]
-    shown = re.findall(r"\]\(figures/(\w+)\.png\)", (TOP / "paper.md").read_text("utf-8"))
-    assert page.places["alt"] == [CAPTIONS[name] for name in shown] and len(shown) > 16
     assert page.tags.count("td") == len(page.places["data-label"]) > 0
 
 

@@ -90,6 +90,7 @@ def written(name: str, datasets: Datasets) -> str:
         end_of_range=paper.end_of_range,
         durations=partial(durations, datasets),
         failing=partial(failing, datasets["validity_map"]),
+        quantities=paper.QUANTITIES,
         crossing=measures.crossing,
         curve_errors=measures.curve_errors,
     )

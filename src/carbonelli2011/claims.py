@@ -1113,8 +1113,8 @@ A row is one claim of the paper, in our words; the ends of Table 1 are in [table
 [Section 3 of the article](../paper.md) defines the four verdicts and the senses.
 A distance is in units of the last printed digit, and in per cent of the printed number.
 Each sense of a statement has a condition, which holds ("yes") or does not ("no"), the literal one
-first. If they disagree, the column *literal sense* says whether it holds; "cannot fail" marks a
-statement that holds by definition.
+first; brackets have what we computed, then what the sense requires. If the senses disagree, the
+column *literal sense* says whether it holds; "cannot fail" marks what holds by definition.
 Formulas were *restored* from the damaged text by deriving them again, and are not counted;
 [claims.csv](claims.csv) lists them, and `tests/test_formulas.py` compares each with its print.
 """

@@ -5,6 +5,7 @@ shown next to it.
 """
 
 import re
+import re
 from collections.abc import Mapping
 from functools import partial
 
@@ -30,7 +31,6 @@ def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = Fal
     `entries` are the registered figures, tables and datasets by name. On a `site`, the explorer and
     the documentation are next to the pages.
     """
-    captions = {name: entry["caption"] for name, entry in entries.items() if "caption" in entry}
     marked = {name: article.written(name, datasets) for name in ("paper", "supplement")}
     origin = {name: article.origins_of(name, datasets) for name in marked}
     evidence = filled_in("html", datasets, entries, name="claims", site=site)
@@ -41,23 +41,9 @@ def written(datasets: Datasets, entries: Mapping[str, Mapping], site: bool = Fal
         "numbers.html": numbers(marked, origin, datasets, article.TEMPLATES),
     }
     for name, text in marked.items():
-        found[f"{name}.md"] = described(bare(text), captions)
-        found[f"{name}.html"] = page_of(text, name, captions, origin[name])
+        found[f"{name}.md"] = bare(text)
+        found[f"{name}.html"] = page_of(text, name, origin[name])
     return found
-
-
-def described(text: str, captions: Mapping[str, str]) -> str:
-    """Describe the pictures of a text in Markdown by their captions.
-
-    >>> print(described("![Figure 8](figures/fig08.png)", {"fig08": "Phases [rad], φ + τ_b."}))
-    ![Phases \\[rad\\], φ + τ\\_b.](figures/fig08.png)
-    """
-
-    def picture(found: re.Match) -> str:
-        plain = re.sub(r"([\\`*_$<\[\]])", r"\\\1", captions[found[1]])
-        return f"![{plain}](figures/{found[1]}.png)"
-
-    return re.sub(r"!\[[^]]*\]\(figures/(\w+)\.png\)", picture, text)
 
 
 def filled_in(

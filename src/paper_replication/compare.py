@@ -858,9 +858,10 @@ def written(project: Project, report: Report, folder: Path, stream: TextIO) -> i
         if file.endswith(".png") and finding.verdict != "agrees"
     }
     page = folder.resolve() / "index.html"
+    back = (page.parents[1] / "index.html").is_file()
     text = report.printed("diff.txt.j2")
     try:
-        write(page, report.printed("diff.html.j2", pictures=pictures).encode())
+        write(page, report.printed("diff.html.j2", pictures=pictures, back=back).encode())
         write(folder / "report.txt", f"{text}{page}\n".encode())
         print(f"{text}{page}", file=stream)
     except OSError as error:

@@ -72,23 +72,20 @@ no links to the others."""
 def page_of(
     markdown: str,
     name: str,
-    captions: Mapping[str, str],
     origin: Sequence[origins.Origin] = (),
     pages: Mapping[str, str] = PAGES,
 ) -> str:
     """Return the page of a text in Markdown. `name` is its name in `pages`, such as "paper".
 
-    Formulas become MathML. Links to texts lead to their pages, and citations to the references.
+    Formulas become MathML, and pictures SVG. Links to texts lead to their pages, and citations to the references.
     What an expression printed leads to its origin on the page of numbers; `origin` has the origins
-    of all expressions. `captions` describe the pictures, by the names of figures.
+    of all expressions.
     """
     tokens = parser().parse(markdown)
     inside = [token for block in tokens for token in (block, *(block.children or ()))]
     for token in inside:
         if token.type == "image":
-            figure = token.attrs["src"].removeprefix("figures/").removesuffix(".png")
-            token.attrs["src"] = f"figures/{figure}.svg"
-            token.children = [Token("text", "", 0, content=captions[figure])]
+            token.attrs["src"] = token.attrs["src"].removesuffix(".png") + ".svg"
         elif token.type == "link_open":
             token.attrs["href"] = link(token.attrs["href"], pages)
     contents = name_headings(tokens) or [("", name.title())]
@@ -137,14 +134,21 @@ def parser() -> MarkdownIt:
 
 
 def formula(tex: str, options: Mapping) -> str:
-    """A formula as MathML. A displayed one is split at its wide spaces, where a line may break."""
+    """A formula as MathML. A displayed one is split at its wide spaces, where a line may break.
+
+    The number of an equation stays with its formula.
+    """
     tex = origins.bare(tex)
     # The library leaves no space around the names of functions.
     tex = re.sub(r"(?<=[\w}])(?=\\(?:sin|cos|ln)\b)", r"\\,", tex)
     tex = re.sub(r"(\\(?:sin|cos|ln|max))(?=\\| )", r"\1\\,", tex)
     if not options["display_mode"]:
         return convert(tex)
-    return "".join(convert(each, display="block") for each in re.split(r"\\q?quad", tex))
+    numbered = re.split(r"\\q?quad(?!\s*\\text\{\()", tex)
+    return "".join(
+        f'<span class="numbered">{"".join(convert(each, display="block") for each in parts)}</span>'
+        for parts in (re.split(r"\\q?quad", each) for each in numbered)
+    )
 
 
 def link(target: str, pages: Mapping[str, str] = PAGES) -> str:

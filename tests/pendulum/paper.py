@@ -15,7 +15,6 @@ with reading(snakemake.input) as sources:
     save(verdicts, snakemake.output.claims, "Claims", {}, sources, PROJECT)
     text = environment(PROJECT.top).from_string(TEXT).render(fig1=fig1)
     Path(snakemake.output.paper).write_text(text, encoding="utf-8")
-    captions = {"fig1": snakemake.params.entries["fig1"]["caption"]}
-    page = page_of(text, "paper", captions, pages={"paper.html": "Article"})
+    page = page_of(text, "paper", pages={"paper.html": "Article"})
     Path(snakemake.output.page).write_text(page, encoding="utf-8")
     save_record(snakemake, sources, PROJECT)

@@ -26,10 +26,8 @@ from scipy.optimize import least_squares
 
 from bouncing_ball_beyond.contacts import one_ball, oscillator
 from bouncing_ball_beyond.contacts.one_ball import EPS, PATIENCE, REACH, SLOWEST
+from bouncing_ball_beyond.contacts.resolution import H, check_continuous
 from bouncing_ball_beyond.tables.table import SINE, Table, Values
-
-H = 1e-30
-"""Imaginary part of a complex step: the imaginary part of f(x + iH) is H f′(x)."""
 
 FEW_BALLS = 40
 """Number of balls below which a scalar loop is faster than arrays.
@@ -372,6 +370,10 @@ def check_analytic(what: str, function: Callable, at: NDArray) -> NDArray:
     return values
 
 
+RESOLVED = 0.01, 1e4
+"""Closing speeds between which an r(u) must not jump. 1000-T orbits close below 2000π."""
+
+
 @dataclass(frozen=True)
 class Rigid(Ball):
     """Ball with instantaneous impacts. Its restitution coefficient r gives w = r u (Eq. 5).
@@ -380,7 +382,7 @@ class Rigid(Ball):
     ----------
     restitution : array_like or callable
         r in [0, 1], or an analytic function r(u) of the closing speed, such as
-        ``restitution_of(pairs)``.
+        ``restitution_of(pairs)``. It must not jump; replace a jump by a smooth step.
 
     Examples
     --------
@@ -396,6 +398,7 @@ class Rigid(Ball):
             samples = np.array([0.5, 1.0, 2.0, np.pi, 2 * np.pi])
             r = check_analytic("restitution: r(u)", self.restitution, samples)
             checked("restitution at u = 0.5, 1, 2, π or 2π", r, 0, 1, low_allowed=True)
+            check_continuous("restitution: r(u)", self.restitution, *RESOLVED)
         else:
             r = checked("restitution", self.restitution, 0, 1, low_allowed=True)
             object.__setattr__(self, "restitution", r)

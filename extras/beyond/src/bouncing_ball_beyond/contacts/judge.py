@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from bouncing_ball_beyond.contacts.balls import H, broadcast_named
 from bouncing_ball_beyond.contacts.forces import DEPTHS, Force
+from bouncing_ball_beyond.contacts.resolution import MOST_SEGMENTS, divisions
 
 FIRST_SPEED, FIRST_LOAD = 12.0, 6.0
 """Closing speed and load up to which a new law is judged.
@@ -52,36 +53,18 @@ Elastic forces with a step have errors of up to 2e-11.
 ROUNDED = 1e-11
 """Largest difference of forces within rounding, divided by their size."""
 
-ALIKE, ROUNDING = (1e-5, 1e-11), 1e-14
-"""Largest error of the integral of the derivative over a segment, divided by the change of a smooth
-force on it, and divided by the force. `ROUNDING` replaces the second number on parts of segments.
-
-The quadrature of p^{1/4} between neighbouring samples has a relative error of 1e-11.
-"""
-
-PARTS, TO_KINK, TO_JUMP, MOST_SEGMENTS = 32, 3, 8, 4000
-"""Number of parts into which segments are divided again and again, numbers of divisions after which
-a part contains a kink or a jump, and maximum number of parts.
+TO_KINK = 3
+"""Number of divisions after which a part of a segment contains a kink or a jump.
 
 A smooth step as narrow as 1/30,000 of a segment is accepted. Such steps have right answers: for the
 force kp (1 + m tanh(v/w)), r differs from √((1 - m)/(1 + m)) by 0.03 w. The loss σ of an elastic
 force with a step at a depth is 0 within 2e-10, and within 7e-8 if the step is as narrow as
-accepted. After 8 divisions, the change of the force at a kink is a rounding error.
-"""
-
-SMALLEST_JUMP = 1e-6
-"""Smallest jump of the force that is refused, divided by the force.
-
-Square roots change by 1e-7 of the force on the shortest parts of segments.
+accepted.
 """
 
 NARROW = 10.0
 """Ratio of the change of the force to the force on the whole segment above which the change is a
 pole. A jump changes the force on the whole segment."""
-
-FOUR, WEIGHTS_OF_FOUR = (each / 2 for each in legendre.leggauss(4))
-FOUR = FOUR + 0.5
-"""Gauss nodes and weights on [0, 1]."""
 
 TOO_FAST = (
     "force: tends to infinity or changes too fast near {}, where the energy of f(p, 0) does not"
@@ -195,44 +178,30 @@ def _check_lines(law: Force, force: Callable, name: str, points: NDArray, usual:
     """Check the force on lines of points, shape (3, lines, points), along which ``name`` changes.
 
     The change of the force on a segment between neighbouring points must be the integral of its
-    derivative, which complex steps give. Segments on which it is not are divided again and again. A
-    smooth force then passes, a kink remains until the change of the force is a rounding error, and
-    a jump remains. ``usual`` is the mean force that stops a ball: smaller forces count as this one.
+    derivative (:func:`.resolution.divisions`). A smooth force passes, a kink remains until the
+    change of the force is a rounding error, and a jump remains. ``usual`` is the mean force that
+    stops a ball: smaller forces count as this one.
     """
-    segments: Any = np.stack([points[..., :-1], points[..., 1:]]).reshape(2, 3, -1)
-    whole, broken = segments, (segments, segments)
-    for division in range(TO_JUMP + 1):
-        here = segments[0]
-        along = (segments[1] - here)[..., np.newaxis]
-        inner = here[..., np.newaxis] + along * (FOUR + 1j * H)
-        expected = force(inner).imag @ WEIGHTS_OF_FOUR / H
-        change = force(segments[1]) - force(here)
-        size = np.abs([force(each) for each in whole]).max(axis=0)
-        rounded = (ROUNDING if division else ALIKE[1]) * np.maximum(size, usual)
-        wrong = np.abs(change - expected) > ALIKE[0] * np.abs(change) + rounded
-        segments, whole = segments[..., wrong], whole[..., wrong]
+    for division, part in enumerate(divisions(force, points, usual)):
+        segments, whole = part.segments[..., part.wrong], part.whole[..., part.wrong]
         if division <= TO_KINK:
             broken = whole, segments
-        if not wrong.any():
-            break
         if segments.shape[2] > MOST_SEGMENTS:
             place = _where(*segments[0, :, 0])
             if division > 1:
                 raise ValueError(TOO_FAST.format(place))
-            slopes = np.array([change, expected])[:, wrong][:, 0] / np.ptp(along[:, wrong][:, 0])
+            slopes = np.array([part.change, part.expected])[:, part.wrong][:, 0]
+            slopes = slopes / np.ptp(segments[..., 0], axis=0).max()
             raise ValueError(
                 f"force: is not analytic in {name}, or changes too fast, at {place}: its derivative"
                 " is {:.4g} by a difference and {:.4g} by a complex step; write it without abs,"
                 " real, sign".format(*slopes)
             )
-        ends = np.linspace(segments[0], segments[1], PARTS + 1, axis=-1)
-        segments = np.stack([ends[..., :-1], ends[..., 1:]]).reshape(2, 3, -1)
-        whole = np.repeat(whole, PARTS, axis=2)
-    jumps = np.flatnonzero(wrong & (np.abs(change) > SMALLEST_JUMP * size))
+    jumps = part.jumps
     if jumps.size:
-        jump = np.abs(change[jumps[0]])
-        place = _where(*here[:, jumps[0]])
-        if jump > NARROW * size[jumps[0]]:
+        jump = np.abs(part.change[jumps[0]])
+        place = _where(*part.segments[0, :, jumps[0]])
+        if jump > NARROW * part.size[jumps[0]]:
             raise ValueError(TOO_FAST.format(place))
         raise ValueError(
             f"force: jumps by {jump:.3g} near {place}, but must be continuous; replace the jump by"

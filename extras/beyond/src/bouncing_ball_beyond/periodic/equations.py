@@ -524,7 +524,11 @@ class OrbitEquations:
         return z
 
     def admissible(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
-        """Whether a ball follows each orbit, shape (rows,).
+        """Whether a ball follows each orbit, shape (rows,)."""
+        return self.obstacles(z, linear) == ""
+
+    def obstacles(self, z: NDArray, linear: LinearizedLegs | None = None) -> NDArray:
+        """Why no ball follows each orbit, shape (rows,); "" if a ball follows it.
 
         A ball follows an orbit if each contact ends at its first release, and each flight at its
         first impact.
@@ -537,8 +541,14 @@ class OrbitEquations:
         falls = (ends.amplitude * ends.table(ends.leaves, 2) < -1).all(axis=-1)
         leaving = (release > 0) | ((release == 0) & falls)
         lasting = (ends.flight > 0) & (ends.leaves >= x[..., 0])
-        clear = (self.clearance(z, ends) > 0) & (self.contact_clearance(z) > 0)
-        return clear & leaving & (landing & lasting).all(axis=-1)
+        obstacles = {
+            "a contact ends earlier": self.contact_clearance(z) > 0,
+            "a flight passes below the table": self.clearance(z, ends) > 0,
+            "the ball does not leave the table as a contact ends": leaving,
+            "the ball does not land": landing.all(axis=-1),
+            "a flight has no duration": lasting.all(axis=-1),
+        }
+        return np.select([~clear for clear in obstacles.values()], [*obstacles], "")
 
 
 def are_stable(trace: NDArray, determinant: NDArray) -> NDArray:
@@ -689,7 +699,7 @@ class PeriodicOrbit:
             "max_height": self.max_height,
             # Rounding errors would decide on the stability of a special orbit.
             **({} if self.kind else {"stable": self.stable}),
-            "admissible": self.admissible,
+            "admissible": self.admissible or f"no, {self.obstacle}",
         }
         width = max(map(len, rows))
         return "\n".join(
@@ -865,14 +875,19 @@ class PeriodicOrbit:
         """
         return bool(self.equations.stable(self._linear)[0])
 
-    @cached_property
+    @property
     def admissible(self) -> bool:
         """Whether a ball follows the orbit.
 
         A ball follows the orbit if each contact ends at its first release, and each flight at its
         first impact.
         """
-        return bool(self.equations.admissible(self.z[np.newaxis], self._linear)[0])
+        return not self.obstacle
+
+    @cached_property
+    def obstacle(self) -> str:
+        """Why no ball follows the orbit, such as "a flight passes below the table"; or ""."""
+        return str(self.equations.obstacles(self.z[np.newaxis], self._linear)[0])
 
 
 def _short(value: Any) -> str:

@@ -163,9 +163,14 @@ def orbits(
 ) -> list[PeriodicOrbit]:
     """Find the stable and unstable orbits with k impacts in m periods that a ball follows.
 
-    If k = 1, the list is complete. If k > 1, the search starts from 2592 first impacts and may miss
-    orbits. With a contact law the search takes seconds, or up to a minute if k > 1. Orbits are
-    sorted by the total duration of their contacts, and then by the phase of their first impact.
+    With a constant r and k = 1 the list is complete, because these orbits are the roots of scalar
+    equations (:mod:`.instants`). With r(u) it is complete to a resolution: r must not leave its
+    course and return to it while u changes by mπ/1024. Contacts
+    of finite duration are searched from 3072 first impacts (more on a table with many harmonics)
+    and from all orbits of instantaneous impacts with the same r(u). If k > 1, the search starts
+    from 2592 first impacts. These two searches may miss orbits. With a contact law the search takes
+    seconds, or up to a minute if k > 1. Orbits are sorted by the total duration of their contacts,
+    and then by the phase of their first impact.
 
     Parameters
     ----------

@@ -10,10 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter, minimum_filter
 
-from bouncing_ball_beyond.contacts.balls import Ball, broadcast_named, check_ball
+from bouncing_ball_beyond.contacts.balls import Ball, Rigid, broadcast_named, check_ball
 from bouncing_ball_beyond.motions.bounces import Balls, bounce
 from bouncing_ball_beyond.motions.effort import Effort, SearchEnded
 from bouncing_ball_beyond.periodic.equations import OrbitEquations, PeriodicOrbit, flight
+from bouncing_ball_beyond.periodic.instants import instants
 from bouncing_ball_beyond.periodic.march import newton
 from bouncing_ball_beyond.tables.table import SINE, Table
 
@@ -146,7 +147,13 @@ def single(equations: OrbitEquations, i: int) -> OrbitEquations:
 
 def all_orbits(equations: OrbitEquations, amplitude: float) -> NDArray:
     """Find orbits of one ball, shape (orbits, N), including those that the ball does not follow."""
-    z = (_returns if equations.impacts == 1 else _motions)(equations, amplitude)
+    if equations.impacts > 1:
+        z = _motions(equations, amplitude)
+    elif isinstance(equations.ball, Rigid) and callable(equations.ball.restitution):
+        z = instants(equations.ball, int(equations.periods), amplitude, equations.table)
+        return np.column_stack([z, np.full(len(z), amplitude)])
+    else:
+        z = np.concatenate([_returns(equations, amplitude), _near_instants(equations, amplitude)])
     equations.spend(0, f"orbits near {len(z)} of these motions")
     z = _solutions_near(equations, z[np.isfinite(z).all(axis=1)])
     x = equations.split(z)[0]
@@ -189,6 +196,19 @@ def _returns(equations: OrbitEquations, amplitude: float) -> NDArray:
     # Durations of contacts may jump between samples. Compute them again instead of interpolating.
     T = ball.first_release(tau, u, amplitude, **within)
     columns = [tau, u, T][: equations.unknowns]
+    return np.stack([*columns, np.full(tau.size, amplitude)], axis=-1)
+
+
+def _near_instants(equations: OrbitEquations, amplitude: float) -> NDArray:
+    """Guess orbits with one impact from all orbits of instantaneous impacts."""
+    ball = equations.ball
+    tau, u = instants(ball, int(equations.periods), amplitude, equations.table).T
+    if not u.size:
+        return np.empty((0, equations.length))
+    with np.errstate(all="ignore"):
+        touch = tau - ball.signature(u).centroid - ball.start(u) / u
+    T = ball.first_release(touch, u, amplitude, periods=equations.periods, table=equations.table)
+    columns = [touch, u, T][: equations.unknowns]
     return np.stack([*columns, np.full(tau.size, amplitude)], axis=-1)
 
 

@@ -889,7 +889,7 @@ def phases_converge(fig13, *curves):
 @claim(
     "height threshold",
     "after Eq. 37, Fig. 14",
-    "frequency ratio from which on the maximum heights differ by less than 1 %",
+    "frequency ratio above which the maximum heights differ by less than 1 %",
     uses={"fig14": PARAMETERS["fig14"] | TOLERANCES["fig14"]},
 )
 def height_threshold(fig14):

@@ -628,7 +628,7 @@ def branch_names(present: list[Branch], close: float) -> list[tuple[str, float, 
 
 
 def fig14(data: xr.Dataset) -> Figure:
-    """Greatest height in both models against ϖ, and the relative error of the restitution model."""
+    """Maximum height in both models against ϖ, and the relative error of the restitution model."""
     figure, (axes, below) = panels(4.2, rows=2, sharex=True)
     look: Look = {"color": CONTACT, "label": "spring-damper model"}
     curve(axes, data.frequency_ratio, data.max_height, data.admissible, **look)

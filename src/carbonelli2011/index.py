@@ -5,7 +5,6 @@ shown next to it.
 """
 
 import re
-import re
 from collections.abc import Mapping
 from functools import partial
 

@@ -77,9 +77,9 @@ def page_of(
 ) -> str:
     """Return the page of a text in Markdown. `name` is its name in `pages`, such as "paper".
 
-    Formulas become MathML, and pictures SVG. Links to texts lead to their pages, and citations to the references.
-    What an expression printed leads to its origin on the page of numbers; `origin` has the origins
-    of all expressions.
+    Formulas become MathML, and pictures SVG. Links to texts lead to their pages, and citations to
+    the references. What an expression printed leads to its origin on the page of numbers; `origin`
+    has the origins of all expressions.
     """
     tokens = parser().parse(markdown)
     inside = [token for block in tokens for token in (block, *(block.children or ()))]

@@ -1,4 +1,4 @@
-"""Stage: from which frequency ratio on the restitution model is right (Fig. 14 and thresholds)."""
+"""Stage: above which frequency ratio the restitution model is right (Fig. 14 and thresholds)."""
 
 import numpy as np
 import xarray as xr
@@ -12,7 +12,7 @@ from paper_replication.datasets import grid
 
 
 def fig14(parameters: dict, release: str) -> xr.Dataset:
-    """Greatest height in both models, and the ϖ from which on its error is tolerable (Eq. 37)."""
+    """Maximum height in both models, and the ϖ above which its error is tolerable (Eq. 37)."""
     n = parameters["n"]
     r = parameters["restitution"]
     amplitude = parameters["amplitude"]

@@ -29,7 +29,7 @@ def fig11(parameters: dict, release: str) -> xr.Dataset:
 
 
 def fig16(parameters: dict, release: str) -> xr.Dataset:
-    """As Fig. 11, with the error of Λ_CR and the ϖ from which on it is tolerable (Eq. 38)."""
+    """As Fig. 11, with the error of Λ_CR and the ϖ above which it is tolerable (Eq. 38)."""
     ratios = grid(parameters["frequency_ratio"])
     contact = contact_of_ball(ratios, parameters["restitution"], release)
     zeta = float(contact.damping_ratio)

@@ -410,7 +410,7 @@ def ext_map(data: xr.Dataset) -> Figure:
         axes.set_ylim(0, np.pi / 2)
         axes.set_ylabel(f"{answer}\nposition of $\\Lambda$")
     entries = {
-        r"$\varpi$ from which on, exactly": sample(**EXACT),
+        r"smallest sufficient $\varpi$, exact": sample(**EXACT),
         "by the error law": sample(**BY_LAW),
         rf"$\varpi={paper:g}$ of the paper is not enough": Patch(**NOT_ENOUGH),
     }

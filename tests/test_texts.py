@@ -108,7 +108,7 @@ def test_the_table_of_your_ball_has_measured_times_where_the_ball_arrives_with_t
         times = re.findall(r"# contact time.*: (\S+) s", text(f"docs/{file}"))
         assert [f"{1e3 * float(each):.3g}" for each in times] == typed
     rows = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")][2:]
-    assert (len(measured), len(rows)) == (2, 3)
+    assert (len(measured), len(rows)) == (2, 4)
     for ball, *cells in rows:
         numbers = [[float(each) for each in re.findall(r"\d[\d.]*", cell)] for cell in cells]
         (r, *_), (milliseconds, *_), frequency, ratio = numbers

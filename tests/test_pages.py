@@ -252,6 +252,14 @@ def test_formulas_are_mathml(texts, data):
         assert "$" not in page and "\\" not in page
 
 
+def test_the_number_of_an_equation_stays_with_its_formula(texts):
+    units = re.findall(r'<span class="numbered">(.*?)</span>', texts["paper.html"])
+    numbers = [re.findall(r"\((?:Eqs?\W|R\d)", unit) for unit in units]
+    assert max(map(len, numbers)) == 1 and sum(map(len, numbers)) > 9
+    alone = [unit for unit, found in zip(units, numbers, strict=True) if found]
+    assert all(unit.count("<math") == 2 for unit in alone)
+
+
 HOUSES = (TOP, *TOP.glob("extras/*"))
 
 

@@ -478,9 +478,10 @@ def draw_instant(column: NDArray, case: xr.Dataset, rigid: float) -> None:
     motions.set_title("\n".join(label(**{name: case[name].item()}) for name in names))
     terms.set_xticks([])
     if case.summit.isnull():
+        middle: Look = {"ha": "center", "va": "center"}
         for axes in column:
             axes.set(xticks=[], yticks=[])
-        terms.set_title("no orbit")
+            axes.text(0.5, 0.5, "no orbit", transform=axes.transAxes, **middle)
         return
     motions.plot(case.time, case.table, color=TABLE, linewidth=2.0, label="table $w$")
     motions.plot(case.time, case.ball, color="black", label="ball $z$")

@@ -17,7 +17,7 @@ REFERENCE = (
 
 SYMBOLS = {
     # Coordinates
-    "amplitude": Variable("excitation amplitude", "Λ", "Eq. 4"),
+    "amplitude": Variable("amplitude of the table", "Λ", "Eq. 4"),
     "case": Variable("parameter set"),
     "end": Variable("end of the branch"),
     "frequency_ratio": Variable("frequency ratio of contact and table", "ϖ", "Eq. 11"),
@@ -59,7 +59,7 @@ SYMBOLS = {
     "end_kind": Variable("kind of the end of the branch"),
     "end_reason": Variable("reason for the end of the branch"),
     # Orbits of the restitution model
-    "restitution_amplitude": Variable("excitation amplitude, restitution model", "Λ"),
+    "restitution_amplitude": Variable("amplitude of the table, restitution model", "Λ"),
     "restitution_phase": Variable("phase of impact, restitution model", "φ_CR", "Eq. 6", "rad"),
     "restitution_impact_velocity": Variable(
         "velocity before impact, restitution model", "-nπ", "Eq. 3"
@@ -82,7 +82,7 @@ SYMBOLS = {
         "phase at which the unstable orbit grazes the table", "φ", units="rad"
     ),
     "special_kind": Variable("kind of special point"),
-    "special_amplitude": Variable("excitation amplitude at the special point", "Λ"),
+    "special_amplitude": Variable("amplitude of the table at the special point", "Λ"),
     "special_phase": Variable("phase at the special point", "φ", "Eq. 21", "rad"),
     "special_contact_duration": Variable("contact duration at the special point", "τ_b", "Eq. 23"),
     "special_arclength": Variable(

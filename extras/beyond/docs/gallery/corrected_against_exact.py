@@ -23,7 +23,7 @@ axes.loglog(ratios, abs(exact / simple - 1), color=COLOURS[1], label="restitutio
 errors = abs(exact / heights(bb.Corrected(balls)) - 1)
 axes.loglog(ratios, errors, color=COLOURS[2], linestyle=DASHES[1], label="corrected model")
 axes.axhline(0.01, **GUIDE, label="1 %")
-axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="error of the greatest height")
+axes.set(xlabel="frequency ratio ϖ of the contact", ylabel="error of the maximum height")
 axes.set_title("1-T orbit at Λ = 1, r = 0.85")
 legend_below(figure)
 figure.savefig("corrected_against_exact.png")

@@ -15,7 +15,7 @@ for (name, ball), colour, line in zip(balls.items(), COLOURS[1:3], DASHES[:2], s
     found = bb.history(ball, amplitude=0.0, velocity=-3.4, periods=0.1, samples=5000)
     height = bb.orbit(ball, n=1, amplitude=1.0).max_height
     touching = found.where(found.contact, drop=True)
-    label = f"{name}: greatest height {height:.4f}"
+    label = f"{name}: maximum height {height:.4f}"
     axes.plot(touching.time, -touching.ball, color=colour, linestyle=line, label=label)
 axes.set(xlabel="time since the impact over 1/Ω", ylabel="penetration over g/Ω²", ylim=(0, 0.37))
 axes.set_title("One impact, r = 0.85")

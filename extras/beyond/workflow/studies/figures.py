@@ -24,7 +24,7 @@ from paper_replication.drawing import (
 from studies.variables import LAW_NAMES
 
 TITLES: Mapping[str, str] = {
-    "max_height": "greatest height",
+    "max_height": "maximum height",
     "bounce_velocity": "bouncing-off velocity",
     "phase": r"phase of touch $\varphi$",
     "apparent_restitution": "apparent restitution",

@@ -165,7 +165,7 @@ VARIABLES = SYMBOLS | {
         "what the error law leaves of the phase, times ϖ²", tolerance=1e-5, floor=1.0
     ),
     "height_left": Variable(
-        "what the error law leaves of the greatest height, times ϖ²", tolerance=1e-5, floor=1.0
+        "what the error law leaves of the maximum height, times ϖ²", tolerance=1e-5, floor=1.0
     ),
     "node_phase_left": Variable(
         "what the error law leaves of the phase at the saddle-node of the restitution model, times "
@@ -231,7 +231,7 @@ VARIABLES = SYMBOLS | {
     "corrected_period_doubling": Variable(
         "amplitude of the period doubling, corrected model", "Λ_PD"
     ),
-    "corrected_max_height": Variable("greatest height, corrected model", "max z"),
+    "corrected_max_height": Variable("maximum height, corrected model", "max z"),
     "ball_restitution": Variable("restitution coefficient of a ball that is followed", "r"),
     "ball_frequency_ratio": Variable(
         "frequency ratio of the contact of a ball that is followed", "ϖ"

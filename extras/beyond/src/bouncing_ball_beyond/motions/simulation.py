@@ -105,7 +105,7 @@ DESCRIPTIONS = {
     "table": ("height of the table", "w", "1"),
     "contact": ("whether the ball touches the table", "", "1"),
     "impact": ("number of the impact", "", "1"),
-    "amplitude": ("excitation amplitude", "Λ", "1"),
+    "amplitude": ("amplitude of the table", "Λ", "1"),
     "phase": ("phase of the table at the first impact", "φ", "rad"),
     "velocity": ("velocity of the ball before the first impact", "z′", "1"),
     "relative_velocity": ("velocity relative to the table before the first impact", "δ′", "1"),

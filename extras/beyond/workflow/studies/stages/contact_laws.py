@@ -193,7 +193,7 @@ def errors_and_zeros(law: str, case: dict, ratios: NDArray) -> tuple[NDArray, ND
 
 
 def thresholds(law: str, cases: list[dict], parameters: dict) -> tuple[NDArray, NDArray]:
-    """The π/(D + κ) at which the errors of the greatest height are the tolerance, NaN out of the
+    """The π/(D + κ) at which the errors of the maximum height are the tolerance, NaN out of the
     range, and whether the orbits are stable and admissible there; shape (case, calibration).
     """
     rows = [case for case in cases for _ in CALIBRATIONS]

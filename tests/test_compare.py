@@ -448,6 +448,9 @@ def test_the_page_shows_both_pictures(project, capsys, drawn):
     page = results / "diff/index.html"
     text = page.read_text("utf-8")
     assert "max_height 2 → 2.5" in text
+    # The way back.
+    target = text.partition('href="')[2].partition('"')[0]
+    assert (page.parent / target).resolve() == results / "index.html"
     shown = [text.index(base64.b64encode(picture).decode()) for picture in pictures]
     assert shown == sorted(shown)
     printed = capsys.readouterr().err
